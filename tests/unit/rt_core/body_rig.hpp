@@ -4,15 +4,10 @@
 
 #include "rt_core/force/rigid_proxy.hpp"
 #include "rt_core/query/contact_set.hpp"
-#include "tests/shared/owned_surface.hpp"
-#include "tests/shared/period.hpp"
 #include "tests/unit/rt_core/surface_support.hpp"
-
-#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <limits>
-#include <memory>
 #include <utility>
 #include <vector>
 
@@ -22,11 +17,6 @@ namespace tactus::test
 inline constexpr double kBodyRadius = 0.002;
 inline constexpr double kBodyStiffness = 500.0;
 inline const Vec3 kHalf(0.03, 0.02, 0.01);
-
-[[nodiscard]] inline Mat3 turn(const Vec3& axis, double angle)
-{
-    return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
-}
 
 [[nodiscard]] inline ToolSpec tool_of(const ToolCore& core, double radius_m = kBodyRadius)
 {
@@ -39,39 +29,13 @@ inline const Vec3 kHalf(0.03, 0.02, 0.01);
     return spec;
 }
 
-[[nodiscard]] inline ToolGoal hand_at(const Vec3& position_m,
-                                      const Mat3& rotation = Mat3::Identity())
-{
-    ToolGoal hand;
-    hand.position_m = position_m;
-    hand.rotation = rotation;
-    hand.elapsed_s = kPeriod_s;
-    return hand;
-}
-
-/// An object as triangles, all of them exact.
-struct Solid
-{
-    TriangleList triangles;
-    ObjectPose pose;
-    Material material{};
-};
-
 /// A proxy among objects; what it is told of them is found by trying all triangles.
-class Rig
+class Rig : public Solids
 {
 public:
     Rig(const ToolSpec& spec, std::vector<Solid> solids)
-        : objects(std::move(solids))
-        , spec_(spec)
-        , memories_(objects.size())
-        , stood_(objects.size())
-        , sut(spec, planes_)
+        : Solids(std::move(solids)), spec_(spec), sut(spec, planes_)
     {
-        for (std::size_t i = 0; i < objects.size(); ++i)
-        {
-            stood_[i] = objects[i].pose;
-        }
     }
 
     ToolOutput step(const Vec3& goal, const Mat3& rotation = Mat3::Identity())
@@ -81,7 +45,8 @@ public:
     ToolOutput step(const ToolGoal& hand)
     {
         sut.see(hand);
-        carry();
+        carry(sut);
+        stations.clear();
         ToolOutput output = step_once(hand, clear);
         steps = 1;
         double left = clear;
@@ -117,7 +82,6 @@ public:
         return least;
     }
 
-    std::vector<Solid> objects;
     AnswerKind kind{AnswerKind::exact};
     double clear{kInfinity}; ///< Of everything else.
     double lower_share{1.0}; ///< Of the true distance, as the proxy is told.
@@ -128,28 +92,6 @@ public:
     std::vector<Similarity> stations{}; ///< Where each of its steps ended.
 
 private:
-    void carry()
-    {
-        std::vector<NearObject> near;
-        bool has_any_moved = false;
-        for (std::size_t i = 0; i < objects.size(); ++i)
-        {
-            memories_[i].velocity_m_per_s = Vec3(0.0, 0.0, 0.0);
-            memories_[i].spin_rad_per_s = Vec3(0.0, 0.0, 0.0);
-            const ObjectPose& now = objects[i].pose;
-            const bool has_moved =
-                stood_[i].translation_m != now.translation_m || stood_[i].rotation != now.rotation;
-            near.push_back({static_cast<std::uint32_t>(i), has_moved ? &stood_[i] : &now, &now,
-                            &memories_[i]});
-            has_any_moved = has_any_moved || has_moved;
-        }
-        sut.carry(has_any_moved ? near : std::vector<NearObject>{}, kPeriod_s);
-        for (std::size_t i = 0; i < objects.size(); ++i)
-        {
-            stood_[i] = objects[i].pose;
-        }
-        stations.clear();
-    }
     ToolOutput step_once(const ToolGoal& hand, double clear_m)
     {
         std::vector<TouchReport> reports(objects.size());
@@ -168,7 +110,7 @@ private:
             placed.push_back({&objects[i].pose, &surfaces[i], &objects[i].material, 0.0, 0.0,
                               lower_share * lower, &reports[i]});
             placed.back().object = static_cast<std::uint32_t>(i);
-            placed.back().memory = &memories_[i];
+            placed.back().memory = &memories[i];
         }
         const ToolOutput output = sut.respond(hand, placed, clear_m);
         stations.push_back(sut.place());
@@ -229,8 +171,6 @@ private:
     }
 
     ToolSpec spec_;
-    std::vector<ProxyMemory> memories_;
-    std::vector<ObjectPose> stood_;
     RigidProxy::Planes planes_;
 
 public:

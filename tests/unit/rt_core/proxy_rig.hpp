@@ -2,14 +2,17 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/force/proxy.hpp"
 #include "rt_core/limits.hpp"
-#include "tests/shared/period.hpp"
 #include "tests/unit/rt_core/surface_support.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <memory>
 #include <utility>
+#include <vector>
 
 namespace tactus::test
 {
@@ -49,30 +52,29 @@ inline constexpr double kRest = 3e-3;
     return placed;
 }
 
-/// A proxy over one object whose surface is certified as far as `certified` (model frame).
-class ProxyRig
+/// A proxy among objects whose surfaces are certified as far as `certified` (model frame).
+class ProxyRig : public Solids
 {
 public:
-    ProxyRig(TriangleList list, const Vec3& start, const ObjectPose& object_pose = {},
+    ProxyRig(TriangleList list, const Vec3& start, const ObjectPose& pose = {},
              const ToolSpec& tool = ball_tool())
-        : triangles(std::move(list)), pose(object_pose), sut(tool)
+        : ProxyRig(std::vector<Solid>{{std::move(list), pose}}, start, tool)
+    {
+    }
+    ProxyRig(std::vector<Solid> solids, const Vec3& start, const ToolSpec& tool = ball_tool())
+        : Solids(std::move(solids)), sut(tool)
     {
         sut.see(goal_at(start));
     }
 
     ToolOutput step(const Vec3& goal, const Vec3& velocity = Vec3(0, 0, 0))
     {
-        const auto surface = surface_of(triangles, to_model(pose, sut.position_m()), certified);
-        const PlacedSurface placed = placed_surface(pose, surface.get(), material, memory, quantum);
-        return sut.respond(goal_at(goal, velocity), {&placed, 1}, clear, planes);
+        return step(goal_at(goal, velocity));
     }
-    /// The object moves first.
-    ToolOutput step(const Vec3& goal, const ObjectPose& now)
+    ToolOutput step(const ToolGoal& hand)
     {
-        const NearObject object{0, &pose, &now, &memory};
-        sut.carry({&object, 1}, kPeriod_s);
-        pose = now;
-        return step(goal);
+        carry(sut);
+        return respond(hand, planes, false);
     }
     /// A frame of several lists, each cut short at `certified`, as the frame has it.
     ToolOutput step_on(const Vec3& goal, const Vec3& velocity)
@@ -80,6 +82,7 @@ public:
         ToolOutput output;
         std::uint32_t left = planes;
         lists = 0;
+        carry(sut);
         do
         {
             if (lists++ > 0)
@@ -90,10 +93,7 @@ public:
             {
                 sut.see({goal, velocity, kPeriod_s, Mat3::Identity(), GoalChange::motion});
             }
-            const auto surface = surface_of(triangles, to_model(pose, sut.position_m()), certified);
-            surface->is_cut = true;
-            const PlacedSurface placed = placed_surface(pose, surface.get(), material, memory);
-            output = sut.respond(goal_at(goal, velocity), {&placed, 1}, clear, left);
+            output = respond(goal_at(goal, velocity), left, true);
             left = planes == Vicinity::kUnlimited ? planes : sut.planes_left();
         } while (sut.goes_on());
         return output;
@@ -107,12 +107,13 @@ public:
         }
         return output;
     }
-    /// The surface's point that is nearest.
+    /// The first object's point that is nearest.
     [[nodiscard]] Vec3 nearest(const Vec3& point) const
     {
         ClosestPoint best;
         best.distance_sq = std::numeric_limits<double>::infinity();
-        for (const auto& corners : triangles)
+        const ObjectPose& pose = objects[0].pose;
+        for (const auto& corners : objects[0].triangles)
         {
             const ClosestPoint closest =
                 closest_point_on_triangle(to_model(pose, point), to_triangle(corners));
@@ -120,21 +121,44 @@ public:
         }
         return to_world(pose, best.point);
     }
-    [[nodiscard]] double clearance() const
+    [[nodiscard]] double clearance() const { return clearance_at(sut.position_m()); }
+    [[nodiscard]] double clearance_at(const Vec3& place) const
     {
-        return distance_to(triangles, to_model(pose, sut.position_m())) * pose.scale;
+        double least = kInfinity;
+        for (const Solid& solid : objects)
+        {
+            least = std::min(least, distance_to(solid.triangles, to_model(solid.pose, place)) *
+                                        solid.pose.scale);
+        }
+        return least;
     }
+    /// Of the first object.
+    [[nodiscard]] Material& material() { return objects[0].material; }
 
-    TriangleList triangles;
-    ObjectPose pose;
     Proxy sut;
-    Material material;
     double quantum{1e-6};
     double certified{0.05};
     double clear{kInfinity};                    ///< Of everything else.
     std::uint32_t planes{Vicinity::kUnlimited}; ///< That it may look at in a frame.
     std::uint32_t lists{0};                     ///< Of the last step_on().
-    ProxyMemory memory;
+
+private:
+    ToolOutput respond(const ToolGoal& hand, std::uint32_t left, bool is_cut)
+    {
+        std::vector<std::unique_ptr<OwnedSurface>> surfaces;
+        std::vector<PlacedSurface> placed;
+        for (std::size_t i = 0; i < objects.size(); ++i)
+        {
+            const Solid& solid = objects[i];
+            surfaces.push_back(
+                surface_of(solid.triangles, to_model(solid.pose, sut.position_m()), certified));
+            surfaces.back()->is_cut = is_cut;
+            placed.push_back(placed_surface(solid.pose, surfaces.back().get(), solid.material,
+                                            memories[i], quantum));
+            placed.back().object = static_cast<std::uint32_t>(i);
+        }
+        return sut.respond(hand, placed, clear, left);
+    }
 };
 
 /// The cosine of the angle between two forces.

@@ -2,14 +2,22 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "rt_core/force/proxy.hpp"
+#include "rt_core/force/near_object.hpp"
+#include "rt_core/force/placed_surface.hpp"
+#include "rt_core/force/tool_goal.hpp"
+#include "rt_core/records/frame_output.hpp"
 #include "tests/shared/distance_oracle.hpp"
 #include "tests/shared/owned_surface.hpp"
+#include "tests/shared/period.hpp"
 #include "tests/unit/rt_core/support.hpp"
+
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <limits>
 #include <memory>
+#include <span>
+#include <utility>
 #include <vector>
 
 namespace tactus::test
@@ -86,6 +94,90 @@ surface_of(const TriangleList& list, const Vec3& center_m, double certified_m)
         }
     }
     return surface;
+}
+
+[[nodiscard]] inline Mat3 turn(const Vec3& axis, double angle)
+{
+    return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
+}
+
+/// An axis times the angle of the turn about it.
+[[nodiscard]] inline Vec3 turned_between(const Mat3& from, const Mat3& to)
+{
+    const Eigen::AngleAxisd turned(to * from.transpose());
+    return turned.angle() * turned.axis();
+}
+
+[[nodiscard]] inline ToolGoal hand_at(const Vec3& position_m,
+                                      const Mat3& rotation = Mat3::Identity())
+{
+    ToolGoal hand;
+    hand.position_m = position_m;
+    hand.rotation = rotation;
+    hand.elapsed_s = kPeriod_s;
+    return hand;
+}
+
+/// An object as triangles, all of them exact.
+struct Solid
+{
+    TriangleList triangles;
+    ObjectPose pose{};
+    Material material{};
+};
+
+/// Objects, what a proxy remembers of each, and where they stood in the frame before.
+struct Solids
+{
+    explicit Solids(std::vector<Solid> solids)
+        : objects(std::move(solids)), memories(objects.size()), stood(objects.size())
+    {
+        std::ranges::transform(objects, stood.begin(), &Solid::pose);
+    }
+
+    /// Tells the proxy of all of them where one has moved since the last frame.
+    template <typename AnyProxy>
+    void carry(AnyProxy& proxy)
+    {
+        std::vector<NearObject> near;
+        bool has_any_moved = false;
+        for (std::size_t i = 0; i < objects.size(); ++i)
+        {
+            memories[i].velocity_m_per_s = memories[i].spin_rad_per_s = Vec3(0.0, 0.0, 0.0);
+            const ObjectPose& now = objects[i].pose;
+            const bool has_moved =
+                stood[i].translation_m != now.translation_m || stood[i].rotation != now.rotation;
+            near.push_back(
+                {static_cast<std::uint32_t>(i), has_moved ? &stood[i] : &now, &now, &memories[i]});
+            has_any_moved = has_any_moved || has_moved;
+        }
+        proxy.carry(has_any_moved ? near : std::vector<NearObject>{}, kPeriod_s);
+        std::ranges::transform(objects, stood.begin(), &Solid::pose);
+    }
+
+    std::vector<Solid> objects;
+    std::vector<ProxyMemory> memories;
+    std::vector<ObjectPose> stood;
+};
+
+/// What force and torque did on a hand that went so many times once round a closed way.
+template <typename AnyRig, typename Hand>
+double work_of_rounds(AnyRig& rig, const Hand& hand_of, int round, int rounds = 2)
+{
+    double work_j = 0.0;
+    ToolGoal before = hand_of(0);
+    ToolOutput last = rig.step(before);
+    for (int step = 1; step <= rounds * round; ++step)
+    {
+        const ToolGoal hand = hand_of(step);
+        const ToolOutput now = rig.step(hand);
+        work_j += 0.5 * (now.force_n + last.force_n).dot(hand.position_m - before.position_m) +
+                  0.5 * (now.torque_nm + last.torque_nm)
+                            .dot(turned_between(before.rotation, hand.rotation));
+        last = now;
+        before = hand;
+    }
+    return work_j;
 }
 
 } // namespace tactus::test

@@ -31,21 +31,6 @@ TriangleList room_corner()
 
 } // namespace
 
-TEST(Proxy, follows_its_goal_in_free_flight_without_a_force)
-{
-    Random random(70);
-    Proxy sut(ball_tool());
-    for (int i = 0; i < 100; ++i)
-    {
-        const Vec3 goal = random.in_cube(1.0);
-        const ToolOutput output = sut.respond(goal_at(goal), {}, kInfinity);
-        ASSERT_EQ(output.force_n, Vec3(0, 0, 0));
-        ASSERT_FALSE(output.in_contact);
-        ASSERT_FALSE(output.frozen);
-        ASSERT_NEAR((output.proxy_m - goal).norm(), 0.0, kRest * kRadius);
-    }
-}
-
 TEST(Proxy, moves_in_free_flight_only_where_it_is_proven_free)
 {
     ProxyRig rig(plane(), Vec3(0, 0, 0.5));
@@ -58,21 +43,6 @@ TEST(Proxy, moves_in_free_flight_only_where_it_is_proven_free)
     EXPECT_NEAR(output.proxy_m.z(), 0.5 - (0.03 - kRadius), 1e-5);
 }
 
-TEST(Proxy, on_a_plane_pushes_back_with_stiffness_times_depth)
-{
-    for (const double depth : {0.0005, 0.002, 0.01, 0.015})
-    {
-        ProxyRig rig(plane(), Vec3(0.1, 0.2, 0.02));
-
-        const ToolOutput output = rig.settle(Vec3(0.1, 0.2, kRadius - depth));
-
-        EXPECT_TRUE(output.in_contact);
-        EXPECT_FALSE(output.frozen);
-        expect_vector(output.proxy_m, Vec3(0.1, 0.2, kRadius), kRest * kRadius);
-        expect_vector(output.force_n, Vec3(0, 0, kStiffness * depth), kStiffness * kRest * kRadius);
-    }
-}
-
 TEST(Proxy, slides_without_friction_to_above_its_goal)
 {
     ProxyRig rig(plane(), Vec3(0, 0, 0.02));
@@ -82,29 +52,6 @@ TEST(Proxy, slides_without_friction_to_above_its_goal)
 
     expect_vector(output.proxy_m, Vec3(0.08, -0.05, kRadius), 2.0 * kRest * kRadius);
     expect_vector(output.force_n, Vec3(0, 0, kStiffness * 0.006), 0.05);
-}
-
-TEST(Proxy, leaves_the_surface_without_being_held)
-{
-    ProxyRig rig(plane(), Vec3(0, 0, 0.02));
-    ASSERT_TRUE(rig.settle(Vec3(0, 0, 0.0)).in_contact);
-
-    const ToolOutput output = rig.settle(Vec3(0, 0, 0.03), 3);
-
-    EXPECT_FALSE(output.in_contact);
-    EXPECT_EQ(output.force_n, Vec3(0, 0, 0));
-    EXPECT_NEAR(output.proxy_m.z(), 0.03, kRest * kRadius);
-}
-
-TEST(Proxy, never_passes_a_plane_however_fast_or_deep_the_goal_is)
-{
-    Random random(71);
-    ProxyRig rig(plane(), Vec3(0, 0, 0.03));
-    for (int i = 0; i < 3'000; ++i)
-    {
-        rig.step({random.between(-0.5, 0.5), random.between(-0.5, 0.5), random.between(-0.3, 0.1)});
-        ASSERT_GE(rig.sut.position_m().z(), kRadius * (1.0 - 2e-6)) << i;
-    }
 }
 
 TEST(Proxy, goes_round_a_convex_edge_and_never_into_the_cube)
@@ -143,21 +90,10 @@ TEST(Proxy, does_not_pass_a_concave_corner)
     ProxyRig rig(room_corner(), Vec3(0.05, 0.05, 0.05));
     for (int i = 0; i < 4'000; ++i)
     {
-        const Vec3 goal = Vec3(0.02, 0.02, 0.02) + random.in_cube(i % 100 == 0 ? 0.3 : 0.06);
+        const Vec3 goal = Vec3(0.02, 0.02, 0.02) + random.in_cube(i % 4 == 0 ? 0.5 : 0.06);
         rig.step(goal);
         ASSERT_GE(rig.sut.position_m().minCoeff(), kRadius * (1.0 - 2e-6)) << "frame " << i;
     }
-}
-
-TEST(Proxy, comes_to_rest_in_a_concave_corner)
-{
-    ProxyRig rig(room_corner(), Vec3(0.05, 0.04, 0.06));
-
-    const ToolOutput output = rig.settle(Vec3(0.002, 0.003, 0.001), 500);
-
-    EXPECT_TRUE(output.in_contact);
-    EXPECT_LT((output.proxy_m - Vec3(kRadius, kRadius, kRadius)).norm(), 0.1 * kRadius);
-    EXPECT_GT(output.force_n.minCoeff(), 0.0);
 }
 
 TEST(Proxy, is_clamped_to_the_largest_force)
@@ -168,36 +104,6 @@ TEST(Proxy, is_clamped_to_the_largest_force)
 
     EXPECT_NEAR(output.force_n.norm(), 8.0, 1e-9);
     EXPECT_NEAR(output.force_n.z(), 8.0, 1e-6);
-}
-
-TEST(Proxy, frozen_in_contact_says_so_and_stays_with_its_force)
-{
-    ProxyRig rig(plane(), Vec3(0, 0, 0.02));
-    const Vec3 goal(0, 0, 0.002);
-    const double full = rig.settle(goal).force_n.norm();
-    ASSERT_NEAR(full, kStiffness * 0.008, 0.05);
-    const Vec3 held = rig.sut.position_m();
-    rig.certified = 0.0;
-
-    for (int frame = 1; frame <= 60; ++frame)
-    {
-        const ToolOutput output = rig.step(goal);
-        ASSERT_TRUE(has_fault(faults_of(output), FrameFault::proxy_frozen));
-        ASSERT_EQ(output.proxy_m, held);
-        ASSERT_NEAR(output.force_n.z(), full, 0.05) << frame;
-    }
-}
-
-TEST(Proxy, frozen_with_the_goal_outside_does_not_pull)
-{
-    ProxyRig rig(plane(), Vec3(0, 0, 0.02));
-    ASSERT_TRUE(rig.settle(Vec3(0, 0, 0.002)).in_contact);
-    rig.certified = 0.0;
-
-    const ToolOutput output = rig.step(Vec3(0, 0, 0.5));
-
-    EXPECT_TRUE(output.frozen);
-    EXPECT_EQ(output.force_n, Vec3(0, 0, 0));
 }
 
 TEST(Proxy, frozen_in_free_flight_has_no_force)
@@ -214,48 +120,6 @@ TEST(Proxy, frozen_in_free_flight_has_no_force)
     EXPECT_EQ(output.proxy_m, Vec3(0, 0, 0.5));
 }
 
-TEST(Proxy, comes_back_to_life_when_the_surface_is_certified_again)
-{
-    ProxyRig rig(plane(), Vec3(0, 0, 0.02));
-    const Vec3 goal(0, 0, 0.002);
-    rig.settle(goal);
-    rig.certified = 0.0;
-    rig.settle(goal, 100);
-    rig.certified = 0.05;
-
-    for (int frame = 0; frame < 100; ++frame)
-    {
-        const ToolOutput output = rig.step(goal);
-        ASSERT_FALSE(output.frozen);
-        ASSERT_NEAR(output.force_n.z(), kStiffness * 0.008, 0.05) << frame;
-    }
-}
-
-TEST(Proxy, of_a_weak_device_the_force_turns_by_its_share_a_second)
-{
-    ToolSpec weak = ball_tool();
-    weak.force_max_n = 2.0;
-    const double step_n = kCatchUpShare_per_s * weak.force_max_n * kPeriod_s;
-    ASSERT_LT(kCatchUpShare_per_s * weak.force_max_n, kCatchUp_n_per_s);
-    ProxyRig rig(cube(0.05), Vec3(0.045, 0.0, 0.07), {}, weak);
-    rig.settle(Vec3(0.045, 0.0, 0.058));
-    const Vec3 beyond_the_edge(0.052, 0.0, 0.045);
-    rig.certified = kRadius + 0.001;
-    static_cast<void>(rig.step(beyond_the_edge));
-    ASSERT_TRUE(rig.step(beyond_the_edge).held_back);
-    Vec3 before = rig.step(beyond_the_edge).force_n;
-    rig.certified = 0.05;
-    int steps = 0;
-    for (int frame = 0; frame < 400; ++frame)
-    {
-        const Vec3 force = rig.step(beyond_the_edge).force_n;
-        ASSERT_LE((force - before).norm(), step_n + 1e-9) << frame;
-        steps += (force - before).norm() > 0.9 * step_n ? 1 : 0;
-        before = force;
-    }
-    EXPECT_GT(steps, 20) << "it did not turn";
-}
-
 TEST(Proxy, a_motion_is_worth_a_step_above_the_least_one)
 {
     for (const double share : {0.99, 1.01})
@@ -270,13 +134,11 @@ TEST(Proxy, a_motion_is_worth_a_step_above_the_least_one)
 
 TEST(Proxy, touches_what_is_as_near_as_its_gap)
 {
-    Material rough;
-    rough.static_friction = 10.0;
-    rough.dynamic_friction = 10.0;
+    const Material rough{kStiffness, 10.0, 10.0, 0.0};
     for (const double share : {0.9, 1.1})
     {
         ProxyRig rig(plane(), Vec3(0, 0, kRadius * (1.0 + share * kTouchShare)));
-        rig.material = rough;
+        rig.material() = rough;
         const ToolOutput output = rig.step(Vec3(0.5 * kRadius, 0, 0.9 * kRadius));
         EXPECT_TRUE(output.in_contact);
         EXPECT_EQ(output.proxy_m.x() > kTouchShare * kRadius, share > 1.0)
@@ -286,13 +148,11 @@ TEST(Proxy, touches_what_is_as_near_as_its_gap)
 
 TEST(Proxy, under_friction_slips_when_that_is_worth_it)
 {
-    Material rough;
-    rough.static_friction = 0.5;
-    rough.dynamic_friction = 0.5;
+    const Material rough{kStiffness, 0.5, 0.5, 0.0};
     for (const double share : {0.9, 1.1})
     {
         ProxyRig rig(plane(), Vec3(0, 0, kRadius));
-        rig.material = rough;
+        rig.material() = rough;
         const double depth = 0.1 * kRadius;
         const double way = rough.static_friction * depth + share * kSlipShare * kRadius;
         const ToolOutput output = rig.step(Vec3(way, 0, kRadius - depth));
@@ -317,43 +177,32 @@ TEST(Proxy, among_more_faces_than_fit_goes_as_far_as_those_that_do_and_on_in_the
     // A floor of small squares, as four objects that lie beside one another.
     constexpr int kSquares = 22;
     constexpr double kEdge = 0.1 * kRadius;
-    const ObjectPose pose;
-    const Material material;
-    std::array<TriangleList, 4> lists;
+    std::vector<Solid> floor(4);
     for (int i = -kSquares; i < kSquares; ++i)
     {
         for (int j = -kSquares; j < kSquares; ++j)
         {
             const auto at = [&](int di, int dj)
             { return Vec3((i + di) * kEdge, (j + dj) * kEdge, 0.0); };
-            add_square(lists[(i < 0 ? 0U : 1U) + (j < 0 ? 0U : 2U)], at(0, 0), at(1, 0), at(1, 1),
-                       at(0, 1));
+            add_square(floor[(i < 0 ? 0U : 1U) + (j < 0 ? 0U : 2U)].triangles, at(0, 0), at(1, 0),
+                       at(1, 1), at(0, 1));
         }
     }
-    Proxy sut(ball_tool());
-    sut.see(goal_at(Vec3(0, 0, kRadius)));
+    ProxyRig rig(floor, Vec3(0, 0, kRadius));
+    rig.certified = 2.2 * kRadius;
     const Vec3 goal(kRadius, 0, 0.5 * kRadius);
-    std::array<ProxyMemory, 4> memories;
     bool was_under_way = false;
-    bool is_in_contact = false;
+    ToolOutput output;
     for (int frame = 0; frame < 10; ++frame)
     {
-        std::array<std::unique_ptr<OwnedSurface>, 4> surfaces;
-        std::vector<PlacedSurface> placed;
-        for (std::size_t i = 0; i < lists.size(); ++i)
-        {
-            surfaces[i] = surface_of(lists[i], sut.position_m(), 2.2 * kRadius);
-            placed.push_back(placed_surface(pose, surfaces[i].get(), material, memories[i]));
-        }
-        const ToolOutput output = sut.respond(goal_at(goal), placed, kInfinity);
+        output = rig.step(goal);
         was_under_way = was_under_way || output.under_way;
-        is_in_contact = output.in_contact;
         ASSERT_FALSE(output.frozen);
-        ASSERT_GE(sut.position_m().z(), kRadius * (1.0 - 2e-6));
+        ASSERT_GE(output.proxy_m.z(), kRadius * (1.0 - 2e-6));
     }
     EXPECT_TRUE(was_under_way);
-    EXPECT_TRUE(is_in_contact);
-    EXPECT_NEAR(sut.position_m().x(), goal.x(), 1e-3 * kRadius);
+    EXPECT_TRUE(output.in_contact);
+    EXPECT_NEAR(output.proxy_m.x(), goal.x(), 1e-3 * kRadius);
 }
 
 /// What a proxy at the origin is told that came here from far away.
@@ -495,8 +344,8 @@ TriangleList waves()
 TEST(Proxy, behind_a_fast_hand_asks_no_farther_than_it_may_go)
 {
     ProxyRig rig(waves(), Vec3(0, 0, kRadius));
-    rig.material.static_friction = 0.3;
-    rig.material.dynamic_friction = 0.24;
+    rig.material().static_friction = 0.3;
+    rig.material().dynamic_friction = 0.24;
     rig.certified = 1.5 * kRadius;
     rig.settle(Vec3(0, 0, 0.5 * kRadius), 3);
     rig.planes = 700;
@@ -536,26 +385,38 @@ TEST(Proxy, says_that_it_is_crowded_when_more_touches_than_planes_fit)
     }
 }
 
-TEST(Proxy, held_back_before_an_edge_and_let_go_the_force_turns_slowly)
+TEST(Proxy, held_back_before_an_edge_and_let_go_the_force_turns_by_its_rate_or_the_devices_share)
 {
-    const Vec3 goal(0.052, 0.0, 0.045); // Nearer to the side.
-    ProxyRig free(cube(0.05), Vec3(0.045, 0.0, 0.07));
-    free.settle(Vec3(0.045, 0.0, 0.058));
-    const Vec3 turned = free.settle(goal).force_n;
-    ProxyRig rig(cube(0.05), Vec3(0.045, 0.0, 0.07));
-    rig.settle(Vec3(0.045, 0.0, 0.058));
-    rig.certified = kRadius + 0.001;
-    Vec3 before = rig.step(goal).force_n;
-    ASSERT_TRUE(rig.step(goal).held_back);
-    ASSERT_GT((turned - before).norm(), 2.0);
-    before = rig.step(goal).force_n;
-    for (int frame = 0; frame < 400; ++frame)
+    for (const double force_max_n : {8.0, 2.0})
     {
-        const Vec3 force = rig.step(goal).force_n;
-        ASSERT_LE((force - before).norm(), kCatchUp_n_per_s * kPeriod_s + 1e-9) << frame;
-        before = force;
+        ToolSpec tool = ball_tool();
+        tool.force_max_n = force_max_n;
+        const double rate_n_per_s = std::min(kCatchUp_n_per_s, kCatchUpShare_per_s * force_max_n);
+        EXPECT_EQ(rate_n_per_s < kCatchUp_n_per_s, force_max_n < 8.0);
+        const Vec3 goal(0.052, 0.0, 0.045); // Nearer to the side.
+        ProxyRig free(cube(0.05), Vec3(0.045, 0.0, 0.07), {}, tool);
+        free.settle(Vec3(0.045, 0.0, 0.058));
+        const Vec3 turned = free.settle(goal).force_n;
+        ProxyRig rig(cube(0.05), Vec3(0.045, 0.0, 0.07), {}, tool);
+        rig.settle(Vec3(0.045, 0.0, 0.058));
+        rig.certified = kRadius + 0.001;
+        Vec3 before = rig.step(goal).force_n;
+        ASSERT_TRUE(rig.step(goal).held_back);
+        ASSERT_GT((turned - before).norm(), 0.25 * force_max_n);
+        before = rig.step(goal).force_n;
+        rig.certified = 0.05;
+        const double step_n = rate_n_per_s * kPeriod_s;
+        int steps = 0;
+        for (int frame = 0; frame < 400; ++frame)
+        {
+            const Vec3 force = rig.step(goal).force_n;
+            ASSERT_LE((force - before).norm(), step_n + 1e-9) << frame;
+            steps += (force - before).norm() > 0.9 * step_n ? 1 : 0;
+            before = force;
+        }
+        EXPECT_GT(steps, 20) << "it did not turn";
+        expect_vector(before, turned, 0.05);
     }
-    expect_vector(before, turned, 0.05);
 }
 
 TEST(Proxy, the_same_scene_under_any_pose_and_scale_gives_the_same_force)
@@ -587,27 +448,16 @@ TEST(Proxy, the_same_scene_under_any_pose_and_scale_gives_the_same_force)
 
 TEST(Proxy, two_objects_hold_it_together)
 {
-    TriangleList floor = plane();
     TriangleList wall;
     add_square(wall, {0, -1, -1}, {0, 1, -1}, {0, 1, 1}, {0, -1, 1});
-    const ObjectPose pose;
-    const Material material;
-    Proxy sut(ball_tool());
-    std::array<ProxyMemory, 2> memories;
-    sut.see(goal_at(Vec3(0.05, 0, 0.05)));
-    ToolOutput output;
+    ProxyRig rig({{plane()}, {wall}}, Vec3(0.05, 0, 0.05));
     for (int i = 0; i < 300; ++i)
     {
-        const auto a = surface_of(floor, sut.position_m(), 0.06);
-        const auto b = surface_of(wall, sut.position_m(), 0.06);
-        const std::array<PlacedSurface, 2> placed{
-            placed_surface(pose, a.get(), material, memories[0]),
-            placed_surface(pose, b.get(), material, memories[1])};
-        output = sut.respond(goal_at(Vec3(0.004, 0, 0.006)), placed, kInfinity);
-        ASSERT_GE(sut.position_m().x(), kRadius * (1.0 - 2e-6));
-        ASSERT_GE(sut.position_m().z(), kRadius * (1.0 - 2e-6));
+        rig.step(Vec3(0.004, 0, 0.006));
+        ASSERT_GE(rig.sut.position_m().x(), kRadius * (1.0 - 2e-6));
+        ASSERT_GE(rig.sut.position_m().z(), kRadius * (1.0 - 2e-6));
     }
-    EXPECT_LT((output.proxy_m - Vec3(kRadius, 0, kRadius)).norm(), 0.1 * kRadius);
+    EXPECT_LT((rig.sut.position_m() - Vec3(kRadius, 0, kRadius)).norm(), 0.1 * kRadius);
 }
 
 TEST(Proxy, rests_in_a_concave_corner_within_one_frame)
@@ -652,7 +502,7 @@ TEST(Proxy, every_step_of_its_path_is_free)
             for (int share = 0; share <= 16; ++share)
             {
                 const Vec3 at = path[k - 1] + (path[k] - path[k - 1]) * (share / 16.0);
-                ASSERT_GE(distance_to(rig.triangles, at), kRadius * (1.0 - 2e-6)) << i;
+                ASSERT_GE(rig.clearance_at(at), kRadius * (1.0 - 2e-6)) << i;
             }
         }
     }
@@ -675,42 +525,6 @@ TEST(Proxy, a_tool_without_a_radius_stays_a_skin_away)
     ASSERT_TRUE(output.in_contact);
 }
 
-TEST(Proxy, sticks_within_the_static_cone)
-{
-    ProxyRig rig(plane(), Vec3(0, 0, 0.02));
-    rig.material = {kStiffness, 0.5, 0.3, 0.0};
-    rig.settle(Vec3(0, 0, 0.006), 5);
-    const Vec3 stuck = rig.sut.position_m();
-
-    const Vec3 goal(0.0019, 0.0, 0.006); // 4 mm deep: the cone is 2 mm wide there.
-    const ToolOutput output = rig.settle(goal, 50);
-
-    EXPECT_EQ(output.proxy_m, stuck);
-    expect_vector(output.force_n, kStiffness * (stuck - goal), 1e-3);
-}
-
-TEST(Proxy, slides_behind_its_goal_by_the_dynamic_cone_and_sticks_again)
-{
-    ProxyRig rig(plane(), Vec3(0, 0, 0.02));
-    rig.material = {kStiffness, 0.5, 0.3, 0.0};
-    rig.settle(Vec3(0, 0, 0.006), 5);
-    ToolOutput output;
-    for (int i = 0; i <= 100; ++i)
-    {
-        output = rig.step(Vec3(0.0001 * i, 0.0, 0.006));
-    }
-    EXPECT_NEAR(output.proxy_m.x(), 0.01 - 0.3 * 0.004, 2e-3 * kRadius);
-    EXPECT_NEAR(output.force_n.x(), -0.3 * output.force_n.z(), 1e-2);
-    const Vec3 slid = output.proxy_m;
-
-    rig.settle(Vec3(0.01, 0.0, 0.006), 3);
-    EXPECT_NEAR((rig.sut.position_m() - slid).norm(), 0.0, 2e-4 * kRadius);
-    const Vec3 stuck = rig.sut.position_m();
-    output = rig.step(Vec3(0.0105, 0.0, 0.006)); // Within the static cone.
-
-    EXPECT_EQ(output.proxy_m, stuck);
-}
-
 TEST(Proxy, friction_rounds_a_ball_as_well)
 {
     // A fan of thin faces: the bent top of a cylinder of radius 0.1 along y.
@@ -723,7 +537,7 @@ TEST(Proxy, friction_rounds_a_ball_as_well)
     }
     ProxyRig rig(list, Vec3(0, 0, 0.115));
     rig.certified = 0.03;
-    rig.material = {kStiffness, 0.4, 0.4, 0.0};
+    rig.material() = {kStiffness, 0.4, 0.4, 0.0};
     rig.settle(Vec3(0, 0, 0.107), 5);
     double sum = 0.0;
     for (int i = 0; i <= 300; ++i)
@@ -739,126 +553,30 @@ TEST(Proxy, friction_rounds_a_ball_as_well)
     EXPECT_GT(sum / 200.0, 0.36); // Over an edge it rolls a little farther than on a face.
 }
 
-TEST(Proxy, the_softer_of_tool_and_object_pushes)
+TEST(Proxy, on_a_viscous_surface_makes_no_energy_however_the_hand_goes)
 {
-    ProxyRig rig(plane(), Vec3(0, 0, 0.02));
-    rig.material.stiffness_n_per_m = 0.2 * kStiffness;
-
-    EXPECT_NEAR(rig.settle(Vec3(0, 0, 0.006)).force_n.z(), 0.2 * kStiffness * 0.004, 1e-3);
-
-    rig.material.stiffness_n_per_m = 7.0 * kStiffness;
-    EXPECT_NEAR(rig.settle(Vec3(0, 0, 0.006)).force_n.z(), kStiffness * 0.004, 1e-3);
-}
-
-TEST(Proxy, damping_resists_the_way_in_and_never_pulls_on_the_way_out)
-{
-    ProxyRig rig(plane(), Vec3(0, 0, 0.02));
-    rig.material.damping_n_s_per_m = 2.0;
-    const Vec3 goal(0, 0, 0.008);
-    const double still = rig.settle(goal).force_n.z();
-
-    EXPECT_NEAR(rig.step(goal, Vec3(0, 0, -0.1)).force_n.z(), still + 0.2, 1e-9);
-    EXPECT_NEAR(rig.step(goal, Vec3(0.5, 0.2, 0)).force_n.z(), still, 1e-9);
-    EXPECT_NEAR(rig.step(goal, Vec3(0, 0, 0.1)).force_n.z(), still - 0.2, 1e-9);
-    EXPECT_NEAR(rig.step(goal, Vec3(0, 0, 10.0)).force_n.norm(), 0.0, 1e-9);
-}
-
-TEST(Proxy, an_object_that_moves_pushes_it_along)
-{
-    ProxyRig rig(plane(), Vec3(0, 0, 0.02));
-    rig.settle(Vec3(0, 0, 0.005));
-    ObjectPose pose;
-    for (int i = 0; i < 400; ++i)
+    for (std::uint32_t seed = 1; seed <= 8; ++seed)
     {
-        pose.translation_m.z() += i < 200 ? 0.002 : -0.002; // 2 m/s, up and down again.
-        const ToolOutput output = rig.step(Vec3(0, 0, 0.005), pose);
-        ASSERT_FALSE(output.squeezed);
-        ASSERT_GE(rig.clearance(), kRadius * (1.0 - 1e-5)) << i;
-        ASSERT_GT(to_model(pose, output.proxy_m).z(), 0.0);
-    }
-    EXPECT_NEAR(rig.sut.position_m().z(), kRadius, 1e-3 * kRadius);
-}
-
-TEST(Proxy, an_object_that_would_run_over_it_takes_it_along)
-{
-    for (const double speed : {0.5, 5.0, 50.0})
-    {
-        ProxyRig rig(plane(), Vec3(0, 0, 0.1));
-        rig.certified = 0.2;
-        const Vec3 hand(0, 0, 0.1);
-        rig.step(hand);
-        ObjectPose pose;
-        for (int i = 0; i < 500; ++i)
+        Random random(seed);
+        ProxyRig rig(plane(), Vec3(0, 0, 0.02));
+        rig.material().viscosity_n_s_per_m = std::pow(10.0, random.between(-2.0, 4.0));
+        Vec3 hand = Vec3(0, 0, kRadius - 0.002);
+        (void)rig.settle(hand, 20);
+        double work_j = 0.0;
+        for (int step = 0; step < 4'000; ++step)
         {
-            pose.translation_m.z() += speed * kPeriod_s;
-            const ToolOutput output = rig.step(hand, pose);
-            ASSERT_FALSE(output.squeezed);
-            ASSERT_GE(to_model(pose, output.proxy_m).z(), kRadius * (1.0 - 1e-5))
-                << speed << " m/s, frame " << i;
-        }
-        EXPECT_TRUE(rig.sut.is_in_contact());
-    }
-}
-
-TEST(Proxy, friction_takes_it_along_with_an_object_that_slides)
-{
-    ProxyRig rig(plane(), Vec3(0, 0, 0.02));
-    rig.material = {kStiffness, 0.5, 0.3, 0.0};
-    const Vec3 hand(0, 0, 0.006);
-    rig.settle(hand, 5);
-    ObjectPose pose;
-    ToolOutput output;
-    for (int i = 0; i < 15; ++i)
-    {
-        pose.translation_m.x() += 0.0001;
-        output = rig.step(hand, pose);
-    }
-    EXPECT_NEAR(output.proxy_m.x(), 0.0015, 1e-9); // Within the static cone of 2 mm.
-    for (int i = 0; i < 100; ++i)
-    {
-        pose.translation_m.x() += 0.0001;
-        output = rig.step(hand, pose);
-    }
-    EXPECT_NEAR(output.proxy_m.x(), 0.3 * 0.004, 2e-3 * kRadius);
-    EXPECT_NEAR(output.force_n.x(), 0.3 * output.force_n.z(), 1e-2);
-}
-
-TEST(Proxy, squeezed_between_objects_says_so)
-{
-    const TriangleList floor = plane();
-    const Material material;
-    Proxy sut(ball_tool());
-    const Vec3 hand(0, 0, 0.012);
-    sut.see(goal_at(hand));
-    std::array<ObjectPose, 2> poses{};
-    std::array<ProxyMemory, 2> memories;
-    poses[1].translation_m.z() = 0.03;
-    int squeezed = 0;
-    for (int i = 0; i < 200; ++i)
-    {
-        std::array<ObjectPose, 2> now = poses;
-        now[1].translation_m.z() -= i < 120 ? 0.0002 : 0.0; // Down to 6 mm over the floor.
-        const std::array<NearObject, 2> objects{{{0, poses.data(), now.data(), memories.data()},
-                                                 {1, &poses[1], &now[1], &memories[1]}}};
-        sut.carry(objects, kPeriod_s);
-        poses = now;
-        const auto a = surface_of(floor, to_model(poses[0], sut.position_m()), 0.06);
-        const auto b = surface_of(floor, to_model(poses[1], sut.position_m()), 0.06);
-        const std::array<PlacedSurface, 2> placed{
-            placed_surface(poses[0], a.get(), material, memories[0]),
-            placed_surface(poses[1], b.get(), material, memories[1])};
-        const ToolOutput output = sut.respond(goal_at(hand), placed, kInfinity);
-        ASSERT_TRUE(output.proxy_m.allFinite());
-        ASSERT_EQ(output.squeezed, poses[1].translation_m.z() < 2.0 * kRadius * (1.0 - 1e-5))
-            << "gap " << poses[1].translation_m.z();
-        if (output.squeezed)
-        {
-            ASSERT_TRUE(has_fault(faults_of(output), FrameFault::proxy_squeezed));
-            ASSERT_LE(output.force_n.norm(), 8.0) << i;
-            ++squeezed;
+            Vec3 next = hand + random.in_cube(5e-4);
+            next.z() = hand.z(); // Along the surface alone: there is no other spring to ask.
+            next *= std::min(1.0, 0.05 / next.norm());
+            next.z() = hand.z();
+            const ToolOutput now = rig.step(next);
+            work_j += now.force_n.dot(next - hand);
+            const double stretch_m = (now.proxy_m - next).head<2>().norm();
+            // Never more than the spring has: what it holds was given to it.
+            EXPECT_LE(work_j + 0.5 * kStiffness * stretch_m * stretch_m, 1e-5) << seed;
+            hand = next;
         }
     }
-    EXPECT_GT(squeezed, 100);
 }
 
 TEST(Proxy, a_pull_across_a_frozen_surface_does_not_turn_the_force)

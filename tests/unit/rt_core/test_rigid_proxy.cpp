@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "rt_core/force/rigid_proxy.hpp"
+#include "rt_core/force/angular_stiffness.hpp"
 #include "tests/unit/rt_core/body_rig.hpp"
 
 #include <Eigen/Geometry>
@@ -43,59 +43,16 @@ double least_on_way(const Rig& rig, const ToolCore& core, const Similarity& from
     return least;
 }
 
+/// A box at rest on a plane, just touching it.
+Rig box_on_plane(const Material& material)
+{
+    Rig rig = on_plane(Box{kHalf}, material);
+    rig.settle(Vec3(0, 0, 0.05));
+    rig.settle(Vec3(0, 0, kHalf.z() + kBodyRadius - 1e-5));
+    return rig;
+}
+
 } // namespace
-
-TEST(RigidProxy, away_from_everything_is_where_the_hand_is_to_the_last_bit_without_a_force)
-{
-    Rig rig = on_plane(Box{kHalf});
-    Random random(1);
-    Vec3 goal(0, 0, 0.2);
-    Mat3 rotation = Mat3::Identity();
-    for (int i = 0; i < 500; ++i)
-    {
-        goal += random.in_cube(0.002);
-        goal.z() = std::max(goal.z(), 0.1);
-        rotation = turn(random.in_cube(1.0), 0.05) * rotation;
-
-        const ToolOutput output = rig.step(goal, rotation);
-
-        ASSERT_EQ(output.proxy_m, goal) << i;
-        ASSERT_EQ(output.proxy_rotation, rotation) << i;
-        ASSERT_EQ(output.force_n, Vec3(0, 0, 0)) << i;
-        ASSERT_EQ(output.torque_nm, Vec3(0, 0, 0)) << i;
-        ASSERT_FALSE(output.in_contact) << i;
-    }
-}
-
-TEST(RigidProxy, pressed_flat_stays_flat_and_pushes_by_its_depth)
-{
-    const std::array<Vec3, 3> corners{Vec3(0.03, 0, 0.01), Vec3(-0.03, 0.02, 0.01),
-                                      Vec3(-0.03, -0.02, 0.01)};
-    std::vector<Vec3> vertices(corners.begin(), corners.end());
-    for (const Vec3& corner : corners)
-    {
-        vertices.push_back(-corner);
-    }
-    const std::array<std::pair<ToolCore, double>, 3> tools{
-        {{Box{kHalf}, 0.01},
-         {Segment{{-0.03, 0, 0}, {0.03, 0, 0}}, 0.0},
-         {Hull::create(vertices).value(), 0.01}}};
-    for (const auto& [core, height] : tools)
-    {
-        Rig rig = on_plane(core);
-        rig.settle(Vec3(0, 0, 0.05));
-
-        const ToolOutput output = rig.settle(Vec3(0, 0, -0.004));
-
-        const double rest = height + kBodyRadius;
-        EXPECT_TRUE(output.in_contact) << core.index();
-        EXPECT_LE((output.proxy_m - Vec3(0, 0, rest)).norm(), 1e-7) << core.index();
-        EXPECT_LE((output.force_n - Vec3(0, 0, kBodyStiffness * (rest + 0.004))).norm(), 1e-3)
-            << core.index();
-        EXPECT_LE(output.torque_nm.norm(), 1e-5) << core.index();
-        EXPECT_LE((output.proxy_rotation - Mat3::Identity()).norm(), 1e-5) << core.index();
-    }
-}
 
 TEST(RigidProxy, comes_to_rest_on_what_held_it_where_it_is_told_of_one_point_at_a_time)
 {
@@ -167,20 +124,6 @@ TEST(RigidProxy, force_and_torque_are_clamped_by_one_gain)
     EXPECT_EQ(of_a_point.torque_nm, Vec3(0, 0, 0));
 }
 
-TEST(RigidProxy, is_let_go_at_once)
-{
-    Rig rig = on_plane(Box{kHalf});
-    rig.settle(Vec3(0, 0, 0.05));
-    rig.settle(Vec3(0, 0, -0.004), turn(Vec3(1, 0, 0), 0.05));
-
-    const ToolOutput output = rig.settle(Vec3(0, 0, 0.05), Mat3::Identity(), 100);
-
-    EXPECT_FALSE(output.in_contact);
-    EXPECT_EQ(output.force_n, Vec3(0, 0, 0));
-    EXPECT_EQ(output.torque_nm, Vec3(0, 0, 0));
-    EXPECT_EQ(output.proxy_m, Vec3(0, 0, 0.05));
-}
-
 TEST(RigidProxy, never_pulls_and_its_core_never_crosses_a_surface)
 {
     const std::vector<Vec3> spike{
@@ -228,32 +171,6 @@ TEST(RigidProxy, never_pulls_and_its_core_never_crosses_a_surface)
     }
 }
 
-TEST(RigidProxy, frozen_stays_with_its_force_says_so_and_never_pulls)
-{
-    Rig rig = on_plane(Box{kHalf});
-    rig.settle(Vec3(0, 0, 0.05));
-    const ToolOutput held = rig.settle(Vec3(0, 0, -0.004));
-    rig.kind = AnswerKind::bracket;
-    rig.lower_share = 0.5;
-
-    for (int i = 0; i < 60; ++i)
-    {
-        const ToolOutput output = rig.step(Vec3(0, 0, -0.004));
-        ASSERT_TRUE(has_fault(faults_of(output), FrameFault::proxy_frozen));
-        ASSERT_NEAR(output.force_n.z(), held.force_n.z(), 1e-9) << i;
-        ASSERT_EQ(output.proxy_m, held.proxy_m);
-        ASSERT_LE(output.lag_m, 1e-6) << "what presses it is no way";
-    }
-    const ToolOutput pulled = rig.step(Vec3(0, 0, 0.1));
-    EXPECT_NEAR(pulled.lag_m, 0.1 - held.proxy_m.z(), 1e-4);
-    EXPECT_EQ(pulled.force_n, Vec3(0, 0, 0));
-    EXPECT_EQ(pulled.proxy_m, held.proxy_m) << "what lies between is not known";
-
-    rig.kind = AnswerKind::exact;
-    rig.lower_share = 1.0;
-    EXPECT_EQ(rig.settle(Vec3(0, 0, 0.1)).proxy_m, Vec3(0, 0, 0.1));
-}
-
 TEST(RigidProxy, between_brackets_goes_no_farther_than_they_allow)
 {
     Rig rig = on_plane(Box{kHalf});
@@ -268,41 +185,6 @@ TEST(RigidProxy, between_brackets_goes_no_farther_than_they_allow)
         ASSERT_LE((output.proxy_m - before).norm(), room + 1e-15) << i;
     }
     EXPECT_GT(rig.distance(), kBodyRadius);
-}
-
-TEST(RigidProxy, is_pushed_by_an_object_that_moves)
-{
-    Rig rig = on_plane(Box{kHalf});
-    rig.settle(Vec3(0, 0, 0.012));
-    ToolOutput output;
-    for (int i = 0; i < 100; ++i)
-    {
-        rig.objects[0].pose.translation_m.z() += 1e-4;
-        output = rig.step(Vec3(0, 0, 0.012));
-        ASSERT_GT(rig.distance(), 0.8 * kBodyRadius) << i;
-    }
-    output = rig.settle(Vec3(0, 0, 0.012));
-    EXPECT_NEAR(output.proxy_m.z(), 0.022, 1e-7);
-    EXPECT_NEAR(output.force_n.z(), kBodyStiffness * 0.01, 1e-3);
-}
-
-TEST(RigidProxy, squeezed_between_objects_says_so_and_stays)
-{
-    Rig rig(tool_of(Box{kHalf}), {{plane(), {}}, {plane(), {}}});
-    rig.objects[1].pose.translation_m.z() = 0.03;
-    rig.settle(Vec3(0, 0, 0.014));
-    EXPECT_FALSE(rig.sut.is_squeezed());
-
-    while (rig.objects[1].pose.translation_m.z() > 0.0235)
-    {
-        rig.objects[1].pose.translation_m.z() -= 1e-4;
-        rig.step(Vec3(0, 0, 0.014));
-    }
-    const ToolOutput output = rig.settle(Vec3(0, 0, 0.014));
-
-    EXPECT_TRUE(rig.sut.is_squeezed());
-    EXPECT_GT(rig.distance(), 0.0);
-    EXPECT_TRUE(output.force_n.allFinite());
 }
 
 TEST(RigidProxy, that_starts_across_a_surface_is_where_the_hand_is_until_it_is_clear)
@@ -479,6 +361,170 @@ TEST(RigidProxy, without_a_radius_keeps_a_skin)
     const double skin = kLeastSkin * kHalf.norm();
     EXPECT_NEAR(output.proxy_m.z(), kHalf.z() + skin, 0.01 * skin);
     EXPECT_NEAR(rig.settle(Vec3(0.02, 0, -0.004), Mat3::Identity(), 900).proxy_m.x(), 0.02, 1e-4);
+}
+
+TEST(RigidProxy, of_two_objects_each_pushes_by_its_own_stiffness)
+{
+    Material soft;
+    soft.stiffness_n_per_m = 100.0;
+    // A corner of two walls; the hand is as deep behind each of them.
+    Rig rig(tool_of(Segment{{0, 0, -0.01}, {0, 0, 0.01}}), {{plane(), {}}, {plane(), {}, soft}});
+    rig.objects[1].pose.rotation = turn(Vec3(0, 1, 0), std::numbers::pi / 2.0);
+    rig.settle(Vec3(0.03, 0, 0.05));
+
+    const ToolOutput output = rig.settle(Vec3(-0.003, 0, 0.007));
+
+    const Vec3 between = output.proxy_m - Vec3(-0.003, 0, 0.007);
+    EXPECT_NEAR(output.force_n.x(), 100.0 * between.x(), 1e-3);
+    EXPECT_NEAR(output.force_n.z(), kBodyStiffness * between.z(), 1e-2);
+}
+
+TEST(RigidProxy, the_angular_stiffness_is_what_is_set)
+{
+    for (const double set : {0.02, 0.3, 5.0})
+    {
+        ToolSpec spec = tool_of(Box{kHalf});
+        spec.angular_stiffness_nm_per_rad = set;
+        EXPECT_NEAR(angular_stiffness_nm_per_rad(spec), set, 1e-12 * set);
+        Rig rig(spec, {{plane(), {}}});
+        rig.settle(Vec3(0, 0, 0.05));
+        const Mat3 tilted = turn(Vec3(0, 1, 0), 0.03);
+
+        const ToolOutput output = rig.settle(Vec3(0, 0, -0.02), tilted, 900);
+
+        const Eigen::AngleAxisd held(output.proxy_rotation * tilted.transpose());
+        EXPECT_GT(held.angle(), 1e-3);
+        EXPECT_LE((output.torque_nm - set * held.angle() * held.axis()).norm(),
+                  0.02 * output.torque_nm.norm())
+            << set;
+        EXPECT_NEAR(rig.distance(), kBodyRadius, 2e-3 * kBodyRadius);
+    }
+    ToolSpec unset = tool_of(Box{kHalf});
+    const double arm = kHalf.norm() + kBodyRadius;
+    EXPECT_NEAR(angular_stiffness_nm_per_rad(unset), kBodyStiffness * arm * arm, 1e-12);
+    EXPECT_NEAR(angular_lever_m(unset), arm, 1e-12);
+    unset.core = PointCore{};
+    EXPECT_EQ(angular_stiffness_nm_per_rad(unset), 0.0);
+    EXPECT_EQ(angular_lever_m(unset), 0.0);
+}
+
+TEST(RigidProxy, damping_brakes_a_turn_and_an_object_that_comes_nearer)
+{
+    Material material;
+    material.damping_n_s_per_m = 8.0;
+    Rig rig = box_on_plane(material);
+    ToolGoal hand = hand_at(Vec3(0, 0, 0.008));
+    rig.settle(hand.position_m);
+    const double still_n = rig.step(hand).force_n.z();
+    // Turning, one side comes in as fast as the other one goes out; what rests on both is braked.
+    hand.spin_rad_per_s = Vec3(0, 1.0, 0);
+    EXPECT_LT(rig.step(hand).torque_nm.y(), -1e-4);
+    hand.spin_rad_per_s = Vec3(0, 0, 0);
+    rig.objects[0].pose.translation_m.z() += 1e-5;
+    EXPECT_NEAR(rig.step(hand).force_n.z(), still_n + 8.0 * 0.01 + kBodyStiffness * 1e-5, 0.02);
+}
+
+TEST(RigidProxy, a_twist_about_the_normal_sticks_and_slides_by_its_torque)
+{
+    Material material;
+    material.static_friction = 0.4;
+    material.dynamic_friction = 0.4;
+    Rig rig = box_on_plane(material);
+    const Vec3 hand(0, 0, kHalf.z() + kBodyRadius - 0.004);
+    rig.settle(hand, Mat3::Identity(), 100);
+    // Of four corners that carry the same the friction's torque is at most this.
+    const double lever = std::hypot(kHalf.x(), kHalf.y());
+    const double most_nm = 0.4 * kBodyStiffness * 0.004 * lever;
+    const double arm = kHalf.norm() + kBodyRadius;
+    const double slip_rad = most_nm / (kBodyStiffness * arm * arm);
+
+    rig.settle(hand, turn(Vec3(0, 0, 1), 0.9 * slip_rad));
+    const Mat3 stuck = rig.sut.place().rotation;
+    EXPECT_LE((stuck - Mat3::Identity()).norm(), 1e-4);
+    const ToolOutput slid = rig.settle(hand, turn(Vec3(0, 0, 1), 3.0 * slip_rad));
+    EXPECT_GT(Eigen::AngleAxisd(slid.proxy_rotation).angle(), slip_rad);
+    EXPECT_LE(std::abs(slid.torque_nm.z()), 1.02 * most_nm);
+    EXPECT_GE(std::abs(slid.torque_nm.z()), 0.9 * most_nm);
+}
+
+TEST(RigidProxy, an_object_that_turns_takes_along_what_sticks_to_it)
+{
+    Material material;
+    material.static_friction = 0.8;
+    material.dynamic_friction = 0.8;
+    Rig rig = box_on_plane(material);
+    const Vec3 hand(0, 0, kHalf.z() + kBodyRadius - 0.004);
+    rig.settle(hand, Mat3::Identity(), 100);
+    const Mat3 before = rig.sut.place().rotation;
+    for (int i = 0; i < 100; ++i)
+    {
+        rig.objects[0].pose.rotation = turn(Vec3(0, 0, 1), 1e-4) * rig.objects[0].pose.rotation;
+        static_cast<void>(rig.step(hand));
+    }
+    EXPECT_NEAR(turned_between(before, rig.sut.place().rotation).norm(), 0.01, 2e-4);
+}
+
+TEST(RigidProxy, friction_never_drives_the_tool)
+{
+    Material material;
+    material.static_friction = 0.7;
+    material.dynamic_friction = 0.5;
+    Random random(11);
+    for (const ToolCore& core :
+         {ToolCore{Box{kHalf}}, ToolCore{Segment{{-0.03, 0, 0}, {0.03, 0, 0}}}})
+    {
+        Rig rig(tool_of(core), {{cube(0.05), {}, material}, {plane(), {}, material}});
+        rig.objects[0].pose.translation_m = Vec3(0, 0, 0.06);
+        rig.settle(Vec3(0.2, 0, 0.2));
+        Vec3 goal(0.2, 0, 0.2);
+        Mat3 rotation = Mat3::Identity();
+        Vec3 aim = goal;
+        Vec3 axis(0, 0, 1);
+        int stuck = 0;
+        int slid = 0;
+        for (int i = 0; i < 6'000; ++i)
+        {
+            if (random.one_in(50))
+            {
+                aim = Vec3(0, 0, 0.06) + random.in_cube(0.12);
+                axis = random.in_cube(1.0);
+            }
+            goal += 0.05 * (aim - goal);
+            rotation = turn(axis, 0.01) * rotation;
+            const Similarity from = rig.sut.place();
+            const Vec3 ahead = goal - from.translation_m;
+            const Eigen::AngleAxisd turned(rotation * from.rotation.transpose());
+
+            const ToolOutput output = rig.step(goal, rotation);
+
+            // The hand's springs are stretched by what the force says at most: what holds back
+            // never sends the tool the other way.
+            ASSERT_GT(rig.distance(), 0.0) << i;
+            const double pulled =
+                output.force_n.dot(ahead) + output.torque_nm.dot(turned.angle() * turned.axis());
+            ASSERT_LE(pulled, 1e-3) << i << ": it was driven on";
+            stuck += rig.sut.sticks() ? 1 : 0;
+            slid += rig.sut.slides() ? 1 : 0;
+        }
+        EXPECT_GT(stuck, 100);
+        EXPECT_GT(slid, 100);
+    }
+}
+
+TEST(RigidProxy, viscosity_drags_a_turning_body)
+{
+    Material honey;
+    honey.viscosity_n_s_per_m = 5.0;
+    Rig rig = box_on_plane(honey);
+    const Vec3 hand = rig.sut.place().translation_m - Vec3(0, 0, 0.002);
+    rig.settle(hand, Mat3::Identity(), 50);
+    ToolOutput output;
+    for (int i = 0; i < 300; ++i)
+    {
+        output = rig.step(hand, turn(Vec3(0, 0, 1), 1e-3 * i));
+    }
+    EXPECT_LT(output.torque_nm.z(), -1e-4) << "it turns on corners that drag";
+    EXPECT_LT(output.force_n.head<2>().norm(), 0.1 * output.force_n.z());
 }
 
 } // namespace tactus::test

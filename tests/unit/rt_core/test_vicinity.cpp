@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "rt_core/force/vicinity.hpp"
 #include "tests/shared/owned_surface.hpp"
 #include "tests/unit/rt_core/surface_support.hpp"
 
