@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "platform/doctor/doctor.hpp"
+#include "tests/unit/doctor/doctor_cases.hpp"
 #include "tests/unit/doctor/made_up_machine.hpp"
 
 #include <gtest/gtest.h>
@@ -11,6 +12,7 @@
 #include <map>
 #include <random>
 #include <set>
+#include <sstream>
 #include <string_view>
 
 namespace tactus::doctor
@@ -132,31 +134,303 @@ TEST(Examine, survives_bytes_at_random)
     }
 }
 
-/// Each thing without which the loop can not run, by itself.
-TEST(Examine, calls_critical_what_the_loop_can_not_be_without)
+std::vector<std::string> split(const std::string& text, const std::string& by)
 {
-    const std::map<std::string, std::function<void(MadeUpMachine&)>> faults{
-        {"priority", [](MadeUpMachine& m) { m.measured.fifo_refused = "EPERM"; }},
-        {"memlock", [](MadeUpMachine& m) { m.measured.memory_lock_granted = false; }},
-        {"clock-source", [](MadeUpMachine& m) { m.measured.clock_calls = 1; }},
-        {"timer", [](MadeUpMachine& m) { m.measured.clock_resolution_ns = 4'000'000; }},
-        {"float-control", [](MadeUpMachine& m) { m.measured.float_control_is_default = false; }},
-        {"rt-throttling",
-         [](MadeUpMachine& m) { m.put("/proc/sys/kernel/sched_rt_runtime_us", "0"); }},
-        {"dds-interface", [](MadeUpMachine& m) { m.take_away("/sys/class/net/lo"); }},
-        {"dds-configuration", [](MadeUpMachine& m) { m.measured.dds_uri = "/gone.xml"; }}};
-    for (const auto& [name, break_it] : faults)
+    const auto trimmed = [](std::string part)
     {
-        MadeUpMachine machine;
-        make_good(machine);
-        break_it(machine);
-        const std::vector<Finding> findings = examine(machine.view());
-        expect_sound(findings);
-        EXPECT_EQ(count_of(findings, Verdict::good), 16U) << name;
-        const auto found = std::ranges::find(findings, name, &Finding::name);
-        ASSERT_NE(found, findings.end()) << name;
-        EXPECT_EQ(found->verdict, Verdict::critical) << found->found;
+        part.erase(0, part.find_first_not_of(' '));
+        part.erase(part.find_last_not_of(' ') + 1);
+        return part;
+    };
+    std::vector<std::string> parts;
+    std::size_t from = 0;
+    for (std::size_t at = text.find(by); at != std::string::npos; at = text.find(by, from))
+    {
+        parts.push_back(trimmed(text.substr(from, at - from)));
+        from = at + by.size();
     }
+    parts.push_back(trimmed(text.substr(from)));
+    return parts;
+}
+
+/// With the letters that \n, \t, \0, \\ and \xNN stand for.
+std::string unescaped(const std::string& text)
+{
+    std::string letters;
+    for (std::size_t i = 0; i < text.size(); ++i)
+    {
+        if (text[i] != '\\')
+        {
+            letters += text[i];
+            continue;
+        }
+        const char code = text.at(++i);
+        const bool is_hexadecimal = code == 'x';
+        letters += is_hexadecimal ? static_cast<char>(std::stoi(text.substr(i + 1, 2), nullptr, 16))
+                   : code == 'n'  ? '\n'
+                   : code == 't'  ? '\t'
+                   : code == '0'  ? '\0'
+                                  : code;
+        i += is_hexadecimal ? 2 : 0;
+    }
+    return letters;
+}
+
+std::string path_of(const std::string& name)
+{
+    static const std::map<std::string, std::string> kPlaces{
+        {"@clock/", "/sys/devices/system/clocksource/clocksource0/"},
+        {"@core/", "/proc/sys/net/core/"},
+        {"@cpu/", "/sys/devices/system/cpu/"},
+        {"@huge", "/sys/kernel/mm/transparent_hugepage/enabled"},
+        {"@idle/", "/sys/devices/system/cpu/cpu3/cpuidle/"},
+        {"@irq/", "/proc/irq/"},
+        {"@kernel/", "/proc/sys/kernel/"},
+        {"@limits", "/etc/security/limits.d/tactus.conf"},
+        {"@net/", "/sys/class/net/"}};
+    for (const auto& [from, to] : kPlaces)
+    {
+        if (name.starts_with(from))
+        {
+            return to + name.substr(from.size());
+        }
+    }
+    return name;
+}
+
+template <typename T>
+std::optional<T> number_or_none(const std::string& text)
+{
+    return text == "none" ? std::nullopt : std::optional(static_cast<T>(std::stoll(text)));
+}
+
+void set_measured(MadeUpMachine& machine, const std::string& name, const std::string& value)
+{
+    Measured& measured = machine.measured;
+    const std::map<std::string, std::function<void()>> setters{
+        {"cpu", [&] { machine.cpu = number_or_none<int>(value); }},
+        {"calls", [&] { measured.clock_calls = number_or_none<std::uint64_t>(value); }},
+        {"resolution", [&] { measured.clock_resolution_ns = number_or_none<std::int64_t>(value); }},
+        {"rtprio", [&] { measured.rtprio_limit = number_or_none<std::uint64_t>(value); }},
+        {"memlock", [&] { measured.memlock_limit = number_or_none<std::uint64_t>(value); }},
+        {"fifo", [&] { measured.fifo_refused = value; }},
+        {"float", [&] { measured.float_control_is_default = value != "changed"; }},
+        {"lock", [&] { measured.memory_lock_granted = value != "refused"; }},
+        {"machine", [&] { measured.machine = value; }},
+        {"preloaded", [&] { measured.preloaded = value; }},
+        {"uri", [&] { measured.dds_uri = value; }},
+        {"user", [&] { measured.user = value; }},
+        {"version", [&] { measured.kernel_version = value; }}};
+    setters.at(name)();
+}
+
+/// One change, with its value number `choice`; how many values there are.
+std::size_t change(MadeUpMachine& machine, const std::string& text, std::size_t choice)
+{
+    const std::size_t sign = text.find('=');
+    const std::string name = text.substr(0, sign);
+    if (sign == std::string::npos)
+    {
+        name.starts_with('-') ? machine.take_away(path_of(name.substr(1)))
+                              : machine.put_folder(path_of(name));
+        return 1;
+    }
+    const std::vector<std::string> values = split(text.substr(sign + 1), "%");
+    const std::string value = unescaped(values.at(std::min(choice, values.size() - 1)));
+    if (name.starts_with('~'))
+    {
+        const std::string folder = "/sys/class/net/" + name.substr(1);
+        machine.put(folder + "/flags", value.substr(0, value.find(' ')));
+        machine.put(folder + "/operstate", value.substr(value.find(' ') + 1));
+    }
+    else if (name.starts_with('/') || name.starts_with('@'))
+    {
+        machine.put(path_of(name), value);
+    }
+    else
+    {
+        set_measured(machine, name, value);
+    }
+    return values.size();
+}
+
+bool matches(const std::string& text, std::string pattern)
+{
+    const bool is_open_before = pattern.starts_with("...");
+    const bool is_open_behind = pattern.size() > 3 && pattern.ends_with("...");
+    pattern = pattern.substr(is_open_before ? 3 : 0);
+    pattern = pattern.substr(0, pattern.size() - (is_open_behind ? 3 : 0));
+    return pattern == "*" ||
+           (is_open_before && is_open_behind && text.find(pattern) < text.size()) ||
+           (is_open_before && text.ends_with(pattern)) ||
+           (is_open_behind && text.starts_with(pattern)) || text == pattern;
+}
+
+Finding finding_of(const MadeUpMachine& machine, const std::string& check)
+{
+    const std::vector<Finding> findings = examine(machine.view());
+    expect_sound(findings);
+    const auto found = std::ranges::find(findings, check, &Finding::name);
+    if (found == findings.end())
+    {
+        ADD_FAILURE() << "there is no check " << check;
+        return {};
+    }
+    if (found->verdict == Verdict::critical) // Without the others' help.
+    {
+        EXPECT_EQ(count_of(findings, Verdict::good), findings.size() - 1);
+    }
+    return *found;
+}
+
+void expect_left(const MadeUpMachine& machine, const std::string& check, const std::string& left)
+{
+    const std::size_t sign = left.find('=');
+    if (sign == std::string::npos)
+    {
+        EXPECT_EQ(finding_of(machine, check).verdict, Verdict::good) << "it is not mended";
+        return;
+    }
+    EXPECT_EQ(machine.content_of(path_of(left.substr(0, sign))), unescaped(left.substr(sign + 1)));
+}
+
+/// A good machine that is made so again after each case: making one takes many files.
+struct GoodMachine
+{
+    GoodMachine()
+    {
+        make_good(machine);
+        measured = machine.measured;
+        cpu = machine.cpu;
+        for (const std::string& path : machine.paths())
+        {
+            files[path] = machine.content_of(path);
+        }
+    }
+    [[nodiscard]] bool has_any_in(const std::string& folder) const
+    {
+        const auto next = files.lower_bound(folder + "/");
+        return next != files.end() && next->first.starts_with(folder + "/");
+    }
+    /// All that is at this path or in this folder, and without the folders that were made for it.
+    void restore(std::string place)
+    {
+        for (std::string folder = place; !folder.empty() && !has_any_in(folder);
+             folder.erase(folder.rfind('/')))
+        {
+            place = folder;
+        }
+        if (machine.files().is_there(place))
+        {
+            machine.take_away(place);
+        }
+        for (const auto& [path, content] : files)
+        {
+            if (path == place || path.starts_with(place + "/"))
+            {
+                machine.put(path, content);
+            }
+        }
+    }
+    void restore(const std::vector<std::string>& changes)
+    {
+        machine.measured = measured;
+        machine.cpu = cpu;
+        for (const std::string& text : changes)
+        {
+            const std::string name = text.substr(text.starts_with('-') ? 1 : 0, text.find('='));
+            const std::string path =
+                name.starts_with('~') ? "/sys/class/net/" + name.substr(1) : path_of(name);
+            if (path.starts_with('/'))
+            {
+                restore(path.substr(0, path.find_last_not_of('/') + 1));
+            }
+        }
+    }
+
+    MadeUpMachine machine;
+    Measured measured;
+    std::optional<int> cpu;
+    std::map<std::string, std::string> files;
+};
+
+/// Of a case's parts, with value number `choice` of each change; how many values there are.
+std::size_t try_case(GoodMachine& good, const std::vector<std::string>& parts, std::size_t choice)
+{
+    MadeUpMachine& machine = good.machine;
+    const std::vector<std::string> changes = split(parts[1], ";;");
+    std::size_t choices = 1;
+    for (const std::string& text : changes)
+    {
+        choices = text.empty() ? choices : std::max(choices, change(machine, text, choice));
+    }
+    const Finding sut = finding_of(machine, parts[0]);
+    EXPECT_EQ(name_of(sut.verdict), parts[2]) << sut.found;
+    EXPECT_TRUE(parts[3].empty() || matches(sut.found, parts[3])) << sut.found;
+    std::vector<std::string> remedies = split(parts[4], ";;");
+    const bool has_others = remedies.back().empty() || remedies.back() == "...";
+    remedies.resize(remedies.size() - (has_others ? 1 : 0));
+    EXPECT_TRUE(has_others ? sut.remedy.size() >= remedies.size()
+                           : sut.remedy.size() == remedies.size())
+        << sut.remedy.size();
+    for (std::size_t i = 0; i < std::min(remedies.size(), sut.remedy.size()); ++i)
+    {
+        const bool is_run = remedies[i].starts_with('!');
+        EXPECT_TRUE(matches(sut.remedy[i], unescaped(remedies[i].substr(is_run ? 1 : 0))))
+            << sut.remedy[i];
+        if (is_run)
+        {
+            machine.run(sut.remedy[i]);
+        }
+    }
+    for (const std::string& left : split(parts[5], ";;"))
+    {
+        if (!left.empty())
+        {
+            expect_left(machine, parts[0], left);
+        }
+    }
+    good.restore(changes);
+    return choices;
+}
+
+TEST(Examine, makes_of_each_machine_what_the_cases_say)
+{
+    std::set<std::string> checks;
+    std::set<std::string> critical;
+    std::string text;
+    std::istringstream lines(kDoctorCases);
+    for (std::string line; std::getline(lines, line);)
+    {
+        text += line.starts_with(' ') ? line.substr(4) : "\n" + line;
+    }
+    GoodMachine good;
+    std::istringstream cases(text);
+    for (std::string line; std::getline(cases, line);)
+    {
+        if (line.empty())
+        {
+            continue;
+        }
+        SCOPED_TRACE(line);
+        std::vector<std::string> parts = split(line, "=>");
+        ASSERT_LE(parts.size(), 6U);
+        parts.resize(6);
+        checks.insert(parts[0]);
+        if (parts[2] == "critical")
+        {
+            critical.insert(parts[0]);
+        }
+        for (std::size_t choice = 0, choices = 1; choice < choices; ++choice)
+        {
+            choices = try_case(good, parts, choice);
+        }
+    }
+    EXPECT_EQ(checks.size(), 17U);
+    EXPECT_EQ(critical, (std::set<std::string>{"clock-source", "dds-configuration", "dds-interface",
+                                               "float-control", "memlock", "priority",
+                                               "rt-throttling", "timer"}))
+        << "what the loop can not be without";
 }
 
 TEST(Examine, only_advises_where_the_loop_runs_all_the_same)
