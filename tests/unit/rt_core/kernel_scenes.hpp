@@ -8,10 +8,13 @@
 #include "rt_core/query/probe.hpp"
 #include "tests/unit/rt_core/support.hpp"
 
+#include <gtest/gtest.h>
+
 #include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace tactus::test
 {
@@ -215,20 +218,32 @@ struct ProbePlace
     return scene;
 }
 
-/// Calls `check` with `rounds` scenes of each shape and place.
-template <typename Check>
-void for_each_scene(std::uint64_t own_seed, int rounds, const Check& check)
+/// So many of each shape and place.
+[[nodiscard]] inline std::vector<KernelScene> scenes(Random& random, int rounds)
 {
-    Random random(own_seed);
+    std::vector<KernelScene> all;
     for (const FaceShape& shape : face_shapes())
     {
         for (const ProbePlace& place : probe_places())
         {
             for (int round = 0; round < rounds; ++round)
             {
-                check(random, make_scene(random, shape, place));
+                all.push_back(make_scene(random, shape, place));
             }
         }
+    }
+    return all;
+}
+
+/// What `ask` says of every set of kernels is, to the last bit, what it says of the portable one.
+template <typename Ask>
+void expect_same_of_every_set(const KernelScene& scene, const Ask& ask)
+{
+    const auto expected = ask(portable_kernels());
+    for (const Kernels* kernels : available_kernels())
+    {
+        ASSERT_EQ(ask(*kernels), expected)
+            << kernels->name << ": " << scene.shape << ", probe " << scene.place;
     }
 }
 

@@ -18,31 +18,22 @@ std::string name_of(const KernelScene& scene)
 }
 
 /// What face_bounds() answers: the faces, the limit and the bounds' bits of the lanes in `mask`.
-struct FacesAnswer
+std::vector<std::uint32_t> face_bits(const Kernels& kernels, const KernelScene& scene,
+                                     std::uint32_t mask, std::uint32_t exact, float floor,
+                                     float limit)
 {
-    std::uint32_t near{0};
-    std::vector<std::uint32_t> bits;
-
-    bool operator==(const FacesAnswer&) const = default;
-
-    FacesAnswer(const Kernels& kernels, const KernelScene& scene, std::uint32_t mask,
-                std::uint32_t exact, float floor, float limit)
+    FaceBounds bounds;
+    std::vector<std::uint32_t> bits{kernels.face_bounds(
+        scene.coordinates(), scene.corners(), scene.probe, mask, exact, floor, limit, bounds)};
+    bits.push_back(bits_of(limit));
+    for (std::uint32_t lanes = mask; lanes != 0; lanes &= lanes - 1)
     {
-        FaceBounds bounds;
-        near = kernels.face_bounds(scene.coordinates(), scene.corners(), scene.probe, mask, exact,
-                                   floor, limit, bounds);
-        bits.push_back(bits_of(limit));
-        for (std::uint32_t lanes = mask; lanes != 0; lanes &= lanes - 1)
-        {
-            const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
-            bits.push_back(bits_of(bounds.lower[lane]));
-            if (((exact >> lane) & 1U) == 0)
-            {
-                bits.push_back(bits_of(bounds.corner[lane]));
-            }
-        }
+        const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
+        bits.push_back(bits_of(bounds.lower[lane]));
+        bits.push_back(((exact >> lane) & 1U) == 0 ? bits_of(bounds.corner[lane]) : 0);
     }
-};
+    return bits;
+}
 
 /// The same of child_gaps() and of both boxes.
 std::vector<std::uint32_t> box_bits(const Kernels& kernels, const KernelScene& scene,
@@ -104,201 +95,174 @@ TEST(Kernels, are_the_portable_ones_first_and_each_set_has_its_name)
     }
 }
 
-TEST(Kernels, of_every_set_give_the_same_bits_on_faces)
+TEST(Kernels, of_every_set_give_the_same_bits_on_faces_and_boxes)
 {
-    for_each_scene(70, 300,
-                   [](Random& random, const KernelScene& scene)
-                   {
-                       const std::uint32_t mask = random_mask(random, 16);
-                       const std::uint32_t exact = random_mask(random, 16);
-                       const float floor = random.one_in(2) ? 0.0F : random_bound(random, scene);
-                       const float limit = random_bound(random, scene);
-                       const FacesAnswer portable(portable_kernels(), scene, mask, exact, floor,
-                                                  limit);
-                       for (const Kernels* kernels : available_kernels())
-                       {
-                           const FacesAnswer sut(*kernels, scene, mask, exact, floor, limit);
-                           ASSERT_EQ(sut, portable)
-                               << kernels->name << ": " << name_of(scene) << ", mask " << mask;
-                       }
-                   });
-}
-
-TEST(Kernels, of_every_set_give_the_same_bits_on_boxes)
-{
-    for_each_scene(71, 300,
-                   [](Random& random, const KernelScene& scene)
-                   {
-                       const std::uint32_t vertices = random_mask(random, 15);
-                       const std::uint32_t children = random_mask(random, 8);
-                       const float bound = random_bound(random, scene);
-                       const auto portable =
-                           box_bits(portable_kernels(), scene, vertices, children, bound);
-                       for (const Kernels* kernels : available_kernels())
-                       {
-                           ASSERT_EQ(box_bits(*kernels, scene, vertices, children, bound), portable)
-                               << kernels->name << ": " << name_of(scene);
-                       }
-                   });
+    Random random(70);
+    for (const KernelScene& scene : scenes(random, 300))
+    {
+        const std::uint32_t mask = random_mask(random, 16);
+        const std::uint32_t exact = random_mask(random, 16);
+        const float floor = random.one_in(2) ? 0.0F : random_bound(random, scene);
+        const float limit = random_bound(random, scene);
+        ASSERT_NO_FATAL_FAILURE(expect_same_of_every_set(
+            scene, [&](const Kernels& kernels)
+            { return face_bits(kernels, scene, mask, exact, floor, limit); }));
+        const std::uint32_t vertices = random_mask(random, 15);
+        const std::uint32_t children = random_mask(random, 8);
+        ASSERT_NO_FATAL_FAILURE(expect_same_of_every_set(
+            scene, [&](const Kernels& kernels)
+            { return box_bits(kernels, scene, vertices, children, limit); }));
+    }
 }
 
 TEST(Kernels, bound_the_distance_to_faces_by_the_stated_law)
 {
-    for_each_scene(72, 60,
-                   [](Random& /*random*/, const KernelScene& scene)
-                   {
-                       for (std::uint32_t lane = 0; lane < kBlockFaces; ++lane)
-                       {
-                           const LaneAnswer answer = ask_lane(portable_kernels(), scene, lane);
-                           ASSERT_EQ(law_fault(answer, FaceTruth(scene, lane), scene.probe), "")
-                               << name_of(scene) << ", lane " << lane << ", slack "
-                               << scene.probe.slack;
-                       }
-                   });
+    Random random(72);
+    for (const KernelScene& scene : scenes(random, 60))
+    {
+        for (std::uint32_t lane = 0; lane < kBlockFaces; ++lane)
+        {
+            const LaneAnswer answer = ask_lane(portable_kernels(), scene, lane);
+            ASSERT_EQ(law_fault(answer, FaceTruth(scene, lane), scene.probe), "")
+                << name_of(scene) << ", lane " << lane << ", slack " << scene.probe.slack;
+        }
+    }
 }
 
 TEST(Kernels, law_would_tell_a_bound_that_is_off_by_a_thousandth_of_the_local_length)
 {
     std::uint32_t tried = 0;
-    for_each_scene(73, 10,
-                   [&tried](Random& random, const KernelScene& scene)
-                   {
-                       const std::uint32_t lane = random.below(kBlockFaces);
-                       const FaceTruth truth(scene, lane);
-                       const float off = static_cast<float>(1e-3L * truth.local);
-                       const LaneAnswer right = ask_lane(portable_kernels(), scene, lane);
-                       if (truth.may_be_thin() || off <= 4.0F * scene.probe.slack)
-                       {
-                           return; // These bounds are looser than a thousandth.
-                       }
-                       ++tried;
-                       const std::array<LaneAnswer, 6> wrong{
-                           {{right.lower + off, right.upper, right.corner},
-                            {right.lower - off, right.upper, right.corner},
-                            {right.lower, right.upper + off, right.corner},
-                            {right.lower, right.upper - off, right.corner},
-                            {right.lower, right.upper, right.corner + off},
-                            {right.lower, right.upper, right.corner - off}}};
-                       for (std::size_t i = 0; i < wrong.size(); ++i)
-                       {
-                           ASSERT_NE(law_fault(wrong[i], truth, scene.probe), "")
-                               << name_of(scene) << " " << i;
-                       }
-                   });
+    Random random(73);
+    for (const KernelScene& scene : scenes(random, 10))
+    {
+        const std::uint32_t lane = random.below(kBlockFaces);
+        const FaceTruth truth(scene, lane);
+        const float off = static_cast<float>(1e-3L * truth.local);
+        const LaneAnswer right = ask_lane(portable_kernels(), scene, lane);
+        if (truth.may_be_thin() || off <= 4.0F * scene.probe.slack)
+        {
+            continue; // These bounds are looser than a thousandth.
+        }
+        ++tried;
+        const std::array<LaneAnswer, 6> wrong{{{right.lower + off, right.upper, right.corner},
+                                               {right.lower - off, right.upper, right.corner},
+                                               {right.lower, right.upper + off, right.corner},
+                                               {right.lower, right.upper - off, right.corner},
+                                               {right.lower, right.upper, right.corner + off},
+                                               {right.lower, right.upper, right.corner - off}}};
+        for (std::size_t i = 0; i < wrong.size(); ++i)
+        {
+            ASSERT_NE(law_fault(wrong[i], truth, scene.probe), "") << name_of(scene) << " " << i;
+        }
+    }
     EXPECT_GT(tried, 50U);
 }
 
 TEST(Kernels, name_the_faces_whose_lower_bound_is_within_limit_or_floor)
 {
-    for_each_scene(74, 60,
-                   [](Random& random, const KernelScene& scene)
-                   {
-                       const std::uint32_t mask = random_mask(random, 16);
-                       const std::uint32_t exact = random_mask(random, 16);
-                       const float floor = random.one_in(2) ? 0.0F : random_bound(random, scene);
-                       float limit = random_bound(random, scene);
-                       // Once a face was looked at there is a limit, if only the greatest float.
-                       float expected_limit =
-                           mask == 0 ? limit : std::min(limit, std::numeric_limits<float>::max());
-                       std::uint32_t expected = 0;
-                       for (std::uint32_t lane = 0; lane < kBlockFaces; ++lane)
-                       {
-                           const float upper = ask_lane(portable_kernels(), scene, lane).upper;
-                           const bool counts = ((mask & exact) >> lane & 1U) != 0;
-                           expected_limit =
-                               counts ? std::min(expected_limit, upper) : expected_limit;
-                       }
-                       for (std::uint32_t lane = 0; lane < kBlockFaces; ++lane)
-                       {
-                           const float lower = ask_lane(portable_kernels(), scene, lane).lower;
-                           expected |= lower <= std::max(floor, expected_limit) ? 1U << lane : 0U;
-                       }
+    Random random(74);
+    for (const KernelScene& scene : scenes(random, 60))
+    {
+        const std::uint32_t mask = random_mask(random, 16);
+        const std::uint32_t exact = random_mask(random, 16);
+        const float floor = random.one_in(2) ? 0.0F : random_bound(random, scene);
+        float limit = random_bound(random, scene);
+        // Once a face was looked at there is a limit, if only the greatest float.
+        float expected_limit =
+            mask == 0 ? limit : std::min(limit, std::numeric_limits<float>::max());
+        std::uint32_t expected = 0;
+        for (std::uint32_t lane = 0; lane < kBlockFaces; ++lane)
+        {
+            const float upper = ask_lane(portable_kernels(), scene, lane).upper;
+            const bool counts = ((mask & exact) >> lane & 1U) != 0;
+            expected_limit = counts ? std::min(expected_limit, upper) : expected_limit;
+        }
+        for (std::uint32_t lane = 0; lane < kBlockFaces; ++lane)
+        {
+            const float lower = ask_lane(portable_kernels(), scene, lane).lower;
+            expected |= lower <= std::max(floor, expected_limit) ? 1U << lane : 0U;
+        }
 
-                       FaceBounds bounds;
-                       const std::uint32_t near = portable_kernels().face_bounds(
-                           scene.coordinates(), scene.corners(), scene.probe, mask, exact, floor,
-                           limit, bounds);
+        FaceBounds bounds;
+        const std::uint32_t near = portable_kernels().face_bounds(
+            scene.coordinates(), scene.corners(), scene.probe, mask, exact, floor, limit, bounds);
 
-                       ASSERT_EQ(limit, expected_limit) << name_of(scene);
-                       ASSERT_EQ(near, expected & mask) << name_of(scene);
-                   });
+        ASSERT_EQ(limit, expected_limit) << name_of(scene);
+        ASSERT_EQ(near, expected & mask) << name_of(scene);
+    }
 }
 
 TEST(Kernels, leave_out_no_face_whose_squares_are_beyond_float)
 {
-    for_each_scene(75, 10,
-                   [](Random& random, KernelScene scene)
-                   {
-                       const std::uint32_t mask = random_mask(random, 16);
-                       scene.probe.scale *= 0x1p96F;
-                       for (const Kernels* kernels : available_kernels())
-                       {
-                           FaceBounds bounds;
-                           float limit = 0.0F;
-                           ASSERT_EQ(kernels->face_bounds(scene.coordinates(), scene.corners(),
-                                                          scene.probe, mask, mask, 0.0F, limit,
-                                                          bounds),
-                                     mask)
-                               << kernels->name << ": " << name_of(scene);
-                       }
-                   });
+    Random random(75);
+    for (KernelScene scene : scenes(random, 10))
+    {
+        const std::uint32_t mask = random_mask(random, 16);
+        scene.probe.scale *= 0x1p96F;
+        for (const Kernels* kernels : available_kernels())
+        {
+            FaceBounds bounds;
+            float limit = 0.0F;
+            ASSERT_EQ(kernels->face_bounds(scene.coordinates(), scene.corners(), scene.probe, mask,
+                                           mask, 0.0F, limit, bounds),
+                      mask)
+                << kernels->name << ": " << name_of(scene);
+        }
+    }
 }
 
 TEST(Kernels, bound_the_distance_to_boxes_from_below_and_closely)
 {
-    for_each_scene(76, 200,
-                   [](Random& random, const KernelScene& scene)
-                   {
-                       const std::uint32_t mask = random_mask(random, 8);
-                       const float bound = random_bound(random, scene);
-                       alignas(32) std::array<float, kNodeChildren> gaps{};
-                       const std::uint32_t near = portable_kernels().child_gaps(
-                           scene.box_rows(), scene.probe, mask, bound, gaps.data());
-                       for (std::uint32_t child = 0; child < kNodeChildren; ++child)
-                       {
-                           const long double truth = box_distance(scene, child);
-                           const auto gap = static_cast<long double>(gaps[child]);
-                           const auto slack = static_cast<long double>(scene.probe.slack);
-                           ASSERT_LE(gap, truth) << name_of(scene);
-                           ASSERT_GE(gap, truth * (1.0L - 0x1p-19L) - 2.0L * slack)
-                               << name_of(scene);
-                           const bool is_near = ((mask >> child) & 1U) != 0 && gaps[child] <= bound;
-                           ASSERT_EQ((near >> child) & 1U, is_near ? 1U : 0U) << name_of(scene);
-                       }
-                   });
+    Random random(76);
+    for (const KernelScene& scene : scenes(random, 200))
+    {
+        const std::uint32_t mask = random_mask(random, 8);
+        const float bound = random_bound(random, scene);
+        alignas(32) std::array<float, kNodeChildren> gaps{};
+        const std::uint32_t near =
+            portable_kernels().child_gaps(scene.box_rows(), scene.probe, mask, bound, gaps.data());
+        for (std::uint32_t child = 0; child < kNodeChildren; ++child)
+        {
+            const long double truth = box_distance(scene, child);
+            const auto gap = static_cast<long double>(gaps[child]);
+            const auto slack = static_cast<long double>(scene.probe.slack);
+            ASSERT_LE(gap, truth) << name_of(scene);
+            ASSERT_GE(gap, truth * (1.0L - 0x1p-19L) - 2.0L * slack) << name_of(scene);
+            const bool is_near = ((mask >> child) & 1U) != 0 && gaps[child] <= bound;
+            ASSERT_EQ((near >> child) & 1U, is_near ? 1U : 0U) << name_of(scene);
+        }
+    }
 }
 
 TEST(Kernels, boxes_are_exact_whatever_stands_in_rows_that_do_not_count)
 {
-    for_each_scene(
-        77, 100,
-        [](Random& random, const KernelScene& scene)
+    Random random(77);
+    for (const KernelScene& scene : scenes(random, 100))
+    {
+        const std::uint32_t vertices = random_mask(random, 15);
+        const std::uint32_t children = random_mask(random, 8);
+        Aabb of_vertices;
+        Aabb of_children;
+        for (std::size_t i = 0; i < 15; ++i)
         {
-            const std::uint32_t vertices = random_mask(random, 15);
-            const std::uint32_t children = random_mask(random, 8);
-            Aabb of_vertices;
-            Aabb of_children;
-            for (std::size_t i = 0; i < 15; ++i)
-            {
-                const auto& rows = scene.block.coordinates;
-                of_vertices.add(((vertices >> i) & 1U) == 0
-                                    ? Aabb{}
-                                    : Aabb{{rows[0][i], rows[1][i], rows[2][i]},
-                                           {rows[0][i], rows[1][i], rows[2][i]}});
-            }
-            for (std::uint32_t i = 0; i < kNodeChildren; ++i)
-            {
-                of_children.add(((children >> i) & 1U) == 0 ? Aabb{} : scene.boxes.get(i));
-            }
-            for (const Kernels* kernels : available_kernels())
-            {
-                ASSERT_EQ(AabbVolume::of_vertices(*kernels, scene.coordinates(), vertices),
-                          of_vertices)
-                    << kernels->name << ": " << name_of(scene);
-                ASSERT_EQ(AabbVolume::of_children(*kernels, scene.boxes, children), of_children)
-                    << kernels->name << ": " << name_of(scene);
-            }
-        });
+            const auto& rows = scene.block.coordinates;
+            of_vertices.add(((vertices >> i) & 1U) == 0
+                                ? Aabb{}
+                                : Aabb{{rows[0][i], rows[1][i], rows[2][i]},
+                                       {rows[0][i], rows[1][i], rows[2][i]}});
+        }
+        for (std::uint32_t i = 0; i < kNodeChildren; ++i)
+        {
+            of_children.add(((children >> i) & 1U) == 0 ? Aabb{} : scene.boxes.get(i));
+        }
+        for (const Kernels* kernels : available_kernels())
+        {
+            ASSERT_EQ(AabbVolume::of_vertices(*kernels, scene.coordinates(), vertices), of_vertices)
+                << kernels->name << ": " << name_of(scene);
+            ASSERT_EQ(AabbVolume::of_children(*kernels, scene.boxes, children), of_children)
+                << kernels->name << ": " << name_of(scene);
+        }
+    }
 }
 
 } // namespace tactus::test

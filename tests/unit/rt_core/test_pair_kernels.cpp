@@ -241,20 +241,20 @@ struct BlocksScene
     }
 };
 
-template <typename Check>
-void for_each_pair_of_shapes(std::uint64_t own_seed, int rounds, const Check& check)
+std::vector<BlocksScene> pairs_of_shapes(Random& random, int rounds)
 {
-    Random random(own_seed);
+    std::vector<BlocksScene> all;
     for (const FaceShape& shape : face_shapes())
     {
         for (const FaceShape& tool : face_shapes())
         {
             for (int round = 0; round < rounds; ++round)
             {
-                check(random, BlocksScene(random, shape, tool));
+                all.emplace_back(random, shape, tool);
             }
         }
     }
+    return all;
 }
 
 /// Not longer than 1.
@@ -385,70 +385,68 @@ void expect_true_bounds(const PairDistances& distances, std::uint32_t lane,
 
 TEST(PairKernels, give_the_same_bits_in_every_set)
 {
-    for_each_pair_of_shapes(
-        81, 12,
-        [](Random& random, BlocksScene scene)
+    Random random(81);
+    for (BlocksScene scene : pairs_of_shapes(random, 12))
+    {
+        const BoxScene boxes(random);
+        const KernelBox box = boxes.seen();
+        const float* const node = boxes.boxes.low.front().data();
+        const std::uint32_t mask = random_mask(random, 16);
+        const std::uint32_t tool_mask = random_mask(random, 16);
+        const Vec3f way = random_way(random);
+        const float bound = random.one_in(3)
+                                ? kUnlimited
+                                : static_cast<float>(std::exp2(random.between(-2.0, 20.0)));
+        const FacePairQueue queue = queue_of(random, scene);
+        const std::uint32_t count = 1 + random.below(kPairLanes);
+        const auto answers = [&](const Kernels& kernels)
         {
-            const BoxScene boxes(random);
-            const KernelBox box = boxes.seen();
-            const float* const node = boxes.boxes.low.front().data();
-            const std::uint32_t mask = random_mask(random, 16);
-            const std::uint32_t tool_mask = random_mask(random, 16);
-            const Vec3f way = random_way(random);
-            const float bound = random.one_in(3)
-                                    ? kUnlimited
-                                    : static_cast<float>(std::exp2(random.between(-2.0, 20.0)));
-            const FacePairQueue queue = queue_of(random, scene);
-            const std::uint32_t count = 1 + random.below(kPairLanes);
-            const auto answers = [&](const Kernels& kernels)
+            scene.look(kernels);
+            std::vector<std::uint32_t> bits = row_bits(scene);
+            alignas(32) std::array<float, kNodeChildren> gaps{};
+            bits.push_back(kernels.box_gaps(node, box, mask & 0xFFU, bound, gaps.data()));
+            bits.push_back(
+                kernels.boxes_along(node, box, way.data(), mask & 0xFFU, bound, gaps.data()));
+            for (const float gap : gaps)
             {
-                scene.look(kernels);
-                std::vector<std::uint32_t> bits = row_bits(scene);
-                alignas(32) std::array<float, kNodeChildren> gaps{};
-                bits.push_back(kernels.box_gaps(node, box, mask & 0xFFU, bound, gaps.data()));
-                bits.push_back(
-                    kernels.boxes_along(node, box, way.data(), mask & 0xFFU, bound, gaps.data()));
-                for (const float gap : gaps)
-                {
-                    bits.push_back(bits_of(gap));
-                }
-                bits.push_back(bits_of(kernels.highest_along(scene.object.coordinates(),
-                                                             mask & 0x7FFFU ? mask & 0x7FFFU : 1U,
-                                                             scene.tool_box.center, way.data())));
-                bits.push_back(near_rows(kernels, scene, box_of(scene.object.block, mask | 1U),
-                                         tool_mask, bound));
-                VertexRows rows;
-                bits.push_back(kernels.near_block(scene.object.coordinates(),
-                                                  scene.object.corners(), scene.tool_box, mask,
-                                                  bound, rows));
-                for (const float* way_or_none : {way.data(), static_cast<const float*>(nullptr)})
-                {
-                    const NearPairs near =
-                        near_pairs(kernels, scene, mask, tool_mask, bound, way_or_none);
-                    bits.insert(bits.end(), near.begin(), near.end());
-                }
-                const PairSides sides = kernels.decide_pairs(queue.rows(), count);
-                bits.push_back(sides.meet);
-                bits.push_back(sides.apart);
-                PairDistances distances{};
-                kernels.pair_distances(queue.rows(), count, distances);
-                for (std::uint32_t lane = 0; lane < count; ++lane)
-                {
-                    for (const float value :
-                         {distances.lower[lane], distances.upper[lane], distances.way[0][lane],
-                          distances.way[1][lane], distances.way[2][lane]})
-                    {
-                        bits.push_back(bits_of(value));
-                    }
-                }
-                return bits;
-            };
-            const std::vector<std::uint32_t> expected = answers(portable_kernels());
-            for (const Kernels* kernels : available_kernels())
-            {
-                ASSERT_EQ(answers(*kernels), expected) << kernels->name;
+                bits.push_back(bits_of(gap));
             }
-        });
+            bits.push_back(bits_of(kernels.highest_along(scene.object.coordinates(),
+                                                         mask & 0x7FFFU ? mask & 0x7FFFU : 1U,
+                                                         scene.tool_box.center, way.data())));
+            bits.push_back(
+                near_rows(kernels, scene, box_of(scene.object.block, mask | 1U), tool_mask, bound));
+            VertexRows rows;
+            bits.push_back(kernels.near_block(scene.object.coordinates(), scene.object.corners(),
+                                              scene.tool_box, mask, bound, rows));
+            for (const float* way_or_none : {way.data(), static_cast<const float*>(nullptr)})
+            {
+                const NearPairs near =
+                    near_pairs(kernels, scene, mask, tool_mask, bound, way_or_none);
+                bits.insert(bits.end(), near.begin(), near.end());
+            }
+            const PairSides sides = kernels.decide_pairs(queue.rows(), count);
+            bits.push_back(sides.meet);
+            bits.push_back(sides.apart);
+            PairDistances distances{};
+            kernels.pair_distances(queue.rows(), count, distances);
+            for (std::uint32_t lane = 0; lane < count; ++lane)
+            {
+                for (const float value :
+                     {distances.lower[lane], distances.upper[lane], distances.way[0][lane],
+                      distances.way[1][lane], distances.way[2][lane]})
+                {
+                    bits.push_back(bits_of(value));
+                }
+            }
+            return bits;
+        };
+        const std::vector<std::uint32_t> expected = answers(portable_kernels());
+        for (const Kernels* kernels : available_kernels())
+        {
+            ASSERT_EQ(answers(*kernels), expected) << kernels->name;
+        }
+    }
 }
 
 TEST(PairKernels, bound_the_distance_of_turned_boxes_from_below_and_closely)
@@ -531,99 +529,95 @@ TEST(PairKernels, bound_boxes_along_a_way_from_below)
 
 TEST(PairKernels, find_the_highest_vertex_along_a_way)
 {
-    for_each_pair_of_shapes(
-        90, 12,
-        [](Random& random, const BlocksScene& scene)
+    Random random(90);
+    for (const BlocksScene& scene : pairs_of_shapes(random, 12))
+    {
+        const std::uint32_t mask = 1U << random.below(15) | random_mask(random, 15);
+        const Vec3f way = random_way(random);
+        const KernelProbe& center = scene.tool_box.center;
+        double highest = -1e300;
+        double farthest = 0.0;
+        for (std::uint32_t left = mask; left != 0; left &= left - 1)
         {
-            const std::uint32_t mask = 1U << random.below(15) | random_mask(random, 15);
-            const Vec3f way = random_way(random);
-            const KernelProbe& center = scene.tool_box.center;
-            double highest = -1e300;
-            double farthest = 0.0;
-            for (std::uint32_t left = mask; left != 0; left &= left - 1)
+            const auto row = static_cast<std::size_t>(std::countr_zero(left));
+            Vec3 from(0.0, 0.0, 0.0);
+            for (std::size_t axis = 0; axis < 3; ++axis)
             {
-                const auto row = static_cast<std::size_t>(std::countr_zero(left));
-                Vec3 from(0.0, 0.0, 0.0);
-                for (std::size_t axis = 0; axis < 3; ++axis)
-                {
-                    from[static_cast<Eigen::Index>(axis)] =
-                        (static_cast<double>(scene.object.block.coordinates[axis][row]) -
-                         static_cast<double>(center.high[axis]) -
-                         static_cast<double>(center.low[axis])) *
-                        scene.units_per_m();
-                }
-                highest = std::max(highest, from.dot(to_vec3(way)));
-                farthest = std::max(farthest, from.lpNorm<1>());
+                from[static_cast<Eigen::Index>(axis)] =
+                    (static_cast<double>(scene.object.block.coordinates[axis][row]) -
+                     static_cast<double>(center.high[axis]) -
+                     static_cast<double>(center.low[axis])) *
+                    scene.units_per_m();
             }
-            const auto told = static_cast<double>(portable_kernels().highest_along(
-                scene.object.coordinates(), mask, center, way.data()));
-            ASSERT_GE(told, highest);
-            ASSERT_LE(told, highest + 2.0 * static_cast<double>(kPairMargin) * farthest);
-        });
+            highest = std::max(highest, from.dot(to_vec3(way)));
+            farthest = std::max(farthest, from.lpNorm<1>());
+        }
+        const auto told = static_cast<double>(
+            portable_kernels().highest_along(scene.object.coordinates(), mask, center, way.data()));
+        ASSERT_GE(told, highest);
+        ASSERT_LE(told, highest + 2.0 * static_cast<double>(kPairMargin) * farthest);
+    }
 }
 
 TEST(PairKernels, place_turned_vertices_where_they_are)
 {
-    for_each_pair_of_shapes(
-        85, 8,
-        [](Random& /*random*/, const BlocksScene& scene)
+    Random random(85);
+    for (const BlocksScene& scene : pairs_of_shapes(random, 8))
+    {
+        for (std::size_t row = 0; row < 15; ++row)
         {
-            for (std::size_t row = 0; row < 15; ++row)
+            const Vec3 at = scene.place.to_there(
+                to_vec3(Vec3f{scene.tool.coordinates[0][row], scene.tool.coordinates[1][row],
+                              scene.tool.coordinates[2][row]}));
+            for (std::size_t axis = 0; axis < 3; ++axis)
             {
-                const Vec3 at = scene.place.to_there(
-                    to_vec3(Vec3f{scene.tool.coordinates[0][row], scene.tool.coordinates[1][row],
-                                  scene.tool.coordinates[2][row]}));
-                for (std::size_t axis = 0; axis < 3; ++axis)
-                {
-                    const KernelProbe& center = scene.tool_box.center;
-                    const double from = static_cast<double>(center.high[axis]) +
-                                        static_cast<double>(center.low[axis]);
-                    ASSERT_NEAR(static_cast<double>(scene.placed.rows.vertex[axis][row]),
-                                (at[static_cast<Eigen::Index>(axis)] - from) * scene.units_per_m(),
-                                static_cast<double>(scene.placed.off));
-                }
+                const KernelProbe& center = scene.tool_box.center;
+                const double from =
+                    static_cast<double>(center.high[axis]) + static_cast<double>(center.low[axis]);
+                ASSERT_NEAR(static_cast<double>(scene.placed.rows.vertex[axis][row]),
+                            (at[static_cast<Eigen::Index>(axis)] - from) * scene.units_per_m(),
+                            static_cast<double>(scene.placed.off));
             }
-        });
+        }
+    }
 }
 
 TEST(PairKernels, leave_out_no_pair_of_faces_within_the_bound)
 {
     std::uint32_t left_out = 0;
-    for_each_pair_of_shapes(
-        86, 12,
-        [&left_out](Random& random, const BlocksScene& scene)
+    Random random(86);
+    for (const BlocksScene& scene : pairs_of_shapes(random, 12))
+    {
+        const Kernels& kernels = portable_kernels();
+        const std::uint32_t tool_lane = random.below(kBlockFaces);
+        const std::uint32_t lane = random.below(kBlockFaces);
+        const double apart = scene.apart(tool_lane, lane);
+        const double error = static_cast<double>(scene.errors[tool_lane]);
+        const float bound = round_up_to_float(std::max(0.0, apart - error));
+        const std::uint32_t mask = 1U << lane;
+        const Aabb box = box_of(scene.object.block, mask);
+        ASSERT_NE(near_rows(kernels, scene, box, 0xFFFF, bound) >> tool_lane & 1U, 0U);
+        ASSERT_EQ(near_rows(kernels, scene, box, 0, bound), 0U);
+        VertexRows rows;
+        ASSERT_NE(kernels.near_block(scene.object.coordinates(), scene.object.corners(),
+                                     scene.tool_box, 0xFFFF, round_up_to_float(apart), rows) &
+                      mask,
+                  0U);
+        // The way between the two, any other, and none.
+        const ClosestPoints closest = closest_points(scene.tool_face(tool_lane), scene.face(lane));
+        const Vec3 between = -(1.0 - 0x1p-20) * closest.gap.normalized();
+        const Vec3f along = to_float(closest.distance > 0.0 ? between : Vec3(0.0, 0.0, 0.0));
+        const Vec3f any = random_way(random);
+        for (const float* way : {along.data(), any.data(), static_cast<const float*>(nullptr)})
         {
-            const Kernels& kernels = portable_kernels();
-            const std::uint32_t tool_lane = random.below(kBlockFaces);
-            const std::uint32_t lane = random.below(kBlockFaces);
-            const double apart = scene.apart(tool_lane, lane);
-            const double error = static_cast<double>(scene.errors[tool_lane]);
-            const float bound = round_up_to_float(std::max(0.0, apart - error));
-            const std::uint32_t mask = 1U << lane;
-            const Aabb box = box_of(scene.object.block, mask);
-            ASSERT_NE(near_rows(kernels, scene, box, 0xFFFF, bound) >> tool_lane & 1U, 0U);
-            ASSERT_EQ(near_rows(kernels, scene, box, 0, bound), 0U);
-            VertexRows rows;
-            ASSERT_NE(kernels.near_block(scene.object.coordinates(), scene.object.corners(),
-                                         scene.tool_box, 0xFFFF, round_up_to_float(apart), rows) &
-                          mask,
-                      0U);
-            // The way between the two, any other, and none.
-            const ClosestPoints closest =
-                closest_points(scene.tool_face(tool_lane), scene.face(lane));
-            const Vec3 between = -(1.0 - 0x1p-20) * closest.gap.normalized();
-            const Vec3f along = to_float(closest.distance > 0.0 ? between : Vec3(0.0, 0.0, 0.0));
-            const Vec3f any = random_way(random);
-            for (const float* way : {along.data(), any.data(), static_cast<const float*>(nullptr)})
+            const NearPairs near = near_pairs(kernels, scene, 0xFFFF, 0xFFFF, bound, way);
+            ASSERT_NE(near[tool_lane] & mask, 0U) << scene.object.shape;
+            for (const std::uint32_t lanes : near)
             {
-                const NearPairs near = near_pairs(kernels, scene, 0xFFFF, 0xFFFF, bound, way);
-                ASSERT_NE(near[tool_lane] & mask, 0U) << scene.object.shape;
-                for (const std::uint32_t lanes : near)
-                {
-                    left_out += static_cast<std::uint32_t>(std::popcount(0xFFFFU & ~lanes));
-                }
+                left_out += static_cast<std::uint32_t>(std::popcount(0xFFFFU & ~lanes));
             }
-        });
+        }
+    }
     EXPECT_GT(left_out, 50'000U);
 }
 
@@ -631,24 +625,23 @@ TEST(PairKernels, decide_no_pair_otherwise_than_exact_arithmetic)
 {
     std::uint32_t plain = 0;
     std::uint32_t decided = 0;
-    for_each_pair_of_shapes(
-        87, 12,
-        [&](Random& random, const BlocksScene& scene)
+    Random random(87);
+    for (const BlocksScene& scene : pairs_of_shapes(random, 12))
+    {
+        const FacePairQueue queue = queue_of(random, scene);
+        const PairSides sides = portable_kernels().decide_pairs(queue.rows(), queue.size());
+        for (std::uint32_t i = 0; i < queue.size(); ++i)
         {
-            const FacePairQueue queue = queue_of(random, scene);
-            const PairSides sides = portable_kernels().decide_pairs(queue.rows(), queue.size());
-            for (std::uint32_t i = 0; i < queue.size(); ++i)
-            {
-                const Triangle tool = scene.tool_face(queue[i].tool_lane);
-                const Triangle face = scene.face(queue[i].lane);
-                expect_true_sides(sides, i, meet(tool, face));
-            }
-            if (std::string_view(scene.object.shape) == face_shapes()[0].name)
-            {
-                plain += queue.size();
-                decided += static_cast<std::uint32_t>(std::popcount(sides.meet | sides.apart));
-            }
-        });
+            const Triangle tool = scene.tool_face(queue[i].tool_lane);
+            const Triangle face = scene.face(queue[i].lane);
+            expect_true_sides(sides, i, meet(tool, face));
+        }
+        if (std::string_view(scene.object.shape) == face_shapes()[0].name)
+        {
+            plain += queue.size();
+            decided += static_cast<std::uint32_t>(std::popcount(sides.meet | sides.apart));
+        }
+    }
     EXPECT_GT(decided, plain / 2);
 }
 
@@ -693,29 +686,28 @@ TEST(PairKernels, bound_distances_of_faces_from_both_sides_and_closely)
 {
     std::uint32_t plain = 0;
     std::uint32_t close = 0;
-    for_each_pair_of_shapes(
-        89, 12,
-        [&](Random& random, const BlocksScene& scene)
+    Random random(89);
+    for (const BlocksScene& scene : pairs_of_shapes(random, 12))
+    {
+        const FacePairQueue queue = queue_of(random, scene);
+        PairDistances distances{};
+        portable_kernels().pair_distances(queue.rows(), queue.size(), distances);
+        for (std::uint32_t i = 0; i < queue.size(); ++i)
         {
-            const FacePairQueue queue = queue_of(random, scene);
-            PairDistances distances{};
-            portable_kernels().pair_distances(queue.rows(), queue.size(), distances);
-            for (std::uint32_t i = 0; i < queue.size(); ++i)
-            {
-                const ClosestPoints closest =
-                    closest_points(scene.tool_face(queue[i].tool_lane), scene.face(queue[i].lane));
-                const auto quantum = static_cast<double>(scene.object.quantum_m);
-                expect_true_bounds(distances, i, closest, quantum);
-                const double apart = closest.distance / quantum;
-                const bool counts =
-                    std::string_view(scene.object.shape) == face_shapes()[0].name && apart > 0.0;
-                plain += counts ? 1U : 0U;
-                close += counts && static_cast<double>(distances.lower[i]) > 0.99 * apart &&
-                                 static_cast<double>(distances.upper[i]) < 1.01 * apart
-                             ? 1U
-                             : 0U;
-            }
-        });
+            const ClosestPoints closest =
+                closest_points(scene.tool_face(queue[i].tool_lane), scene.face(queue[i].lane));
+            const auto quantum = static_cast<double>(scene.object.quantum_m);
+            expect_true_bounds(distances, i, closest, quantum);
+            const double apart = closest.distance / quantum;
+            const bool counts =
+                std::string_view(scene.object.shape) == face_shapes()[0].name && apart > 0.0;
+            plain += counts ? 1U : 0U;
+            close += counts && static_cast<double>(distances.lower[i]) > 0.99 * apart &&
+                             static_cast<double>(distances.upper[i]) < 1.01 * apart
+                         ? 1U
+                         : 0U;
+        }
+    }
     EXPECT_GT(plain, 200U);
     EXPECT_GT(close, plain * 9 / 10);
 }

@@ -159,31 +159,31 @@ TEST(PlaneKernels, never_say_that_a_face_is_farther_than_it_is)
 {
     std::uint32_t near_truth = 0;
     std::uint32_t asked = 0;
-    for_each_scene(90, 40,
-                   [&](Random& random, const KernelScene& scene)
-                   {
-                       PlaneRig sut(scene);
-                       const auto stand = random_place(random, sut);
-                       sut.stand_at(stand);
-                       static_cast<void>(sut.ask(portable_kernels(), stand, kEverything));
-                       for (int i = 0; i < 4; ++i)
-                       {
-                           const auto place = i == 0 ? stand : random_place(random, sut);
-                           const auto hits = sut.ask(portable_kernels(), place, kEverything);
-                           ASSERT_EQ(hits.size(), kBatches) << scene.shape;
-                           for (std::uint32_t face = 0; face < kFaces; ++face)
-                           {
-                               const auto height = static_cast<long double>(
-                                   hits[face / kPlaneLanes].heights[face % kPlaneLanes]);
-                               const long double truth = std::min(sut.distance_at(place, face),
-                                                                  sut.distance_at(stand, face));
-                               ASSERT_LE(height, truth + sut.off())
-                                   << scene.shape << ", probe " << scene.place << ", face " << face;
-                               asked += i == 0 ? 1U : 0U;
-                               near_truth += i == 0 && height >= 0.999L * truth ? 1U : 0U;
-                           }
-                       }
-                   });
+    Random random(90);
+    for (const KernelScene& scene : scenes(random, 40))
+    {
+        PlaneRig sut(scene);
+        const auto stand = random_place(random, sut);
+        sut.stand_at(stand);
+        static_cast<void>(sut.ask(portable_kernels(), stand, kEverything));
+        for (int i = 0; i < 4; ++i)
+        {
+            const auto place = i == 0 ? stand : random_place(random, sut);
+            const auto hits = sut.ask(portable_kernels(), place, kEverything);
+            ASSERT_EQ(hits.size(), kBatches) << scene.shape;
+            for (std::uint32_t face = 0; face < kFaces; ++face)
+            {
+                const auto height =
+                    static_cast<long double>(hits[face / kPlaneLanes].heights[face % kPlaneLanes]);
+                const long double truth =
+                    std::min(sut.distance_at(place, face), sut.distance_at(stand, face));
+                ASSERT_LE(height, truth + sut.off())
+                    << scene.shape << ", probe " << scene.place << ", face " << face;
+                asked += i == 0 ? 1U : 0U;
+                near_truth += i == 0 && height >= 0.999L * truth ? 1U : 0U;
+            }
+        }
+    }
     EXPECT_GT(near_truth, asked / 2) << "of what it looked at from there";
 }
 
@@ -191,132 +191,130 @@ TEST(PlaneKernels, leave_out_no_face_that_is_entered_on_the_way)
 {
     std::uint32_t left_out = 0;
     std::uint32_t hit = 0;
-    for_each_scene(
-        91, 40,
-        [&](Random& random, const KernelScene& scene)
+    Random random(91);
+    for (const KernelScene& scene : scenes(random, 40))
+    {
+        PlaneRig sut(scene);
+        auto stand = random_place(random, sut);
+        for (int step = 0; step < 3; ++step)
         {
-            PlaneRig sut(scene);
-            auto stand = random_place(random, sut);
-            for (int step = 0; step < 3; ++step)
+            const auto place = random_place(random, sut);
+            // Near-ties, too: as far as a face is at an end, but for some roundings.
+            const std::uint32_t face = random.below(kFaces);
+            const auto least = static_cast<float>(
+                sut.distance_at(random.one_in(2) ? stand : place, face) *
+                (random.one_in(2) ? 1.0L + static_cast<long double>(random.between(-1e-6, 1e-6))
+                                  : static_cast<long double>(random.between(0.1, 1.0))));
+            sut.stand_at(stand);
+            static_cast<void>(sut.ask(portable_kernels(), stand, least));
+            const auto hits = sut.ask(portable_kernels(), place, least);
+            for (std::uint32_t i = 0; i < kFaces; ++i)
             {
-                const auto place = random_place(random, sut);
-                // Near-ties, too: as far as a face is at an end, but for some roundings.
-                const std::uint32_t face = random.below(kFaces);
-                const auto least = static_cast<float>(
-                    sut.distance_at(random.one_in(2) ? stand : place, face) *
-                    (random.one_in(2) ? 1.0L + static_cast<long double>(random.between(-1e-6, 1e-6))
-                                      : static_cast<long double>(random.between(0.1, 1.0))));
-                sut.stand_at(stand);
-                static_cast<void>(sut.ask(portable_kernels(), stand, least));
-                const auto hits = sut.ask(portable_kernels(), place, least);
-                for (std::uint32_t i = 0; i < kFaces; ++i)
+                if (is_hit(hits, i))
                 {
-                    if (is_hit(hits, i))
-                    {
-                        ++hit;
-                        continue;
-                    }
-                    ++left_out;
-                    for (const float share : {0.0F, 0.1F, 0.25F, 0.5F, 0.75F, 0.9F, 1.0F})
-                    {
-                        const auto at = between(stand, place, share);
-                        const long double rounding =
-                            sut.off() + 0x1p-22L * (std::abs(static_cast<long double>(at[0])) +
-                                                    std::abs(static_cast<long double>(at[1])) +
-                                                    std::abs(static_cast<long double>(at[2])));
-                        ASSERT_GE(sut.distance_at(at, i),
-                                  static_cast<long double>(least) - rounding)
-                            << scene.shape << ", probe " << scene.place << ", face " << i;
-                    }
+                    ++hit;
+                    continue;
                 }
-                stand = place;
+                ++left_out;
+                for (const float share : {0.0F, 0.1F, 0.25F, 0.5F, 0.75F, 0.9F, 1.0F})
+                {
+                    const auto at = between(stand, place, share);
+                    const long double rounding =
+                        sut.off() + 0x1p-22L * (std::abs(static_cast<long double>(at[0])) +
+                                                std::abs(static_cast<long double>(at[1])) +
+                                                std::abs(static_cast<long double>(at[2])));
+                    ASSERT_GE(sut.distance_at(at, i), static_cast<long double>(least) - rounding)
+                        << scene.shape << ", probe " << scene.place << ", face " << i;
+                }
             }
-        });
+            stand = place;
+        }
+    }
     EXPECT_GT(left_out, 10'000U);
     EXPECT_GT(hit, 10'000U);
 }
 
 TEST(PlaneKernels, pass_over_only_batches_that_have_no_hit)
 {
-    for_each_scene(92, 40,
-                   [](Random& random, const KernelScene& scene)
-                   {
-                       PlaneRig sut(scene);
-                       PlaneRig expected(scene);
-                       for (int i = 0; i < 8; ++i)
-                       {
-                           const auto place = random_place(random, sut);
-                           const auto least = static_cast<float>(
-                               sut.distance_at(place, random.below(kFaces)) *
-                               static_cast<long double>(random.between(0.5, 1.5)));
-                           if (random.one_in(3))
-                           {
-                               sut.stand_at(place);
-                               expected.stand_at(place);
-                           }
-                           const auto hits = sut.ask(portable_kernels(), place, least);
-                           const auto all = expected.ask(portable_kernels(), place, least, false);
-                           ASSERT_EQ(hits.size(), all.size()) << scene.shape;
-                           for (std::size_t k = 0; k < hits.size(); ++k)
-                           {
-                               ASSERT_EQ(hits[k].batch, all[k].batch);
-                               ASSERT_EQ(hits[k].lanes, all[k].lanes);
-                               ASSERT_EQ(hits[k].low, all[k].low);
-                           }
-                       }
-                   });
+    Random random(92);
+    for (const KernelScene& scene : scenes(random, 40))
+    {
+        PlaneRig sut(scene);
+        PlaneRig expected(scene);
+        for (int i = 0; i < 8; ++i)
+        {
+            const auto place = random_place(random, sut);
+            const auto least =
+                static_cast<float>(sut.distance_at(place, random.below(kFaces)) *
+                                   static_cast<long double>(random.between(0.5, 1.5)));
+            if (random.one_in(3))
+            {
+                sut.stand_at(place);
+                expected.stand_at(place);
+            }
+            const auto hits = sut.ask(portable_kernels(), place, least);
+            const auto all = expected.ask(portable_kernels(), place, least, false);
+            ASSERT_EQ(hits.size(), all.size()) << scene.shape;
+            for (std::size_t k = 0; k < hits.size(); ++k)
+            {
+                ASSERT_EQ(hits[k].batch, all[k].batch);
+                ASSERT_EQ(hits[k].lanes, all[k].lanes);
+                ASSERT_EQ(hits[k].low, all[k].low);
+            }
+        }
+    }
 }
 
 TEST(PlaneKernels, know_the_least_height_of_all)
 {
-    for_each_scene(93, 20,
-                   [](Random& random, const KernelScene& scene)
-                   {
-                       PlaneRig sut(scene);
-                       sut.stand_at(random_place(random, sut));
-                       const auto place = random_place(random, sut);
-                       const auto hits = sut.ask(portable_kernels(), place, kEverything);
-                       const auto other = random_place(random, sut);
-                       float low = kFarPlane;
-                       for (const Kernels* kernels : available_kernels())
-                       {
-                           const float least = sut.least_height(*kernels, other);
-                           low = kernels == available_kernels().front() ? least : low;
-                           ASSERT_EQ(least, low) << kernels->name;
-                           for (std::uint32_t face = 0; face < kFaces; ++face)
-                           {
-                               ASSERT_LE(static_cast<long double>(least),
-                                         sut.distance_at(other, face) + sut.off());
-                           }
-                       }
-                   });
+    Random random(93);
+    for (const KernelScene& scene : scenes(random, 20))
+    {
+        PlaneRig sut(scene);
+        sut.stand_at(random_place(random, sut));
+        const auto place = random_place(random, sut);
+        const auto hits = sut.ask(portable_kernels(), place, kEverything);
+        const auto other = random_place(random, sut);
+        float low = kFarPlane;
+        for (const Kernels* kernels : available_kernels())
+        {
+            const float least = sut.least_height(*kernels, other);
+            low = kernels == available_kernels().front() ? least : low;
+            ASSERT_EQ(least, low) << kernels->name;
+            for (std::uint32_t face = 0; face < kFaces; ++face)
+            {
+                ASSERT_LE(static_cast<long double>(least),
+                          sut.distance_at(other, face) + sut.off());
+            }
+        }
+    }
 }
 
 TEST(PlaneKernels, of_every_set_give_the_same_bits)
 {
-    for_each_scene(
-        94, 40,
-        [](Random& random, const KernelScene& scene)
+    Random random(94);
+    for (const KernelScene& scene : scenes(random, 40))
+    {
+        std::vector<std::array<float, 3>> places;
+        std::vector<float> leasts;
+        const PlaneRig rig(scene);
+        for (int i = 0; i < 6; ++i)
         {
-            std::vector<std::array<float, 3>> places;
-            std::vector<float> leasts;
-            const PlaneRig rig(scene);
-            for (int i = 0; i < 6; ++i)
-            {
-                places.push_back(random_place(random, rig));
-                leasts.push_back(
-                    static_cast<float>(rig.distance_at(places.back(), random.below(kFaces)) *
-                                       static_cast<long double>(random.between(0.5, 1.5))));
-            }
-            std::vector<std::vector<std::uint32_t>> answers;
-            for (const Kernels* kernels : available_kernels())
+            places.push_back(random_place(random, rig));
+            leasts.push_back(
+                static_cast<float>(rig.distance_at(places.back(), random.below(kFaces)) *
+                                   static_cast<long double>(random.between(0.5, 1.5))));
+        }
+        ASSERT_NO_FATAL_FAILURE(expect_same_of_every_set(
+            scene,
+            [&](const Kernels& kernels)
             {
                 PlaneRig sut(scene);
                 std::vector<std::uint32_t> bits;
                 for (std::size_t i = 0; i < places.size(); ++i)
                 {
                     sut.stand_at(places[i / 3]);
-                    for (const PlaneHit& hit : sut.ask(*kernels, places[i], leasts[i]))
+                    for (const PlaneHit& hit : sut.ask(kernels, places[i], leasts[i]))
                     {
                         bits.insert(bits.end(), {hit.batch, hit.lanes, bits_of(hit.low + 0.0F)});
                         for (const float height : hit.heights)
@@ -327,31 +325,29 @@ TEST(PlaneKernels, of_every_set_give_the_same_bits)
                     const auto table = sut.bits();
                     bits.insert(bits.end(), table.begin(), table.end());
                 }
-                answers.push_back(bits);
-                ASSERT_EQ(answers.back(), answers.front())
-                    << kernels->name << ": " << scene.shape << ", probe " << scene.place;
-            }
-        });
+                return bits;
+            }));
+    }
 }
 
 TEST(PlaneKernels, leave_out_no_face_whose_squares_are_beyond_float)
 {
-    for_each_scene(95, 10,
-                   [](Random& random, KernelScene scene)
-                   {
-                       const auto stand = random_place(random, PlaneRig(scene));
-                       scene.probe.scale *= 0x1p96F;
-                       for (const Kernels* kernels : available_kernels())
-                       {
-                           PlaneRig sut(scene);
-                           sut.stand_at(stand);
-                           const auto hits = sut.ask(*kernels, stand, kEverything);
-                           for (std::uint32_t face = 0; face < kFaces; ++face)
-                           {
-                               ASSERT_TRUE(is_hit(hits, face)) << kernels->name;
-                           }
-                       }
-                   });
+    Random random(95);
+    for (KernelScene scene : scenes(random, 10))
+    {
+        const auto stand = random_place(random, PlaneRig(scene));
+        scene.probe.scale *= 0x1p96F;
+        for (const Kernels* kernels : available_kernels())
+        {
+            PlaneRig sut(scene);
+            sut.stand_at(stand);
+            const auto hits = sut.ask(*kernels, stand, kEverything);
+            for (std::uint32_t face = 0; face < kFaces; ++face)
+            {
+                ASSERT_TRUE(is_hit(hits, face)) << kernels->name;
+            }
+        }
+    }
 }
 
 } // namespace tactus::test
