@@ -44,6 +44,9 @@ TEST_F(FacePoolTest, an_empty_one_finds_nothing)
     EXPECT_EQ(sut_->used(), 0U);
     EXPECT_EQ(sut_->capacity(), 4U);
     EXPECT_TRUE(sut_->find({0}, 0).is_none());
+    PoolShare share = sut_->promise(0);
+    EXPECT_FALSE(take(share, kMaxModels - 1, 3).is_none());
+    EXPECT_DEATH(take(share, kMaxModels, 3), "");
 }
 
 TEST_F(FacePoolTest, a_full_one_has_no_room_until_a_face_goes_back)
@@ -60,25 +63,6 @@ TEST_F(FacePoolTest, a_full_one_has_no_room_until_a_face_goes_back)
     EXPECT_TRUE(sut_->find({7}, 0).is_none());
     EXPECT_DEATH(sut_->give_back(share, 0, prim), "");
     EXPECT_EQ(take(share, 0, 8), prim);
-}
-
-TEST_F(FacePoolTest, owners_have_faces_of_the_same_ids)
-{
-    make(4);
-    PoolShare one = sut_->promise(0);
-    PoolShare other = sut_->promise(0);
-    const std::uint32_t last = kMaxModels - 1;
-    const PrimId of_one = take(one, 0, 3);
-    const PrimId of_other = take(other, last, 3);
-
-    EXPECT_NE(of_one, of_other);
-    EXPECT_EQ(sut_->find({3}, 0), of_one);
-    EXPECT_EQ(sut_->find({3}, last), of_other);
-    EXPECT_TRUE(sut_->find({3}, 1).is_none());
-    sut_->give_back(one, 0, of_one);
-    EXPECT_TRUE(sut_->find({3}, 0).is_none());
-    EXPECT_EQ(sut_->find({3}, last), of_other);
-    EXPECT_DEATH(take(one, kMaxModels, 3), "");
 }
 
 TEST_F(FacePoolTest, one_owner_cant_take_what_is_kept_for_another)

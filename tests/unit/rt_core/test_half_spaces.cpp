@@ -273,40 +273,6 @@ void expect_squeezing_planes_refused(std::uint64_t own_seed)
 
 } // namespace
 
-TEST(HalfSpaces, none_of_them_leave_the_motion_as_it_is)
-{
-    const Motion<6> wanted = Motion<6>::Ones();
-
-    const NearestMotion<6> sut = nearest<6>({}, wanted);
-
-    EXPECT_TRUE(sut.is_feasible);
-    EXPECT_EQ(sut.motion, wanted);
-    EXPECT_TRUE(sut.held_by.empty());
-}
-
-TEST(HalfSpaces, one_takes_off_what_goes_through_it_whatever_its_normals_length)
-{
-    const Planes<3> planes{{Vec3(0, 0, 4), -2.0}};
-
-    const NearestMotion<3> sut = nearest<3>(planes, Vec3(1, 2, -3));
-
-    EXPECT_EQ(sut.motion, Vec3(1, 2, -0.5));
-    ASSERT_EQ(sut.held_by.size(), 1U);
-    EXPECT_EQ(sut.held_by[0], 0U);
-    EXPECT_EQ(sut.reactions[0], 2.5 / 4.0);
-}
-
-TEST(HalfSpaces, of_parallel_ones_the_one_that_holds_back_most_counts)
-{
-    const Planes<3> planes{{Vec3(0, 0, 1), -2.0}, {Vec3(0, 0, 1), -1.0}, {Vec3(0, 0, 1), -1.0}};
-
-    const NearestMotion<3> sut = nearest<3>(planes, Vec3(0, 0, -3));
-
-    EXPECT_EQ(sut.motion, Vec3(0, 0, -1));
-    ASSERT_EQ(sut.held_by.size(), 1U);
-    EXPECT_EQ(sut.held_by[0], 1U);
-}
-
 TEST(HalfSpaces, a_gap_holds_from_both_sides_and_one_without_width_is_a_plane)
 {
     const Planes<3> gap{{Vec3(0, 0, 1), -1.0}, {Vec3(0, 0, -1), -1.0}};

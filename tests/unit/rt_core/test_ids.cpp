@@ -13,13 +13,8 @@
 namespace tactus::test
 {
 
-TEST(StrongId, is_none_by_default_and_ordered_by_value)
-{
-    EXPECT_TRUE(FaceId{}.is_none());
-    EXPECT_FALSE(FaceId{0}.is_none());
-    EXPECT_LT(FaceId{1}, FaceId{2});
-    EXPECT_LT(FaceId{0xFFFF'FFFEU}, FaceId{});
-}
+static_assert(FaceId{}.is_none() && !FaceId{0}.is_none());
+static_assert(FaceId{1} < FaceId{2} && FaceId{0xFFFF'FFFEU} < FaceId{});
 
 TEST(ModelCounts, ids_of_a_small_model_are_dense_and_distinct)
 {
@@ -49,22 +44,12 @@ TEST(ModelCounts, ids_of_a_small_model_are_dense_and_distinct)
     EXPECT_FALSE(sut.is_base(FaceId{6}));
 }
 
-TEST(ModelCounts, chunks_and_index_pages_round_up)
-{
-    const auto chunks = [](std::uint32_t records) { return ModelCounts{3, 1, records}.chunks(); };
-    const auto pages = [](std::uint32_t records) {
-        return ModelCounts{3, 1, records}.index_pages();
-    };
-    EXPECT_EQ(chunks(0), 0U);
-    EXPECT_EQ(chunks(1), 1U);
-    EXPECT_EQ(chunks(64), 1U);
-    EXPECT_EQ(chunks(65), 2U);
-    EXPECT_EQ(pages(0), 0U);
-    EXPECT_EQ(pages(1), 1U);
-    EXPECT_EQ(pages(64 * 64), 1U);
-    EXPECT_EQ(pages(64 * 64 + 1), 2U);
-    EXPECT_EQ(chunks(kMaxRecords), 1U << 23U);
-}
+static_assert(ModelCounts{3, 1, 0}.chunks() == 0 && ModelCounts{3, 1, 0}.index_pages() == 0);
+static_assert(ModelCounts{3, 1, 1}.chunks() == 1 && ModelCounts{3, 1, 1}.index_pages() == 1);
+static_assert(ModelCounts{3, 1, 64}.chunks() == 1 && ModelCounts{3, 1, 65}.chunks() == 2);
+static_assert(ModelCounts{3, 1, 64 * 64}.index_pages() == 1);
+static_assert(ModelCounts{3, 1, 64 * 64 + 1}.index_pages() == 2);
+static_assert(ModelCounts{3, 1, kMaxRecords}.chunks() == 1U << 23U);
 
 TEST(ModelCounts, the_last_chunk_and_page_hold_the_rest)
 {

@@ -243,22 +243,6 @@ TEST_F(VertexForestTest, a_split_round_two_fan_faces_stays_manifold)
     EXPECT_EQ(faces.at(9), (CornerIds{1, 3, 6}));
 }
 
-TEST_F(VertexForestTest, a_merge_restores_the_mesh_and_the_hash)
-{
-    const auto before = mesh();
-    const std::uint64_t hash = sut_->state_hash();
-    ASSERT_EQ(sut_->split({0}), VertexForest::SplitOutcome::done);
-    EXPECT_NE(sut_->state_hash(), hash);
-
-    EXPECT_TRUE(sut_->try_merge({0}));
-
-    EXPECT_EQ(mesh(), before);
-    EXPECT_EQ(sut_->state_hash(), hash);
-    EXPECT_FALSE(table_.is_refined({0}));
-    EXPECT_EQ(sut_->active_faces_max(), 6U);
-    EXPECT_EQ(sut_->refined_records(), 0U);
-}
-
 TEST_F(VertexForestTest, every_legal_order_gives_the_same_cut_for_the_same_records)
 {
     Random random(50);
@@ -276,17 +260,20 @@ TEST_F(VertexForestTest, every_legal_order_gives_the_same_cut_for_the_same_recor
         else
         {
             const bool legal = may_split(record, refined);
-            ASSERT_EQ(sut_->missing_dependency(page(record)).is_none(), legal);
+            ASSERT_EQ(sut_->missing_dependency(page(record)), legal ? RecordId{} : RecordId{0});
             ASSERT_EQ(sut_->split({record}), legal ? VertexForest::SplitOutcome::done
                                                    : VertexForest::SplitOutcome::inconsistent);
             refined |= legal ? bit : 0U;
         }
+        ASSERT_EQ(sut_->refined_records(), static_cast<std::uint32_t>(std::popcount(refined)));
+        ASSERT_EQ(table_.is_refined({record}), (refined & bit) != 0);
         ASSERT_EQ(sut_->active_faces(), 4 + 2 * sut_->refined_records());
         const auto [entry, is_new] = known.insert({refined, {sut_->state_hash(), mesh()}});
         ASSERT_EQ(entry->second.first, sut_->state_hash()) << refined;
         ASSERT_EQ(entry->second.second, mesh()) << refined;
         ASSERT_NO_FATAL_FAILURE(expect_tree_follows());
     }
+    EXPECT_EQ(sut_->active_faces_max(), 10U);
     EXPECT_EQ(known.size(), 6U);
     std::set<std::uint64_t> hashes;
     for (const auto& [set, state] : known)
@@ -294,27 +281,6 @@ TEST_F(VertexForestTest, every_legal_order_gives_the_same_cut_for_the_same_recor
         hashes.insert(state.first);
     }
     EXPECT_EQ(hashes.size(), 6U) << "different cuts have different hashes";
-}
-
-TEST_F(VertexForestTest, names_the_dependency_that_is_missing)
-{
-    EXPECT_TRUE(sut_->missing_dependency(page(0)).is_none());
-    EXPECT_EQ(sut_->missing_dependency(page(1)), RecordId{0});
-    ASSERT_EQ(sut_->split({0}), VertexForest::SplitOutcome::done);
-    EXPECT_TRUE(sut_->missing_dependency(page(1)).is_none());
-}
-
-TEST_F(VertexForestTest, refuses_a_merge_while_a_later_record_is_split)
-{
-    ASSERT_EQ(sut_->split({0}), VertexForest::SplitOutcome::done);
-    ASSERT_EQ(sut_->split({1}), VertexForest::SplitOutcome::done);
-    const std::uint64_t hash = sut_->state_hash();
-
-    EXPECT_FALSE(sut_->try_merge({0}));
-
-    EXPECT_EQ(sut_->state_hash(), hash);
-    expect_tree_follows();
-    EXPECT_TRUE(table_.is_refined({0}));
 }
 
 TEST_F(VertexForestTest, an_inconsistent_record_changes_nothing)
