@@ -45,19 +45,30 @@ void fill(TreeRig& rig, Random& random, std::uint32_t count, bool exact_only)
     rig.sut->refit();
 }
 
+/// A tool and an object of so many faces, or of as many as chance has it.
 struct Meshes
 {
     TreeRig tool{{80, 200, 200}};
     TreeRig object{{120, 300, 300}};
+
+    explicit Meshes(Random& random, bool is_tool_exact = true, bool is_object_exact = true,
+                    bool is_full = true)
+    {
+        fill(tool, random, is_full ? 80 : 1 + random.below(80), is_tool_exact);
+        fill(object, random, is_full ? 120 : 1 + random.below(120), is_object_exact);
+    }
+    [[nodiscard]] static Meshes of_any_size(Random& random, int round)
+    {
+        return Meshes(random, round % 3 != 0, round % 4 != 0, false);
+    }
 };
 
-/// All faces exact.
-Meshes full_meshes(Random& random)
+/// Lifted by up to so much.
+MeshPlacement lifted_placement(Random& random, double most)
 {
-    Meshes meshes;
-    fill(meshes.tool, random, 80, true);
-    fill(meshes.object, random, 120, true);
-    return meshes;
+    MeshPlacement place = random_placement(random);
+    place.place.translation_m.y() += random.between(0.0, most);
+    return place;
 }
 
 Triangle placed(const ChangedFace& face, const MeshPlacement& place)
@@ -142,26 +153,20 @@ struct Asked
 
 Asked ask(const TreeRig& tool, const TreeRig& object, const MeshPlacement& place, double reach,
           double contact, MeshMemory& memory, const WalkBudget& budget = kAmple,
-          double certified = 0.0)
+          double certified = 0.0, bool wants_pairs = true, ContactEnds* ends = nullptr)
 {
     Asked asked;
     OtherSurface surface(*object.sut, place, budget);
-    query_meshes({*tool.sut, *object.sut, place, reach, contact, nullptr, certified}, surface,
-                 memory, asked.answer, asked.report, asked.contacts);
+    query_meshes({*tool.sut, *object.sut, place, reach, contact, ends, certified, wants_pairs},
+                 surface, memory, asked.answer, asked.report, asked.contacts);
     asked.budget = surface.budget();
     return asked;
 }
 
-/// Pairs are not wanted.
 Asked ask_without_pairs(const TreeRig& tool, const TreeRig& object, const MeshPlacement& place,
                         double reach, double contact, MeshMemory& memory)
 {
-    Asked asked;
-    OtherSurface surface(*object.sut, place, kAmple);
-    query_meshes({*tool.sut, *object.sut, place, reach, contact, nullptr, 0.0, false}, surface,
-                 memory, asked.answer, asked.report, asked.contacts);
-    asked.budget = surface.budget();
-    return asked;
+    return ask(tool, object, place, reach, contact, memory, kAmple, 0.0, false);
 }
 
 /// Up to `enough` pairs that meet.
@@ -257,15 +262,11 @@ TEST(NearFaces, are_all_coarse_ones_within_the_bound_with_their_gaps)
     int far_ones = 0;
     for (int round = 0; round < 60; ++round)
     {
-        TreeRig tool({80, 200, 200});
-        TreeRig object({120, 300, 300});
-        fill(tool, random, 1 + random.below(80), false);
-        fill(object, random, 1 + random.below(120), round % 3 == 0);
+        const auto [tool, object] = Meshes(random, false, round % 3 == 0, false);
         const auto faces = object.present();
         for (int query = 0; query < 4; ++query)
         {
-            MeshPlacement place = random_placement(random);
-            place.place.translation_m.y() += random.between(0.0, 1.5);
+            const MeshPlacement place = lifted_placement(random, 1.5);
             const double bound = random.between(0.0, 0.5);
             OtherSurface other(*object.sut, place, kAmple);
             NearFaces sut(*tool.sut, other);
@@ -434,17 +435,13 @@ TEST(MeshQuery, finds_what_measuring_all_pairs_finds)
     int met = 0;
     for (int round = 0; round < 120; ++round)
     {
-        TreeRig tool({80, 200, 200});
-        TreeRig object({120, 300, 300});
-        fill(tool, random, 1 + random.below(80), round % 3 != 0);
-        fill(object, random, 1 + random.below(120), round % 4 != 0);
+        const auto [tool, object] = Meshes::of_any_size(random, round);
         const auto tool_faces = tool.present();
         const auto faces = object.present();
         MeshMemory memory;
         for (int query = 0; query < 10; ++query)
         {
-            MeshPlacement place = random_placement(random);
-            place.place.translation_m.y() += random.between(0.0, 1.5);
+            const MeshPlacement place = lifted_placement(random, 1.5);
             const double reach = random.between(0.0, 0.2);
             const double contact = random.one_in(3) ? -1.0 : reach * random.between(0.0, 1.0);
             const AllPairs truth(tool_faces, faces, place, contact);
@@ -494,11 +491,8 @@ TEST(MeshQuery, that_wants_no_pairs_ends_with_the_first_and_is_else_the_same)
     int apart = 0;
     for (int round = 0; round < 80; ++round)
     {
-        Meshes meshes;
-        fill(meshes.tool, random, 80, round % 3 != 0);
-        fill(meshes.object, random, 120, round % 3 != 1);
-        MeshPlacement place = random_placement(random);
-        place.place.translation_m.y() += random.between(0.0, 1.0);
+        const Meshes meshes(random, round % 3 != 0, round % 3 != 1);
+        const MeshPlacement place = lifted_placement(random, 1.0);
         const double reach = random.between(0.0, 0.1);
         const AllPairs truth(meshes.tool.present(), meshes.object.present(), place, reach);
         MeshMemory memory{{random.below(10), random.below(10)}};
@@ -563,9 +557,7 @@ TEST(MeshQuery, is_the_same_with_less_work_where_coarse_faces_are_known_to_be_fa
     std::uint64_t tested_knowing = 0;
     for (int round = 0; round < 60; ++round)
     {
-        Meshes meshes;
-        fill(meshes.tool, random, 80, round % 3 == 0);
-        fill(meshes.object, random, 120, round % 3 == 1);
+        Meshes meshes(random, round % 3 == 0, round % 3 == 1);
         const float by = random.one_in(2) ? 0.0F : static_cast<float>(random.between(0.5, 4.0));
         part_coarse(meshes.tool, by);
         part_coarse(meshes.object, -by);
@@ -573,8 +565,7 @@ TEST(MeshQuery, is_the_same_with_less_work_where_coarse_faces_are_known_to_be_fa
         const auto faces = meshes.object.present();
         for (int query = 0; query < 4; ++query)
         {
-            MeshPlacement place = random_placement(random);
-            place.place.translation_m.y() += random.between(0.0, 0.5);
+            const MeshPlacement place = lifted_placement(random, 0.5);
             const double reach = random.between(0.0, 0.1);
             const double contact = random.one_in(2) ? -1.0 : reach;
             const AllPairs truth(tool_faces, faces, place, contact);
@@ -618,15 +609,11 @@ TEST(MeetingFaces, are_those_of_the_whole_query)
     int apart = 0;
     for (int round = 0; round < 80; ++round)
     {
-        TreeRig tool({80, 200, 200});
-        TreeRig object({120, 300, 300});
-        fill(tool, random, 1 + random.below(80), round % 3 != 0);
-        fill(object, random, 1 + random.below(120), round % 4 != 0);
+        const auto [tool, object] = Meshes::of_any_size(random, round);
         MeshMemory memory{{random.below(10), random.below(10)}};
         for (int query = 0; query < 10; ++query)
         {
-            MeshPlacement place = random_placement(random);
-            place.place.translation_m.y() += random.between(0.0, 1.5);
+            const MeshPlacement place = lifted_placement(random, 1.5);
             const AllPairs truth(tool.present(), object.present(), place, 0.0);
 
             const Asked all = ask_meeting(tool, object, place, 1'000'000, memory);
@@ -649,7 +636,7 @@ TEST(MeetingFaces, end_with_the_first_and_say_so)
     int met = 0;
     for (int round = 0; round < 200; ++round)
     {
-        const auto [tool, object] = full_meshes(random);
+        const auto [tool, object] = Meshes(random);
         const MeshPlacement place = random_placement(random);
         const AllPairs truth(tool.present(), object.present(), place, 0.0);
         MeshMemory memory;
@@ -680,7 +667,7 @@ TEST(MeetingFaces, a_spent_budget_proves_nothing)
     int open = 0;
     for (int round = 0; round < 60; ++round)
     {
-        const auto [tool, object] = full_meshes(random);
+        const auto [tool, object] = Meshes(random);
         const MeshPlacement place = random_placement(random);
         const AllPairs truth(tool.present(), object.present(), place, 0.0);
         for (std::uint32_t share = 0; share < 200; share = 2 * share + 1)
@@ -706,10 +693,7 @@ TEST(NearestFaces, are_those_of_all_pairs_however_far_and_whatever_is_remembered
     int met = 0;
     for (int round = 0; round < 50; ++round)
     {
-        TreeRig tool({80, 200, 200});
-        TreeRig object({120, 300, 300});
-        fill(tool, random, 1 + random.below(80), round % 3 != 0);
-        fill(object, random, 1 + random.below(120), round % 4 != 0);
+        const auto [tool, object] = Meshes::of_any_size(random, round);
         MeshMemory memory{{random.below(10), random.below(10), random.below(20), 0}};
         for (int query = 0; query < 6; ++query)
         {
@@ -762,9 +746,8 @@ TEST(NearestFaces, are_bracketed_where_the_budget_ends_the_search)
     int lower_known = 0;
     for (int round = 0; round < 40; ++round)
     {
-        const auto [tool, object] = full_meshes(random);
-        MeshPlacement place = random_placement(random);
-        place.place.translation_m.y() += random.between(0.0, 8.0);
+        const auto [tool, object] = Meshes(random);
+        const MeshPlacement place = lifted_placement(random, 8.0);
         const AllPairs truth(tool.present(), object.present(), place, 0.0);
         for (std::uint32_t nodes = 1; nodes < 3'000; nodes *= 3)
         {
@@ -792,9 +775,7 @@ TEST(NearestFaces, are_not_told_by_faces_that_are_gone)
     Random random(85);
     for (int round = 0; round < 8; ++round)
     {
-        Meshes meshes = full_meshes(random);
-        TreeRig& tool = meshes.tool;
-        TreeRig& object = meshes.object;
+        auto [tool, object] = Meshes(random);
         const MeshPlacement place = random_placement(random);
         MeshMemory memory;
         for (int change = 0; change < 8; ++change)
@@ -853,7 +834,7 @@ TEST(MeshQuery, faces_that_only_touch_meet)
 TEST(MeshQuery, beyond_single_precision_bounds_what_it_can)
 {
     Random random(81);
-    const auto [tool, object] = full_meshes(random);
+    const auto [tool, object] = Meshes(random);
     for (const double far_m : {1e6, 1e8, 1e12})
     {
         MeshPlacement place = random_placement(random);
@@ -876,7 +857,7 @@ TEST(MeshQuery, beyond_single_precision_bounds_what_it_can)
 TEST(MeshQuery, a_place_that_is_no_number_proves_nothing)
 {
     Random random(82);
-    const auto [tool, object] = full_meshes(random);
+    const auto [tool, object] = Meshes(random);
     MeshPlacement place = random_placement(random);
     place.place.translation_m.x() = std::numeric_limits<double>::quiet_NaN();
     MeshMemory memory{{0, 0}};
@@ -896,7 +877,7 @@ TEST(MeshQuery, a_spent_budget_leaves_all_that_it_says_true)
     int spent = 0;
     for (int round = 0; round < 40; ++round)
     {
-        const auto [tool, object] = full_meshes(random);
+        const auto [tool, object] = Meshes(random);
         const MeshPlacement place = random_placement(random);
         const AllPairs truth(tool.present(), object.present(), place, 0.05);
         for (std::uint32_t share = 1; share < 3'000; share *= 3)
@@ -971,7 +952,7 @@ TEST(MeshQuery, keeps_the_nearest_contacts_whatever_met_before)
     int apart = 0;
     for (int round = 0; round < 120; ++round)
     {
-        const auto [tool, object] = full_meshes(random);
+        const auto [tool, object] = Meshes(random);
         const MeshPlacement place = random_placement(random);
         const double reach = random.between(0.0, 0.4);
         AllPairs truth(tool.present(), object.present(), place, reach);
@@ -981,11 +962,9 @@ TEST(MeshQuery, keeps_the_nearest_contacts_whatever_met_before)
         for (const bool was_crowded : {false, true})
         {
             MeshMemory memory{{random.below(10), random.below(10)}, was_crowded};
-            Asked asked;
             ContactEnds ends;
-            OtherSurface surface(*object.sut, place, kAmple);
-            query_meshes({*tool.sut, *object.sut, place, reach, reach, &ends}, surface, memory,
-                         asked.answer, asked.report, asked.contacts);
+            const Asked asked =
+                ask(tool, object, place, reach, reach, memory, kAmple, 0.0, true, &ends);
 
             ASSERT_EQ(as_set(asked.report.meeting), truth.meeting) << round;
             ASSERT_TRUE(asked.report.is_complete);
