@@ -39,6 +39,7 @@ protected:
         EXPECT_EQ(refused.error().text.find('\n'), std::string::npos);
         return refused.error().text;
     }
+    bool refusal_has(const char* text) { return refusal().find(text) != std::string::npos; }
     void open() { sut = std::move(DhdDevice::create(options)).value(); }
     StandInDhdDevice& hand() { return stand_in->devices.at(0); }
     /// Reads until it is as wanted.
@@ -54,6 +55,28 @@ protected:
             }
             std::this_thread::yield();
         }
+    }
+    void open_and_write(const Wrench& wrench)
+    {
+        open();
+        await([](const DeviceSample& sample) { return sample.valid; });
+        sut->write(wrench);
+        await_turn();
+    }
+    /// What it makes, and what it was told, as of now.
+    struct Motors
+    {
+        std::array<double, 3> force_n;
+        std::array<double, 3> torque_nm;
+        double grip_n;
+        bool brakes;
+        bool forces_enabled;
+    };
+    Motors motors()
+    {
+        const std::lock_guard lock(hand().mutex);
+        return {hand().force_n, hand().torque_nm, hand().grip_n, hand().brakes,
+                hand().forces_enabled};
     }
     /// Until two turns have begun: a whole one lies between.
     void await_turn()
@@ -74,52 +97,46 @@ protected:
 TEST_F(DhdDeviceTest, says_in_one_line_that_the_sdk_is_missing)
 {
     options.library = "/nowhere/libdhd.so";
-    const std::string line = refusal();
-    EXPECT_NE(line.find("dhd device: the SDK can't be loaded (/nowhere/libdhd.so"),
-              std::string::npos)
-        << line;
+    EXPECT_TRUE(refusal_has("dhd device: the SDK can't be loaded (/nowhere/libdhd.so"));
 }
 
 TEST_F(DhdDeviceTest, says_in_one_line_which_function_is_missing)
 {
     options.library = TACTUS_OLD_STAND_IN_DHD;
-    const std::string line = refusal();
-    EXPECT_NE(line.find("has no function dhdSetForceAndTorqueAndGripperForce; it takes Force "
-                        "Dimension's SDK 3"),
-              std::string::npos)
-        << line;
+    EXPECT_TRUE(refusal_has("has no function dhdSetForceAndTorqueAndGripperForce; it takes Force "
+                            "Dimension's SDK 3"));
 }
 
 TEST_F(DhdDeviceTest, says_in_one_line_that_no_device_is_there_or_can_be_opened)
 {
     stand_in->count = 0;
-    EXPECT_NE(refusal().find("the SDK finds none; is it plugged in"), std::string::npos);
+    EXPECT_TRUE(refusal_has("the SDK finds none; is it plugged in"));
     stand_in->count = 2;
     options.index = 2;
-    EXPECT_NE(refusal().find("there is no device 2, they are 0..1"), std::string::npos);
+    EXPECT_TRUE(refusal_has("there is no device 2, they are 0..1"));
     stand_in->count = 8;
     options.index = 0;
     hand().is_open = true; // Some other program's.
-    EXPECT_NE(refusal().find("device 0 can't be opened (device in use)"), std::string::npos);
+    EXPECT_TRUE(refusal_has("device 0 can't be opened (device in use)"));
 }
 
 TEST_F(DhdDeviceTest, refuses_options_out_of_range)
 {
     const DhdDeviceOptions good = options;
     options.index = 64;
-    EXPECT_NE(refusal().find("0..63"), std::string::npos);
+    EXPECT_TRUE(refusal_has("0..63"));
     options = good;
     options.period = microseconds(99);
-    EXPECT_NE(refusal().find("100 us..10 ms"), std::string::npos);
+    EXPECT_TRUE(refusal_has("100 us..10 ms"));
     options = good;
     options.deadman_button = 16;
-    EXPECT_NE(refusal().find("0..15"), std::string::npos);
+    EXPECT_TRUE(refusal_has("0..15"));
     options = good;
     options.times.force_hold = Duration{};
-    EXPECT_NE(refusal().find("1 ms..60 s"), std::string::npos);
+    EXPECT_TRUE(refusal_has("1 ms..60 s"));
     options = good;
     options.info.limits.mass_kg = 0.0;
-    EXPECT_NE(refusal().find("mass_kg"), std::string::npos);
+    EXPECT_TRUE(refusal_has("mass_kg"));
     EXPECT_FALSE(hand().is_open) << "it is closed again";
 }
 
@@ -168,11 +185,8 @@ TEST_F(DhdDeviceTest, turns_and_grips)
     EXPECT_EQ(sample.buttons, 3U);
     sut->write({{1.0, 2.0, 3.0}, {0.01, 0.02, 0.03}, 0.5});
     await_turn();
-    {
-        const std::lock_guard lock(hand().mutex);
-        EXPECT_EQ(hand().torque_nm, (std::array{0.01, 0.02, 0.03}));
-        EXPECT_EQ(hand().grip_n, 0.5);
-    }
+    EXPECT_EQ(motors().torque_nm, (std::array{0.01, 0.02, 0.03}));
+    EXPECT_EQ(motors().grip_n, 0.5);
     {
         const std::lock_guard lock(hand().mutex);
         hand().frame.at(0) = 1.0; // No rotation any more.
@@ -183,19 +197,13 @@ TEST_F(DhdDeviceTest, turns_and_grips)
 TEST_F(DhdDeviceTest, without_a_wrist_or_its_motors_makes_the_force_alone)
 {
     hand().has_active_wrist = false;
-    open();
+    open_and_write({{1.0, 2.0, 3.0}, {0.01, 0.02, 0.03}, 0.5});
     EXPECT_TRUE(sut->info().limits.turn.is_measured);
     EXPECT_EQ(sut->info().limits.turn.torque_max_nm, 0.0);
     EXPECT_EQ(sut->info().gripper_force_max_n, 0.0);
-    await([](const auto& got) { return got.valid; });
-    sut->write({{1.0, 2.0, 3.0}, {0.01, 0.02, 0.03}, 0.5});
-    await_turn();
-    {
-        const std::lock_guard lock(hand().mutex);
-        EXPECT_EQ(hand().force_n, (std::array{1.0, 2.0, 3.0}));
-        EXPECT_EQ(hand().torque_nm, (std::array{0.0, 0.0, 0.0}));
-        EXPECT_EQ(hand().grip_n, 0.0);
-    }
+    EXPECT_EQ(motors().force_n, (std::array{1.0, 2.0, 3.0}));
+    EXPECT_EQ(motors().torque_nm, (std::array{0.0, 0.0, 0.0}));
+    EXPECT_EQ(motors().grip_n, 0.0);
     sut.reset();
     hand().has_wrist = false;
     open();
@@ -217,44 +225,26 @@ TEST_F(DhdDeviceTest, takes_no_position_that_is_no_number)
     EXPECT_EQ(lost.position_world_m, (std::array{0.01, 0.0, 0.0}));
 }
 
-TEST_F(DhdDeviceTest, sets_the_devices_own_brakes_and_takes_them_off)
+TEST_F(DhdDeviceTest, sets_the_devices_own_brakes_where_there_are_some_and_takes_the_force_away)
 {
-    open();
-    await([](const DeviceSample& sample) { return sample.valid; });
-    sut->write({{1.0, 2.0, 3.0}, {}, 0.0});
-    await_turn();
+    for (const bool has_brakes : {true, false})
     {
-        const std::lock_guard lock(hand().mutex);
-        EXPECT_FALSE(hand().brakes);
-        EXPECT_TRUE(hand().forces_enabled);
-        EXPECT_EQ(hand().force_n, (std::array{1.0, 2.0, 3.0}));
+        hand().has_brakes = has_brakes;
+        open_and_write({{1.0, 2.0, 3.0}, {}, 0.0});
+        EXPECT_TRUE(!has_brakes || !motors().brakes);
+        EXPECT_TRUE(motors().forces_enabled);
+        EXPECT_EQ(motors().force_n, (std::array{1.0, 2.0, 3.0}));
+        sut->brake();
+        await_turn();
+        EXPECT_TRUE(!has_brakes || motors().brakes);
+        EXPECT_EQ(motors().force_n, (std::array{0.0, 0.0, 0.0}));
+        EXPECT_TRUE(sut->read().connected);
+        sut->release_brake();
+        await_turn();
+        EXPECT_TRUE(!has_brakes || !motors().brakes);
+        EXPECT_EQ(motors().force_n, (std::array{0.0, 0.0, 0.0}));
+        sut.reset();
     }
-    sut->brake();
-    await_turn();
-    {
-        const std::lock_guard lock(hand().mutex);
-        EXPECT_TRUE(hand().brakes);
-        EXPECT_EQ(hand().force_n, (std::array{0.0, 0.0, 0.0}));
-    }
-    sut->release_brake();
-    await_turn();
-    const std::lock_guard lock(hand().mutex);
-    EXPECT_FALSE(hand().brakes);
-    EXPECT_EQ(hand().force_n, (std::array{0.0, 0.0, 0.0}));
-}
-
-TEST_F(DhdDeviceTest, takes_the_force_away_where_there_are_no_brakes)
-{
-    hand().has_brakes = false;
-    open();
-    await([](const DeviceSample& sample) { return sample.valid; });
-    sut->write({{1.0, 2.0, 3.0}, {}, 0.0});
-    await_turn();
-    sut->brake();
-    await_turn();
-    EXPECT_TRUE(sut->read().connected);
-    const std::lock_guard lock(hand().mutex);
-    EXPECT_EQ(hand().force_n, (std::array{0.0, 0.0, 0.0}));
 }
 
 TEST_F(DhdDeviceTest, is_gone_when_unplugged_and_idle_when_it_is_back)
@@ -270,17 +260,13 @@ TEST_F(DhdDeviceTest, is_gone_when_unplugged_and_idle_when_it_is_back)
     await([](const DeviceSample& sample) { return sample.valid; });
     EXPECT_EQ(sut->status().state, DeviceState::idle);
     await_turn();
-    const std::lock_guard lock(hand().mutex);
-    EXPECT_EQ(hand().force_n, (std::array{0.0, 0.0, 0.0}));
-    EXPECT_TRUE(hand().forces_enabled);
+    EXPECT_EQ(motors().force_n, (std::array{0.0, 0.0, 0.0}));
+    EXPECT_TRUE(motors().forces_enabled);
 }
 
 TEST_F(DhdDeviceTest, leaves_the_device_without_a_force_and_closed)
 {
-    open();
-    await([](const DeviceSample& sample) { return sample.valid; });
-    sut->write({{1.0, 0.0, 0.0}, {}, 0.0});
-    await_turn();
+    open_and_write({{1.0, 0.0, 0.0}, {}, 0.0});
     sut.reset();
     EXPECT_EQ(hand().force_n, (std::array{0.0, 0.0, 0.0}));
     EXPECT_FALSE(hand().forces_enabled);

@@ -55,6 +55,33 @@ RtThreadOptions without_lock()
     return options;
 }
 
+RtThreadOptions as_far_as_allowed()
+{
+    RtThreadOptions options = without_lock();
+    options.allow_no_rt = true;
+    return options;
+}
+
+/// What a thread's body finds out, and what is said of the thread when it has ended.
+struct Ran
+{
+    Seen seen{};
+    RtThreadReport report{};
+};
+
+Ran run(const RtThreadOptions& options)
+{
+    Ran ran;
+    auto started = RtThread::start(options, [&ran] { look_around(ran.seen); });
+    EXPECT_TRUE(started) << (started ? "" : started.error().text);
+    if (started)
+    {
+        started.value().join();
+        ran.report = started.value().report();
+    }
+    return ran;
+}
+
 std::string why_no_fifo()
 {
     const auto refused = probe_realtime(without_lock());
@@ -110,32 +137,23 @@ TEST(RtThread, runs_its_body_with_fifo_at_the_priority_asked_for)
     }
     RtThreadOptions options = without_lock();
     options.priority = 42;
-    Seen seen;
-    auto started = RtThread::start(options, [&] { look_around(seen); });
-    ASSERT_TRUE(started) << started.error().text;
-    started.value().join();
-    EXPECT_EQ(seen.policy, SCHED_FIFO);
-    EXPECT_EQ(seen.priority, 42);
-    EXPECT_TRUE(started.value().report().fifo);
-    EXPECT_TRUE(started.value().report().refused.empty());
+    const Ran ran = run(options);
+    EXPECT_EQ(ran.seen.policy, SCHED_FIFO);
+    EXPECT_EQ(ran.seen.priority, 42);
+    EXPECT_TRUE(ran.report.fifo);
+    EXPECT_TRUE(ran.report.refused.empty());
 }
 
 TEST(RtThread, does_not_pass_the_starters_policy_on_where_fifo_is_not_wanted_by_it)
 {
-    RtThreadOptions options = without_lock();
-    options.allow_no_rt = true;
-    Seen seen;
-    auto started = RtThread::start(options, [&] { look_around(seen); });
-    ASSERT_TRUE(started) << started.error().text;
-    started.value().join();
-    EXPECT_EQ(seen.policy, started.value().report().fifo ? SCHED_FIFO : SCHED_OTHER);
-    EXPECT_EQ(started.value().report().refused.empty(), started.value().report().fifo);
+    const Ran ran = run(as_far_as_allowed());
+    EXPECT_EQ(ran.seen.policy, ran.report.fifo ? SCHED_FIFO : SCHED_OTHER);
+    EXPECT_EQ(ran.report.refused.empty(), ran.report.fifo);
 }
 
 TEST(RtThread, pins_the_body_to_the_processor_asked_for)
 {
-    RtThreadOptions options = without_lock();
-    options.allow_no_rt = true;
+    RtThreadOptions options = as_far_as_allowed();
     cpu_set_t allowed;
     ASSERT_EQ(sched_getaffinity(0, sizeof(allowed), &allowed), 0);
     int last = -1;
@@ -144,20 +162,16 @@ TEST(RtThread, pins_the_body_to_the_processor_asked_for)
         last = CPU_ISSET(static_cast<std::size_t>(cpu), &allowed) ? cpu : last;
     }
     options.cpu = last;
-    Seen seen;
-    auto started = RtThread::start(options, [&] { look_around(seen); });
-    ASSERT_TRUE(started) << started.error().text;
-    started.value().join();
-    EXPECT_EQ(seen.cpu, last);
-    EXPECT_TRUE(started.value().report().pinned);
+    const Ran ran = run(options);
+    EXPECT_EQ(ran.seen.cpu, last);
+    EXPECT_TRUE(ran.report.pinned);
 }
 
 TEST(RtThread, refuses_a_processor_that_does_not_exist_and_names_those_that_do)
 {
     for (const int cpu : {-1, 1'000, 1'000'000})
     {
-        RtThreadOptions options = without_lock();
-        options.allow_no_rt = true;
+        RtThreadOptions options = as_far_as_allowed();
         options.cpu = cpu;
         bool ran = false;
         const auto refused = RtThread::start(options, [&] { ran = true; });
@@ -181,8 +195,7 @@ TEST(RtThread, refuses_priorities_and_stacks_out_of_range)
         EXPECT_TRUE(contains(refused.error().text, "1..98"));
         EXPECT_FALSE(probe_realtime(options));
     }
-    RtThreadOptions above = without_lock();
-    above.allow_no_rt = true;
+    RtThreadOptions above = as_far_as_allowed();
     above.is_supervisor = true;
     above.priority = 99; // The supervisor's of a loop at the highest.
     EXPECT_TRUE(RtThread::start(above, [] {}));
@@ -200,24 +213,17 @@ TEST(RtThread, refuses_priorities_and_stacks_out_of_range)
 
 TEST(RtThread, blocks_signals_in_the_body_and_leaves_the_starters_alone)
 {
-    RtThreadOptions options = without_lock();
-    options.allow_no_rt = true;
     Seen here_before;
     look_around(here_before);
-    Seen seen;
-    auto started = RtThread::start(options, [&] { look_around(seen); });
-    ASSERT_TRUE(started);
-    started.value().join();
+    EXPECT_TRUE(run(as_far_as_allowed()).seen.term_blocked);
     Seen here_after;
     look_around(here_after);
-    EXPECT_TRUE(seen.term_blocked);
     EXPECT_EQ(here_after.term_blocked, here_before.term_blocked);
 }
 
 TEST(RtThread, has_its_stack_in_memory_before_the_body_runs)
 {
-    RtThreadOptions options = without_lock();
-    options.allow_no_rt = true;
+    RtThreadOptions options = as_far_as_allowed();
     options.stack_bytes = 2048 * 1024;
     std::int64_t faults = -1;
     const auto touch_deep = [&]
@@ -239,8 +245,7 @@ TEST(RtThread, has_its_stack_in_memory_before_the_body_runs)
 
 TEST(RtThread, joins_once_and_on_destruction)
 {
-    RtThreadOptions options = without_lock();
-    options.allow_no_rt = true;
+    RtThreadOptions options = as_far_as_allowed();
     bool ran = false;
     {
         auto started = RtThread::start(options, [&] { ran = true; });
@@ -293,8 +298,7 @@ std::ptrdiff_t wishes_held()
 
 TEST(RtThread, keeps_the_processors_awake_until_it_is_joined)
 {
-    RtThreadOptions options = without_lock();
-    options.allow_no_rt = true;
+    RtThreadOptions options = as_far_as_allowed();
     const std::ptrdiff_t before = wishes_held();
     std::int32_t asked_us = -1;
     auto started = RtThread::start(options, [&] { asked_us = longest_wake_us(); });
@@ -311,8 +315,7 @@ TEST(RtThread, keeps_the_processors_awake_until_it_is_joined)
 
 TEST(RtThread, lets_the_processors_sleep_where_it_was_not_asked)
 {
-    RtThreadOptions options = without_lock();
-    options.allow_no_rt = true;
+    RtThreadOptions options = as_far_as_allowed();
     options.processors_awake = false;
     const std::ptrdiff_t before = wishes_held();
     std::ptrdiff_t meanwhile = -1;

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tactus::udp
@@ -50,6 +51,33 @@ Bytes with(Bytes bytes, std::size_t at, const T& value)
     return bytes;
 }
 
+template <typename T>
+using Places = std::vector<std::pair<std::size_t, T>>;
+
+/// Its size, how it begins, its checksum at the end, and numbers at places.
+void expect_bytes(const Datagram& datagram, std::size_t size, const char* head,
+                  const Places<double>& numbers, const Places<std::uint64_t>& words,
+                  const Places<std::uint32_t>& flags)
+{
+    const Bytes bytes = to_bytes(datagram);
+    ASSERT_EQ(bytes.size(), size);
+    EXPECT_EQ(std::memcmp(bytes.data(), head, 8), 0) << head;
+    EXPECT_EQ(value_at<std::uint32_t>(bytes, size - 4),
+              test::bitwise_crc32c(std::span(bytes).first(size - 4)));
+    for (const auto& [at, number] : numbers)
+    {
+        EXPECT_EQ(value_at<double>(bytes, at), number) << head << at;
+    }
+    for (const auto& [at, word] : words)
+    {
+        EXPECT_EQ(value_at<std::uint64_t>(bytes, at), word) << head << at;
+    }
+    for (const auto& [at, flag] : flags)
+    {
+        EXPECT_EQ(value_at<std::uint32_t>(bytes, at), flag) << head << at;
+    }
+}
+
 DatagramFault refusal_of(const Bytes& bytes)
 {
     const FromDevice decoded = decode_from_device(bytes);
@@ -66,46 +94,19 @@ DatagramFault force_refusal_of(const Bytes& bytes)
 
 TEST(UdpDatagram, has_the_bytes_of_the_page)
 {
-    const Bytes described = to_bytes(encode(test::example_description()));
-    ASSERT_EQ(described.size(), 288U);
-    EXPECT_EQ(std::memcmp(described.data(), "TCTD\2\0\1\0", 8), 0);
-    EXPECT_EQ(value_at<double>(described, 64), 0.1);
-    EXPECT_EQ(value_at<std::int64_t>(described, 184), 16);
+    Places<double> numbers{{64, 0.1}};
     for (std::size_t i = 0; i < 9; ++i)
     {
-        EXPECT_EQ(value_at<double>(described, 192 + 8 * i), 17.0 + static_cast<double>(i));
+        numbers.emplace_back(192 + 8 * i, 17.0 + static_cast<double>(i));
     }
-    EXPECT_EQ(value_at<std::uint64_t>(described, 264), 0U);
-    EXPECT_EQ(value_at<std::uint64_t>(described, 272), 0U);
-    EXPECT_EQ(value_at<std::uint32_t>(described, 280), 1U);
-    EXPECT_EQ(value_at<std::uint32_t>(described, 284),
-              test::bitwise_crc32c(std::span(described).first(284)));
-
-    const Bytes sampled = to_bytes(encode(test::example_sample()));
-    ASSERT_EQ(sampled.size(), 180U);
-    EXPECT_EQ(std::memcmp(sampled.data(), "TCTD\2\0\2\0", 8), 0);
-    EXPECT_EQ(value_at<double>(sampled, 48), 0.3);
-    EXPECT_EQ(value_at<double>(sampled, 72), -3.0);
-    EXPECT_EQ(value_at<std::int64_t>(sampled, 80), 1'234'567);
-    EXPECT_EQ(value_at<double>(sampled, 88), 0.6);
-    EXPECT_EQ(value_at<double>(sampled, 112), 0.8);
-    EXPECT_EQ(value_at<double>(sampled, 136), -6.0);
-    EXPECT_EQ(value_at<double>(sampled, 144), 0.04);
-    EXPECT_EQ(value_at<std::uint64_t>(sampled, 152), 0U);
-    EXPECT_EQ(value_at<std::uint64_t>(sampled, 160), 0U);
-    EXPECT_EQ(value_at<std::uint32_t>(sampled, 168), 0x8000'0001U);
-    EXPECT_EQ(value_at<std::uint32_t>(sampled, 172), 1U | 2U | 8U | 16U | 32U);
-
-    const Bytes forced = to_bytes(encode(test::example_force()));
-    ASSERT_EQ(forced.size(), 120U);
-    EXPECT_EQ(std::memcmp(forced.data(), "TCTD\2\0\3\0", 8), 0);
-    EXPECT_EQ(value_at<double>(forced, 48), 3.5);
-    EXPECT_EQ(value_at<double>(forced, 72), 0.3);
-    EXPECT_EQ(value_at<double>(forced, 80), -0.4);
-    EXPECT_EQ(value_at<std::uint64_t>(forced, 88), 5U);
-    EXPECT_EQ(value_at<std::uint64_t>(forced, 96), 0U);
-    EXPECT_EQ(value_at<std::uint64_t>(forced, 104), 0U);
-    EXPECT_EQ(value_at<std::uint32_t>(forced, 112), 2U);
+    expect_bytes(encode(test::example_description()), 288, "TCTD\2\0\1\0", numbers,
+                 {{184, 16}, {264, 0}, {272, 0}}, {{280, 1}});
+    expect_bytes(encode(test::example_sample()), 180, "TCTD\2\0\2\0",
+                 {{48, 0.3}, {72, -3.0}, {88, 0.6}, {112, 0.8}, {136, -6.0}, {144, 0.04}},
+                 {{80, 1'234'567}, {152, 0}, {160, 0}},
+                 {{168, 0x8000'0001U}, {172, 1U | 2U | 8U | 16U | 32U}});
+    expect_bytes(encode(test::example_force()), 120, "TCTD\2\0\3\0",
+                 {{48, 3.5}, {72, 0.3}, {80, -0.4}}, {{88, 5}, {96, 0}, {104, 0}}, {{112, 2}});
 }
 
 /// Later ones will fill the tag; who can't check it doesn't look at it.
@@ -143,35 +144,14 @@ TEST(UdpDatagram, of_version_1_is_still_understood)
 
 TEST(UdpDatagram, of_version_1_has_its_bytes_of_the_page)
 {
-    const Bytes described = to_bytes(encode(of_points(test::example_description())));
-    ASSERT_EQ(described.size(), 200U);
-    EXPECT_EQ(std::memcmp(described.data(), "TCTD\1\0\1\0", 8), 0);
-    EXPECT_EQ(value_at<std::uint64_t>(described, 8), 3U);
-    EXPECT_EQ(value_at<std::uint64_t>(described, 16), 0U);
-    EXPECT_EQ(value_at<std::uint64_t>(described, 24), 1U);
-    EXPECT_EQ(std::memcmp(described.data() + 32, "desk 1\0", 7), 0);
-    EXPECT_EQ(value_at<double>(described, 64), 0.1);
-    EXPECT_EQ(value_at<double>(described, 128), 9.0);
-    EXPECT_EQ(value_at<double>(described, 152), 12.0);
-    EXPECT_EQ(value_at<double>(described, 168), 14.0);
-    EXPECT_EQ(value_at<std::int64_t>(described, 184), 16);
-    EXPECT_EQ(value_at<std::uint32_t>(described, 196),
-              test::bitwise_crc32c(std::span(described).first(196)));
-
-    const Bytes sampled = to_bytes(encode(of_points(test::example_sample())));
-    ASSERT_EQ(sampled.size(), 96U);
-    EXPECT_EQ(std::memcmp(sampled.data(), "TCTD\1\0\2\0", 8), 0);
-    EXPECT_EQ(value_at<double>(sampled, 48), 0.3);
-    EXPECT_EQ(value_at<double>(sampled, 72), -3.0);
-    EXPECT_EQ(value_at<std::int64_t>(sampled, 80), 1'234'567);
-    EXPECT_EQ(value_at<std::uint32_t>(sampled, 88), 3U);
-
-    const Bytes forced = to_bytes(encode(of_points(test::example_force())));
-    ASSERT_EQ(forced.size(), 72U);
-    EXPECT_EQ(std::memcmp(forced.data(), "TCTD\1\0\3\0", 8), 0);
-    EXPECT_EQ(value_at<double>(forced, 48), 3.5);
-    EXPECT_EQ(value_at<std::uint64_t>(forced, 56), 5U);
-    EXPECT_EQ(value_at<std::uint32_t>(forced, 64), 2U);
+    const Datagram described = encode(of_points(test::example_description()));
+    expect_bytes(described, 200, "TCTD\1\0\1\0", {{64, 0.1}, {128, 9.0}, {152, 12.0}, {168, 14.0}},
+                 {{8, 3}, {16, 0}, {24, 1}, {184, 16}}, {});
+    EXPECT_EQ(std::memcmp(to_bytes(described).data() + 32, "desk 1\0", 7), 0);
+    expect_bytes(encode(of_points(test::example_sample())), 96, "TCTD\1\0\2\0",
+                 {{48, 0.3}, {72, -3.0}}, {{80, 1'234'567}}, {{88, 3}});
+    expect_bytes(encode(of_points(test::example_force())), 72, "TCTD\1\0\3\0", {{48, 3.5}},
+                 {{56, 5}}, {{64, 2}});
 }
 
 TEST(UdpDatagram, says_what_is_wrong)

@@ -48,6 +48,15 @@ protected:
         peer.describe(desk());
         sut = std::move(UdpDevice::create(std::move(socket), options)).value();
     }
+    /// And its first sample was read.
+    void attach_and_read()
+    {
+        options.times = test::patient_times();
+        attach();
+        static_cast<void>(peer.ask());
+        peer.say(sample_at(0.0));
+        static_cast<void>(sut->read());
+    }
     udp::SampleDatagram sample_at(double x_m)
     {
         udp::SampleDatagram sample;
@@ -260,31 +269,9 @@ TEST_F(UdpDeviceTest, is_gone_when_the_device_is_silent_and_idle_when_another_is
     }
 }
 
-TEST_F(UdpDeviceTest, ends_a_force_that_nobody_writes_any_more)
-{
-    options.times.silence = milliseconds(60'000);
-    attach();
-    static_cast<void>(peer.ask());
-    peer.say(sample_at(0.0));
-    static_cast<void>(sut->read());
-    udp::ForceDatagram force;
-    do // The machine may stall for as long as a force is held.
-    {
-        sut->write({{1.0, 2.0, 3.0}, {}, 0.0});
-        force = await_force(peer, [](const auto&) { return true; });
-    } while (force.state != DeviceState::force);
-    EXPECT_EQ(force.force_n, (std::array{1.0, 2.0, 3.0}));
-    const auto is_idle = [](const udp::ForceDatagram& f) { return f.state == DeviceState::idle; };
-    EXPECT_EQ(await_force(peer, is_idle).force_n, (std::array{0.0, 0.0, 0.0}));
-    EXPECT_EQ(sut->status().state, DeviceState::idle);
-}
-
 TEST_F(UdpDeviceTest, sends_the_brake_by_itself)
 {
-    options.times = test::patient_times();
-    attach();
-    static_cast<void>(peer.ask());
-    peer.say(sample_at(0.0));
+    attach_and_read();
     std::thread other([this] { sut->brake(); });
     other.join();
     // The I/O thread knows which sample it answers; brake() doesn't.
@@ -302,12 +289,8 @@ TEST_F(UdpDeviceTest, sends_the_brake_by_itself)
 TEST_F(UdpDeviceTest, sends_no_force_with_a_number_beyond_that_of_the_brake)
 {
     constexpr int kRounds = 50'000;
-    options.times = test::patient_times();
     options.poll = UdpDeviceOptions::kPollMin;
-    attach();
-    static_cast<void>(peer.ask());
-    peer.say(sample_at(0.0));
-    static_cast<void>(sut->read());
+    attach_and_read();
     std::vector<udp::ForceDatagram> seen;
     for (int round = 1; round <= kRounds; ++round)
     {
@@ -340,11 +323,7 @@ TEST_F(UdpDeviceTest, sends_no_force_with_a_number_beyond_that_of_the_brake)
 
 TEST_F(UdpDeviceTest, tells_the_device_to_be_idle_when_it_ends)
 {
-    options.times = test::patient_times();
-    attach();
-    static_cast<void>(peer.ask());
-    peer.say(sample_at(0.0));
-    static_cast<void>(sut->read());
+    attach_and_read();
     sut->write({{1.0, 0.0, 0.0}, {}, 0.0});
     EXPECT_EQ(peer.ask().state, DeviceState::force);
     sut.reset();
@@ -372,11 +351,7 @@ void print(const char* way, std::vector<Duration> times)
 TEST_F(UdpDeviceTest, tells_what_each_way_takes)
 {
     constexpr int kRounds = 1'000;
-    options.times = test::patient_times();
-    attach();
-    static_cast<void>(peer.ask());
-    peer.say(sample_at(0.0));
-    static_cast<void>(sut->read());
+    attach_and_read();
     std::vector<Duration> forces;
     std::vector<Duration> samples;
     const auto get_out_of_step = []
