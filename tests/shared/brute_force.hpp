@@ -12,8 +12,8 @@ namespace tactus::test
 
 using Face = std::array<Vec3f, 3>;
 
-/// Distance from a point to a triangle, in long double, by the regions of the barycentric plane: no
-/// code in common with the kernels under test. Triangles without an area count as their edges.
+/// Distance from a point to a triangle, in long double, by DistanceOracle: no code in common with
+/// the kernels under test. Triangles without an area count as their edges.
 [[nodiscard]] long double brute_distance(const Vec3& point, const Face& face);
 
 /// Distance from a point to a whole mesh, one face after the other.

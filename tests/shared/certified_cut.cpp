@@ -6,7 +6,6 @@
 #include "tests/shared/test_model.hpp"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 
 namespace tactus::test
@@ -14,87 +13,6 @@ namespace tactus::test
 
 namespace
 {
-
-using Corners = std::array<std::uint32_t, 3>;
-constexpr std::uint32_t kNoFace = Collapse::kNoFace;
-
-/// Undoes collapses from the last one backwards, so that all that one depends on is undone before.
-class BackwardReplay
-{
-public:
-    BackwardReplay(const QuantisedMesh& mesh, const Simplification& simplification)
-        : present_(mesh.faces.size()), count_(simplification.base_faces.size())
-    {
-        for (std::size_t i = 0; i < count_; ++i)
-        {
-            present_[simplification.base_faces[i]] = {
-                true, simplification.base_corners[i],
-                static_cast<double>(simplification.base_error[i])};
-        }
-    }
-
-    [[nodiscard]] static std::size_t faces_added_by(const Collapse& collapse)
-    {
-        return (collapse.star[0] != kNoFace ? 1U : 0U) + (collapse.star[1] != kNoFace ? 1U : 0U);
-    }
-    [[nodiscard]] std::size_t face_count() const { return count_; }
-
-    void undo(const Collapse& collapse)
-    {
-        Corners rim{};
-        std::array<std::uint32_t, 2> ends{};
-        for (std::uint32_t i = 0; i < collapse.fan_size; ++i)
-        {
-            State& face = present_[collapse.star[2 + i]];
-            rim = face.corners;
-            std::rotate(rim.begin(), std::find(rim.begin(), rim.end(), collapse.parent), rim.end());
-            ends = {i == 0 ? rim[1] : ends[0], rim[2]};
-            std::replace(face.corners.begin(), face.corners.end(), collapse.parent,
-                         collapse.vertex);
-            face.bound_quanta = static_cast<double>(collapse.error[2 + i]);
-        }
-        const std::array<Corners, 2> appearing{Corners{collapse.vertex, collapse.parent, ends[0]},
-                                               Corners{collapse.vertex, ends[1], collapse.parent}};
-        for (std::size_t side = 0; side < 2; ++side)
-        {
-            if (collapse.star[side] != kNoFace)
-            {
-                present_[collapse.star[side]] = {true, appearing[side],
-                                                 static_cast<double>(collapse.error[side])};
-            }
-        }
-        count_ += faces_added_by(collapse);
-    }
-
-    [[nodiscard]] CertifiedCut cut(const PreparedMesh& prepared) const
-    {
-        PreparedMesh part;
-        part.quantum_m = prepared.quantum_m;
-        part.mesh.positions = prepared.mesh.positions;
-        CertifiedCut cut;
-        for (const State& face : present_)
-        {
-            if (face.is_active)
-            {
-                part.mesh.faces.push_back(face.corners);
-                cut.bounds_m.push_back(face.bound_quanta * prepared.quantum_m);
-            }
-        }
-        cut.faces = faces_on_grid(part);
-        return cut;
-    }
-
-private:
-    struct State
-    {
-        bool is_active{false};
-        Corners corners{};
-        double bound_quanta{0.0};
-    };
-
-    std::vector<State> present_; ///< By face of the mesh.
-    std::size_t count_;
-};
 
 /// The same as FaceTree::least_excess(), by another formula, in extended precision, face by face.
 double judged_excess(const CertifiedCut& cut, const Vec3& point_m)
@@ -110,18 +28,42 @@ double judged_excess(const CertifiedCut& cut, const Vec3& point_m)
 
 } // namespace
 
+CertifiedCut cut_of(const PreparedMesh& prepared, const ForestReplay& replay)
+{
+    PreparedMesh part;
+    part.quantum_m = prepared.quantum_m;
+    part.mesh.positions = prepared.mesh.positions;
+    part.mesh.faces = replay.active_corners();
+    CertifiedCut cut;
+    cut.faces = faces_on_grid(part);
+    for (const ForestReplay::Face& face : replay.faces())
+    {
+        if (face.active)
+        {
+            cut.bounds_m.push_back(static_cast<double>(face.error) * prepared.quantum_m);
+        }
+    }
+    return cut;
+}
+
 CertifiedCut cut_on_the_way(const PreparedMesh& prepared, const Simplification& simplification,
                             std::size_t faces)
 {
-    BackwardReplay replay(prepared.mesh, simplification);
-    for (auto collapse = simplification.collapses.rbegin();
-         collapse != simplification.collapses.rend() &&
-         replay.face_count() + BackwardReplay::faces_added_by(*collapse) <= faces;
-         ++collapse)
+    ForestReplay replay(simplification, prepared.mesh.faces.size());
+    std::size_t count = simplification.base_faces.size();
+    for (auto i = static_cast<std::uint32_t>(simplification.collapses.size()); i-- > 0;)
     {
-        replay.undo(*collapse);
+        const auto& star = simplification.collapses[i].star;
+        count += static_cast<std::size_t>(std::count_if(star.begin(), star.begin() + 2,
+                                                        [](std::uint32_t face)
+                                                        { return face != Collapse::kNoFace; }));
+        if (count > faces)
+        {
+            break;
+        }
+        replay.split_with_closure(i);
     }
-    return replay.cut(prepared);
+    return cut_of(prepared, replay);
 }
 
 CertifiedCut cut_of(const DecodedModel& model, const Replay& replay)

@@ -6,6 +6,7 @@
 #include "host_tools/mesh/prepare.hpp"
 #include "host_tools/simplify/simplify.hpp"
 #include "tests/shared/brute_force.hpp"
+#include "tests/shared/forest_replay.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -28,6 +29,8 @@ struct CertifiedCut
 [[nodiscard]] CertifiedCut cut_on_the_way(const PreparedMesh& prepared,
                                           const Simplification& simplification, std::size_t faces);
 
+/// What a replay has undone so far, likewise.
+[[nodiscard]] CertifiedCut cut_of(const PreparedMesh& prepared, const ForestReplay& replay);
 /// What a replay of a file has split so far, with bounds as the file says. Linear in the source.
 [[nodiscard]] CertifiedCut cut_of(const DecodedModel& model, const Replay& replay);
 

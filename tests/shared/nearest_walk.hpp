@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "rt_core/base/static_vector.hpp"
 #include "rt_core/math/infinity.hpp"
 #include "rt_core/math/triangle.hpp"
 #include "rt_core/query/probe.hpp"
@@ -17,9 +16,9 @@ namespace tactus::test
 {
 
 /// The lower bound of a distance query, for a tree of any volume: the least over all faces of
-/// distance minus error. On exact faces that is the distance. It does what the controller's query
-/// does on such faces (filter in float, decide in double, begin where the last answer was) and
-/// nothing else, so that volumes can be compared. Budget: none.
+/// distance minus error. On exact faces that is the distance. It filters in float, decides in
+/// double at once and begins where the last answer was, so that volumes can be compared. Budget:
+/// none.
 template <typename Tree>
 class NearestWalk
 {
@@ -48,7 +47,6 @@ public:
                 test_block(block);
             }
         }
-        decide();
         visits_ += budget.nodes_visited;
         return least_m_ <= band_m ? least_m_ : kInfinity;
     }
@@ -57,13 +55,6 @@ public:
     [[nodiscard]] std::uint64_t visits() const noexcept { return visits_; }
 
 private:
-    struct Candidate
-    {
-        std::uint32_t block;
-        std::uint32_t lane;
-        float lower; ///< Of its distance minus its error, in quanta.
-    };
-
     void begin(const Vec3& point_m, double band_m) noexcept
     {
         const auto quantum = static_cast<double>(tree_.quantum_m());
@@ -87,47 +78,26 @@ private:
         for (std::uint32_t lanes = near | side.coarse; lanes != 0; lanes &= lanes - 1)
         {
             const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
-            add({index, lane, bounds.lower[lane] - error_in_quanta(side.errors[lane])});
+            // A difference of floats is right to 2^-24 of the error, which the kernel's margin
+            // exceeds where it could matter.
+            const float error = error_in_quanta(side.errors[lane]);
+            if (bounds.lower[lane] - error <= limit_)
+            {
+                decide(to_triangle(block_triangle(block, lane)), error);
+            }
         }
         nearest_block_ = limit_ < limit_before ? index : nearest_block_;
     }
 
-    void add(const Candidate& candidate) noexcept
+    void decide(const Triangle& triangle, float error_quanta) noexcept
     {
-        // A difference of floats is right to 2^-24 of the error, which the kernel's margin exceeds
-        // where it could matter.
-        if (candidate.lower > limit_)
-        {
-            return;
-        }
-        if (!candidates_.try_push_back(candidate))
-        {
-            decide();
-            candidates_.push_back(candidate);
-        }
-    }
-
-    void decide() noexcept
-    {
-        for (const Candidate& candidate : candidates_)
-        {
-            if (candidate.lower > limit_)
-            {
-                continue;
-            }
-            const Triangle triangle =
-                to_triangle(block_triangle(tree_.block(candidate.block), candidate.lane));
-            const ErrorCode error = tree_.side(candidate.block).errors[candidate.lane];
-            least_m_ = std::min(
-                least_m_, std::sqrt(closest_point_on_triangle(point_m_, triangle).distance_sq) -
-                              static_cast<double>(error_in_quanta(error)) *
-                                  static_cast<double>(tree_.quantum_m()));
-        }
-        candidates_.clear();
+        const double distance_m =
+            std::sqrt(closest_point_on_triangle(point_m_, triangle).distance_sq);
+        least_m_ = std::min(least_m_, distance_m - static_cast<double>(error_quanta) *
+                                                       static_cast<double>(tree_.quantum_m()));
     }
 
     static constexpr std::uint32_t kUnlimited = std::numeric_limits<std::uint32_t>::max();
-    static constexpr std::size_t kCandidates = 64;
 
     const Tree& tree_;
     Vec3 point_m_{0.0, 0.0, 0.0};
@@ -136,7 +106,6 @@ private:
     double least_m_{0.0};
     std::uint32_t nearest_block_{kNoNode};
     std::uint64_t visits_{0};
-    StaticVector<Candidate, kCandidates> candidates_;
 };
 
 } // namespace tactus::test

@@ -38,6 +38,16 @@ SolidCore segment_core(const std::string& name, const Segment& segment, double r
     return {name, segment, {{segment.from, segment.to, segment.to}}, radius_m};
 }
 
+SolidCore spike_core(double radius_m)
+{
+    static const std::array<Vec3, 4> s{Vec3(0, 0, -0.02), Vec3(0.006, 0, 0.01),
+                                       Vec3(-0.004, 0.005, 0.01), Vec3(-0.004, -0.005, 0.01)};
+    return {"spike",
+            Hull::create(s).value(),
+            {{s[0], s[1], s[2]}, {s[0], s[2], s[3]}, {s[0], s[3], s[1]}, {s[1], s[2], s[3]}},
+            radius_m};
+}
+
 SolidCore mesh_core(const std::string& name, const TestModel& mesh, double radius_m)
 {
     SolidCore solid{name, MeshCore{ModelId{1}}, {}, radius_m, &mesh};

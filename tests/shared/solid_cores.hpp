@@ -27,6 +27,8 @@ struct SolidCore
 [[nodiscard]] SolidCore box_core(const std::string& name, const Vec3& half, double radius_m);
 [[nodiscard]] SolidCore segment_core(const std::string& name, const Segment& segment,
                                      double radius_m);
+/// The hull of a tetrahedron, 3 cm long.
+[[nodiscard]] SolidCore spike_core(double radius_m);
 [[nodiscard]] SolidCore mesh_core(const std::string& name, const TestModel& mesh, double radius_m);
 
 /// Faces of the placed core that meet the model's, by exact arithmetic; the model's frame.

@@ -2,15 +2,15 @@
 // Copyright the Tactus authors.
 #include "tests/shared/test_model.hpp"
 
-#include "host_tools/encode/write_spm.hpp"
+#include "host_tools/mesh/read_mesh.hpp"
 #include "host_tools/shapes/shapes.hpp"
-#include "host_tools/simplify/simplify.hpp"
 #include "tests/shared/temporary_folder.hpp"
 
 #include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <memory>
+#include <utility>
 
 namespace tactus::test
 {
@@ -40,40 +40,6 @@ void scale_errors(Simplification& simplified, double scale)
     }
 }
 
-TestModel make(const std::string& name, const TriangleMesh& mesh, std::uint32_t base_faces,
-               double error_scale)
-{
-    static const TemporaryFolder folder("models");
-    const auto prepared = prepare_mesh(mesh, {});
-    if (!prepared)
-    {
-        give_up(name, prepared.error().text);
-    }
-    SimplifyOptions options;
-    options.base_faces = base_faces;
-    auto simplified = simplify(prepared.value().mesh, options);
-    if (!simplified)
-    {
-        give_up(name, simplified.error().text);
-    }
-    scale_errors(simplified.value(), error_scale);
-    TestModel model;
-    model.name = name;
-    model.path = folder.path() / (name + ".spm");
-    EncodeOptions encoding;
-    encoding.base_faces = base_faces;
-    const auto written = write_spm(model.path, prepared.value(), simplified.value(), encoding);
-    if (!written)
-    {
-        give_up(name, written.error().text);
-    }
-    model.faces = faces_on_grid(prepared.value());
-    model.diagonal_m = prepared.value().diagonal_m;
-    model.base_faces = base_faces;
-    model.origin_m = prepared.value().origin_m;
-    return model;
-}
-
 const TestModel& kept_model(const std::string& name, const TriangleMesh& mesh,
                             std::uint32_t base_faces, double error_scale)
 {
@@ -81,7 +47,10 @@ const TestModel& kept_model(const std::string& name, const TriangleMesh& mesh,
     std::unique_ptr<TestModel>& model = models[name];
     if (!model)
     {
-        model = std::make_unique<TestModel>(make(name, mesh, base_faces, error_scale));
+        const MadeModel made = make_model(name, mesh, base_faces, kMinPositionBits, error_scale);
+        model = std::make_unique<TestModel>(TestModel{name, made.path, faces_on_grid(made.prepared),
+                                                      made.prepared.diagonal_m, base_faces,
+                                                      made.prepared.origin_m});
     }
     return *model;
 }
@@ -118,6 +87,47 @@ const TestModel& shape_model(Shape shape, std::uint32_t faces)
 }
 
 } // namespace
+
+MadeModel make_model(std::string name, const TriangleMesh& mesh, std::uint32_t base_faces,
+                     std::uint32_t position_bits, double error_scale)
+{
+    PrepareOptions preparing;
+    preparing.position_bits = position_bits;
+    auto prepared = prepare_mesh(mesh, preparing);
+    if (!prepared)
+    {
+        give_up(name, prepared.error().text);
+    }
+    SimplifyOptions simplifying;
+    simplifying.base_faces = base_faces;
+    auto simplified = simplify(prepared.value().mesh, simplifying);
+    if (!simplified)
+    {
+        give_up(name, simplified.error().text);
+    }
+    scale_errors(simplified.value(), error_scale);
+    return make_model(std::move(name), std::move(prepared).value(), std::move(simplified).value(),
+                      {position_bits, base_faces, std::nullopt});
+}
+
+MadeModel make_model(std::string name, PreparedMesh prepared, Simplification simplification,
+                     const EncodeOptions& options)
+{
+    static const TemporaryFolder folder("models");
+    MadeModel model{std::move(name), {}, std::move(prepared), std::move(simplification), {}};
+    model.path = folder.path() / (model.name + ".spm");
+    if (std::filesystem::exists(model.path))
+    {
+        model.path.replace_extension("." + std::to_string(folder.files()) + ".spm");
+    }
+    const auto written = write_spm(model.path, model.prepared, model.simplification, options);
+    if (!written)
+    {
+        give_up(model.name, written.error().text);
+    }
+    model.fields = written.value();
+    return model;
+}
 
 std::vector<Face> faces_on_grid(const PreparedMesh& prepared)
 {
@@ -181,6 +191,27 @@ std::vector<const TestModel*> small_models()
         models.push_back(&small_model(i));
     }
     return models;
+}
+
+std::optional<TriangleMesh> read_known(const KnownMesh& mesh)
+{
+    const char* folder = std::getenv("TACTUS_MESHES");
+    if (folder == nullptr)
+    {
+        return std::nullopt;
+    }
+    auto read = read_mesh(std::filesystem::path(folder) / mesh.file);
+    if (!read)
+    {
+        give_up(mesh.name, read.error().text);
+    }
+    return std::move(read).value();
+}
+
+const TestModel* known_model(const KnownMesh& mesh)
+{
+    const auto read = read_known(mesh);
+    return read ? &test_model(mesh.name, *read, 500) : nullptr;
 }
 
 } // namespace tactus::test

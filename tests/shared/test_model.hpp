@@ -2,17 +2,40 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "host_tools/encode/write_spm.hpp"
 #include "host_tools/mesh/prepare.hpp"
 #include "host_tools/mesh/triangle_mesh.hpp"
+#include "host_tools/simplify/simplify.hpp"
 #include "tests/shared/brute_force.hpp"
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace tactus::test
 {
+
+/// What a model was made of, and its file.
+struct MadeModel
+{
+    std::string name;
+    std::filesystem::path path;
+    PreparedMesh prepared;
+    Simplification simplification;
+    HeaderFields fields;
+};
+
+/// Simplifies and encodes a mesh into a file of the test's temporary folder. As make_model() and
+/// all below it ends the test program with a line when a step refuses.
+[[nodiscard]] MadeModel make_model(std::string name, const TriangleMesh& mesh,
+                                   std::uint32_t base_faces,
+                                   std::uint32_t position_bits = kMinPositionBits,
+                                   double error_scale = 1.0);
+/// The same of a mesh that is simplified.
+[[nodiscard]] MadeModel make_model(std::string name, PreparedMesh prepared,
+                                   Simplification simplification, const EncodeOptions& options);
 
 /// A model on disk, made by the encoder, and its source mesh as the truth to compare with.
 struct TestModel
@@ -28,8 +51,7 @@ struct TestModel
 /// The faces of a mesh on its grid, in metres of the model's frame; exact.
 [[nodiscard]] std::vector<Face> faces_on_grid(const PreparedMesh& prepared);
 
-/// Prepares, simplifies and encodes a mesh into a file of the test's temporary folder; made once a
-/// name and process. Ends the test program with a line when a step refuses.
+/// A model that is made once a name and process.
 [[nodiscard]] const TestModel& test_model(const std::string& name, const TriangleMesh& mesh,
                                           std::uint32_t base_faces = 200);
 
@@ -43,5 +65,24 @@ struct TestModel
 inline constexpr std::size_t kSmallModels = 7;
 [[nodiscard]] const TestModel& small_model(std::size_t index);
 [[nodiscard]] std::vector<const TestModel*> small_models();
+
+/// A mesh that others know, too; it has to be in the folder that TACTUS_MESHES names.
+struct KnownMesh
+{
+    const char* name;
+    const char* file;
+};
+
+/// The largest, of 269,000 faces, comes last.
+inline constexpr KnownMesh kKnownMeshes[] = {{"cow", "cow.obj"},
+                                             {"teapot", "teapot.obj"},
+                                             {"fandisk", "fandisk.obj"},
+                                             {"bunny", "stanford-bunny.obj"},
+                                             {"igea", "igea.ply"}};
+
+/// None without TACTUS_MESHES; a file that isn't there ends the program with a line.
+[[nodiscard]] std::optional<TriangleMesh> read_known(const KnownMesh& mesh);
+/// Null without TACTUS_MESHES.
+[[nodiscard]] const TestModel* known_model(const KnownMesh& mesh);
 
 } // namespace tactus::test

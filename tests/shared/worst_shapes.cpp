@@ -244,4 +244,14 @@ const TestModel& worst_model(std::size_t index)
     return test_model(std::string("worst-") + shape.name, shape.make(), shape.base_faces);
 }
 
+std::size_t generated_model_count()
+{
+    return kSmallModels + worst_model_count();
+}
+
+const TestModel& generated_model(std::size_t index)
+{
+    return index < kSmallModels ? small_model(index) : worst_model(index - kSmallModels);
+}
+
 } // namespace tactus::test

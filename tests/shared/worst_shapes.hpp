@@ -39,4 +39,8 @@ namespace tactus::test
 [[nodiscard]] std::size_t worst_model_count();
 [[nodiscard]] const TestModel& worst_model(std::size_t index);
 
+/// The small_model()s and the worst_model()s: all of them generated.
+[[nodiscard]] std::size_t generated_model_count();
+[[nodiscard]] const TestModel& generated_model(std::size_t index);
+
 } // namespace tactus::test

@@ -5,6 +5,7 @@
 #include "tests/golden/golden_model.hpp"
 
 #include <stdexcept>
+#include <utility>
 
 namespace tactus
 {
@@ -12,71 +13,40 @@ namespace tactus
 namespace
 {
 
-std::unique_ptr<EncodedModel> encode_source(const std::string& name,
-                                            const Result<TriangleMesh, Refusal>& mesh,
-                                            unsigned position_bits)
+template <Shape shape, std::uint32_t faces>
+std::optional<TriangleMesh> shaped()
 {
-    if (!mesh)
-    {
-        throw std::runtime_error(mesh.error().text);
-    }
-    return encode_source(name, mesh.value(), 100, position_bits);
+    return make_shape(shape, faces).value();
 }
 
-std::unique_ptr<EncodedModel> encode_shape(const std::string& name, std::uint32_t faces,
-                                           unsigned position_bits)
+template <std::size_t index>
+std::optional<TriangleMesh> known()
 {
-    return encode_source(name, make_shape(*parse_shape(name), faces), position_bits);
+    return test::read_known(test::kKnownMeshes[index]);
 }
 
 } // namespace
 
-std::unique_ptr<EncodedModel> encode_source(std::string name, const TriangleMesh& mesh,
-                                            std::uint32_t base_faces, unsigned position_bits)
+EncodedModel::EncodedModel(test::MadeModel made) : MadeModel(std::move(made))
 {
-    PrepareOptions options;
-    options.position_bits = position_bits;
-    auto prepared = prepare_mesh(mesh, options);
-    if (!prepared)
+    auto opened = ModelStore::open(path);
+    if (!opened)
     {
-        throw std::runtime_error(prepared.error().text);
+        throw std::runtime_error(opened.error().text);
     }
-    auto simplification = simplify(prepared.value().mesh, {base_faces, 1, {}});
-    if (!simplification)
-    {
-        throw std::runtime_error(simplification.error().text);
-    }
-    return encode_mesh(std::move(name), std::move(prepared).value(),
-                       std::move(simplification).value(), position_bits);
-}
-
-std::unique_ptr<EncodedModel> encode_mesh(std::string name, PreparedMesh prepared,
-                                          Simplification simplification, unsigned position_bits)
-{
-    auto model = std::make_unique<EncodedModel>();
-    model->name = std::move(name);
-    model->prepared = std::move(prepared);
-    model->simplification = std::move(simplification);
-    const auto written = write_spm(model->path(), model->prepared, model->simplification,
-                                   {position_bits, 500, std::nullopt});
-    if (!written)
-    {
-        throw std::runtime_error(written.error().text);
-    }
-    model->fields = written.value();
-    auto store = ModelStore::open(model->path());
-    if (!store)
-    {
-        throw std::runtime_error(store.error().text);
-    }
-    model->store = std::make_unique<ModelStore>(std::move(store).value());
+    store = std::make_unique<ModelStore>(std::move(opened).value());
     std::vector<std::string> damage;
-    model->decoded = std::make_unique<DecodedModel>(DecodedModel::decode(*model->store, damage));
+    decoded = std::make_unique<DecodedModel>(DecodedModel::decode(*store, damage));
     if (!damage.empty())
     {
         throw std::runtime_error(damage.front());
     }
-    return model;
+}
+
+std::unique_ptr<EncodedModel> encode_source(std::string name, const TriangleMesh& mesh,
+                                            std::uint32_t base_faces)
+{
+    return std::make_unique<EncodedModel>(test::make_model(std::move(name), mesh, base_faces));
 }
 
 const std::vector<std::unique_ptr<EncodedModel>>& sample_models()
@@ -84,16 +54,49 @@ const std::vector<std::unique_ptr<EncodedModel>>& sample_models()
     static const std::vector<std::unique_ptr<EncodedModel>> models = []
     {
         std::vector<std::unique_ptr<EncodedModel>> made;
+        const auto add = [&](test::MadeModel model)
+        { made.push_back(std::make_unique<EncodedModel>(std::move(model))); };
         PreparedMesh golden = make_golden_mesh();
         Simplification collapsed = collapse_plainly(golden.mesh, 16);
-        made.push_back(encode_mesh("golden", std::move(golden), std::move(collapsed), 16));
-        made.push_back(encode_shape("bumpy-sphere", 3'000, 16));
-        made.push_back(encode_shape("terrain", 4'000, 16));
-        made.push_back(encode_shape("gear", 2'000, 20));
-        made.push_back(encode_source("soup", make_triangle_soup(700, 1), 16));
+        add(test::make_model("golden", std::move(golden), std::move(collapsed), {}));
+        add(test::make_model("bumpy-sphere", *shaped<Shape::bumpy_sphere, 3'000>(), 100));
+        add(test::make_model("terrain", *shaped<Shape::terrain, 4'000>(), 100));
+        add(test::make_model("gear", *shaped<Shape::gear, 2'000>(), 100, 20));
+        add(test::make_model("soup", make_triangle_soup(700, 1).value(), 100));
         return made;
     }();
     return models;
+}
+
+std::unique_ptr<EncodedModel> SampleMesh::encode() const
+{
+    const auto mesh = make();
+    return mesh ? encode_source(name, *mesh, base_faces) : nullptr;
+}
+
+std::vector<SampleMesh> generated_meshes()
+{
+    return {{"bumpy_sphere", shaped<Shape::bumpy_sphere, 20'000>, 100},
+            {"torus", shaped<Shape::torus, 3'000>, 100},
+            {"terrain", shaped<Shape::terrain, 3'000>, 100},
+            {"gear", shaped<Shape::gear, 3'000>, 100},
+            {"thin_plate", [] { return std::optional(make_thin_plate(25, 2e-5).value()); }, 60},
+            {"needles", [] { return std::optional(make_uv_sphere(10, 200).value()); }, 100}};
+}
+
+std::vector<SampleMesh> known_meshes()
+{
+    std::vector<SampleMesh> meshes = smaller_known_meshes();
+    meshes.push_back({"igea", known<4>, 500});
+    return meshes;
+}
+
+std::vector<SampleMesh> smaller_known_meshes()
+{
+    return {{"cow", known<0>, 100},
+            {"teapot", known<1>, 100},
+            {"fandisk", known<2>, 100},
+            {"bunny", known<3>, 500}};
 }
 
 } // namespace tactus

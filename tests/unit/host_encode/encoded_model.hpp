@@ -3,47 +3,64 @@
 #pragma once
 
 #include "host_tools/encode/decoded_model.hpp"
-#include "host_tools/encode/write_spm.hpp"
-#include "host_tools/mesh/prepare.hpp"
 #include "host_tools/shapes/shapes.hpp"
-#include "host_tools/simplify/simplify.hpp"
-#include "tests/shared/temporary_folder.hpp"
+#include "tests/shared/test_model.hpp"
 #include "transport/store/model_store.hpp"
 
-#include <filesystem>
+#include <gtest/gtest.h>
+
 #include <memory>
+#include <optional>
+#include <ostream>
 #include <string>
 #include <vector>
 
 namespace tactus
 {
 
-/// A mesh, what it was simplified to, the file written from that, and the file read back.
-struct EncodedModel
+/// A mesh, what it was simplified to, the file written from that, and the file read back; throws in
+/// words when that is refused.
+struct EncodedModel : test::MadeModel
 {
-    std::string name; ///< For failure messages.
-    PreparedMesh prepared;
-    Simplification simplification;
-    test::TemporaryFolder folder;
-    HeaderFields fields;
+    explicit EncodedModel(test::MadeModel made);
+
     std::unique_ptr<ModelStore> store;
     std::unique_ptr<DecodedModel> decoded;
-
-    [[nodiscard]] std::filesystem::path path() const { return folder.path() / "model.spm"; }
 };
 
-/// Prepares and simplifies a mesh, then the same as encode_mesh().
 [[nodiscard]] std::unique_ptr<EncodedModel>
-encode_source(std::string name, const TriangleMesh& mesh, std::uint32_t base_faces,
-              unsigned position_bits = kMinPositionBits);
-
-/// Writes a model and reads it back; throws in words when any step is refused.
-[[nodiscard]] std::unique_ptr<EncodedModel> encode_mesh(std::string name, PreparedMesh prepared,
-                                                        Simplification simplification,
-                                                        unsigned position_bits);
+encode_source(std::string name, const TriangleMesh& mesh, std::uint32_t base_faces);
 
 /// The golden model, and shapes through the real simplifier: closed, with a border, with sharp
 /// edges. Made once in a process.
 [[nodiscard]] const std::vector<std::unique_ptr<EncodedModel>>& sample_models();
+
+/// A mesh of a test that runs once for each: generated, or a well-known one's.
+struct SampleMesh
+{
+    const char* name;
+    std::optional<TriangleMesh> (*make)();
+    std::uint32_t base_faces;
+
+    /// Null without a mesh.
+    [[nodiscard]] std::unique_ptr<EncodedModel> encode() const;
+};
+
+inline std::ostream& operator<<(std::ostream& out, const SampleMesh& mesh)
+{
+    return out << mesh.name;
+}
+
+/// Smooth, of genus 1, open, sharp, thin and with needles.
+[[nodiscard]] std::vector<SampleMesh> generated_meshes();
+/// The well-known ones; the smaller are all but igea, the largest by far.
+[[nodiscard]] std::vector<SampleMesh> known_meshes();
+[[nodiscard]] std::vector<SampleMesh> smaller_known_meshes();
+
+/// Names the cases of a test over meshes.
+[[nodiscard]] inline std::string mesh_name(const testing::TestParamInfo<SampleMesh>& mesh)
+{
+    return mesh.param.name;
+}
 
 } // namespace tactus

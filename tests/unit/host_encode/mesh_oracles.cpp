@@ -2,12 +2,10 @@
 // Copyright the Tactus authors.
 #include "tests/unit/host_encode/mesh_oracles.hpp"
 
-#include "tests/unit/host_simplify/distance_oracle.hpp"
+#include "tests/shared/distance_oracle.hpp"
 
 #include <algorithm>
 #include <limits>
-#include <set>
-#include <utility>
 
 namespace tactus
 {
@@ -15,38 +13,10 @@ namespace tactus
 namespace
 {
 
-using test::LongPoint;
-
 PlainFace turned(PlainFace face)
 {
     std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
     return face;
-}
-
-/// Whether faces, given by their directed edges opposite to a vertex, are one fan round it.
-bool is_one_fan(std::vector<std::pair<std::uint32_t, std::uint32_t>> opposite)
-{
-    // From a corner that no other face ends at, or from anywhere when the fan is closed.
-    const auto begins = std::find_if(
-        opposite.begin(), opposite.end(),
-        [&](const auto& edge)
-        {
-            return std::none_of(opposite.begin(), opposite.end(),
-                                [&](const auto& other) { return other.second == edge.first; });
-        });
-    auto here = begins == opposite.end() ? opposite.begin() : begins;
-    for (std::size_t left = opposite.size(); left > 1; --left)
-    {
-        const std::uint32_t corner = here->second;
-        opposite.erase(here);
-        here = std::find_if(opposite.begin(), opposite.end(),
-                            [&](const auto& edge) { return edge.first == corner; });
-        if (here == opposite.end())
-        {
-            return false;
-        }
-    }
-    return true;
 }
 
 Point point_on(const PlainFace& face, double s, double t)
@@ -59,20 +29,14 @@ Point point_on(const PlainFace& face, double s, double t)
     return p;
 }
 
-LongPoint to_long(const Point& p)
-{
-    return {static_cast<long double>(p[0]), static_cast<long double>(p[1]),
-            static_cast<long double>(p[2])};
-}
-
 long double distance_to(const std::vector<PlainFace>& faces, const Point& point)
 {
     long double least = std::numeric_limits<long double>::infinity();
     for (const PlainFace& face : faces)
     {
-        least = std::min(
-            least, test::oracle_distance(to_long(point),
-                                         {to_long(face[0]), to_long(face[1]), to_long(face[2])}));
+        least = std::min(least,
+                         test::DistanceOracle::distance(
+                             to_vec(point), {to_vec(face[0]), to_vec(face[1]), to_vec(face[2])}));
     }
     return least;
 }
@@ -113,33 +77,6 @@ std::vector<PlainFace> source_faces(const EncodedModel& model)
         }
     }
     return faces_of(mesh);
-}
-
-std::string manifold_fault(const TriangleMesh& mesh)
-{
-    std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
-    std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> opposite(
-        mesh.positions.size());
-    for (const auto& face : mesh.faces)
-    {
-        for (std::size_t i = 0; i < 3; ++i)
-        {
-            const std::uint32_t next = face[(i + 1) % 3];
-            if (face[i] == next || !edges.emplace(face[i], next).second)
-            {
-                return "edge " + std::to_string(face[i]) + " " + std::to_string(next);
-            }
-            opposite[face[i]].emplace_back(next, face[(i + 2) % 3]);
-        }
-    }
-    for (std::size_t vertex = 0; vertex < opposite.size(); ++vertex)
-    {
-        if (opposite[vertex].empty() || !is_one_fan(opposite[vertex]))
-        {
-            return "vertex " + std::to_string(vertex);
-        }
-    }
-    return {};
 }
 
 long double sampled_distance(const EncodedModel& model, const TriangleMesh& mesh, int samples,

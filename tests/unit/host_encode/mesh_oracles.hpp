@@ -28,9 +28,6 @@ using PlainFace = std::array<Point, 3>;
 /// The faces of the source on its grid, in the source's frame.
 [[nodiscard]] std::vector<PlainFace> source_faces(const EncodedModel& model);
 
-/// Why the mesh isn't 2-manifold with borders, or has a vertex that no face uses; empty when it is.
-[[nodiscard]] std::string manifold_fault(const TriangleMesh& mesh);
-
 /// The largest distance of points of the source, corners and others, to the mesh, by brute force.
 [[nodiscard]] long double sampled_distance(const EncodedModel& model, const TriangleMesh& mesh,
                                            int samples, test::Random& random);

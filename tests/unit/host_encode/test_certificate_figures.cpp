@@ -6,7 +6,7 @@
 #include "host_tools/encode/numbering.hpp"
 #include "tests/shared/certificate_figures.hpp"
 #include "tests/shared/closed_cut.hpp"
-#include "tests/unit/host_encode/sample_meshes.hpp"
+#include "tests/unit/host_encode/encoded_model.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 /// the bound of some face. A million points over all meshes, in cuts of every level.
 
 #include "tests/unit/host_encode/certified_cuts.hpp"
-#include "tests/unit/host_encode/sample_meshes.hpp"
+#include "tests/unit/host_encode/encoded_model.hpp"
 #include "tests/unit/rt_core/support.hpp"
 
 #include <gtest/gtest.h>

@@ -6,7 +6,7 @@
 
 #include "tests/shared/certificate_figures.hpp"
 #include "tests/unit/host_encode/certified_cuts.hpp"
-#include "tests/unit/host_encode/sample_meshes.hpp"
+#include "tests/unit/host_encode/encoded_model.hpp"
 #include "tests/unit/rt_core/support.hpp"
 
 #include <gtest/gtest.h>

@@ -5,6 +5,7 @@
 
 #include "host_tools/encode/extract.hpp"
 #include "host_tools/mesh/read_mesh.hpp"
+#include "tests/shared/manifold.hpp"
 #include "tests/unit/host_encode/encoded_model.hpp"
 #include "tests/unit/host_encode/mesh_oracles.hpp"
 #include "tests/unit/rt_core/support.hpp"
@@ -15,6 +16,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <ranges>
 #include <set>
 
 namespace tactus
@@ -139,7 +141,13 @@ void expect_manifold_cuts(const EncodedModel& model, int cuts, Random& random)
     for (int i = 0; i < cuts; ++i)
     {
         const Extraction sut = extract(*model.decoded, random_request(model, random));
-        EXPECT_EQ(manifold_fault(sut.mesh), "") << "cut " << i;
+        EXPECT_EQ(test::manifold_fault(sut.mesh.faces), "") << "cut " << i;
+        std::vector<bool> is_used(sut.mesh.positions.size());
+        for (const std::uint32_t vertex : std::views::join(sut.mesh.faces))
+        {
+            is_used[vertex] = true;
+        }
+        EXPECT_EQ(std::ranges::count(is_used, false), 0) << "cut " << i;
     }
 }
 
@@ -158,28 +166,26 @@ TEST(Extract, the_mesh_is_manifold_at_every_cut)
 
 TEST(Extract, the_oracle_tells_what_is_not_manifold)
 {
-    const std::vector<Point> positions(7, Point{});
-    EXPECT_EQ(manifold_fault({positions, {{0, 1, 2}, {0, 1, 3}}}), "edge 0 1");
-    EXPECT_EQ(manifold_fault({positions, {{0, 1, 2}, {2, 3, 4}, {0, 5, 6}}}), "vertex 0");
-    const std::vector<Point> few(5, Point{});
-    EXPECT_EQ(manifold_fault({few, {{0, 1, 2}, {0, 3, 4}}}), "vertex 0");
-    EXPECT_EQ(manifold_fault({few, {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}}}), "");
-    EXPECT_EQ(manifold_fault({few, {{0, 2, 3}, {0, 1, 2}, {0, 3, 4}}}), "");
+    const auto fault = [](const std::vector<test::Corners>& faces)
+    { return test::manifold_fault(faces); };
+    EXPECT_EQ(fault({{0, 1, 2}, {0, 1, 3}}), "edge 0 1");
+    EXPECT_EQ(fault({{0, 1, 2}, {2, 3, 4}, {0, 5, 6}}), "vertex 0");
+    EXPECT_EQ(fault({{0, 1, 2}, {0, 3, 4}}), "vertex 0");
+    EXPECT_EQ(fault({{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}}), "");
+    EXPECT_EQ(fault({{0, 2, 3}, {0, 1, 2}, {0, 3, 4}}), "");
 }
 
 TEST(Extract, well_known_meshes_give_manifolds)
 {
-    const char* folder = std::getenv("TACTUS_MESHES");
-    if (folder == nullptr)
-    {
-        GTEST_SKIP() << "TACTUS_MESHES is not set";
-    }
     Random random(2);
-    for (const char* name : {"cow.obj", "fandisk.obj", "teapot.obj"})
+    for (std::size_t i = 0; i < 3; ++i)
     {
-        const auto mesh = read_mesh(std::filesystem::path(folder) / name);
-        ASSERT_TRUE(mesh) << mesh.error().text;
-        expect_manifold_cuts(*encode(name, mesh.value()), 20, random);
+        const auto mesh = test::read_known(test::kKnownMeshes[i]);
+        if (!mesh)
+        {
+            GTEST_SKIP() << "TACTUS_MESHES is not set";
+        }
+        expect_manifold_cuts(*encode_source(test::kKnownMeshes[i].name, *mesh, 60), 20, random);
     }
 }
 

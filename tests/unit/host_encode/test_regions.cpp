@@ -8,8 +8,8 @@
 #include "host_tools/encode/replay.hpp"
 #include "tests/shared/frame_rig.hpp"
 #include "tests/shared/influence_index.hpp"
+#include "tests/unit/host_encode/encoded_model.hpp"
 #include "tests/unit/host_encode/fed_model.hpp"
-#include "tests/unit/host_encode/sample_meshes.hpp"
 #include "tests/unit/rt_core/support.hpp"
 
 #include <gtest/gtest.h>
@@ -257,7 +257,7 @@ TEST_P(Regions, are_asked_for_by_the_controller_as_the_index_names_them)
 {
     TestModel model;
     model.name = "model";
-    model.path = subject_->model->path();
+    model.path = subject_->model->path;
     model.diagonal_m = header().diagonal_m();
     for (int i = 0; i < 5; ++i)
     {

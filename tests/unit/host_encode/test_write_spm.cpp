@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/encode/write_spm.hpp"
 #include "tests/golden/golden_model.hpp"
+#include "tests/shared/temporary_folder.hpp"
 #include "tests/unit/host_encode/encoded_model.hpp"
 
 #include <gtest/gtest.h>
@@ -37,7 +38,7 @@ std::string read_back(const std::filesystem::path& path)
 TEST(WriteSpm, the_same_input_gives_the_same_bytes)
 {
     const EncodedModel& model = *sample_models()[1];
-    const std::string first = content_of(model.path());
+    const std::string first = content_of(model.path);
     const test::TemporaryFolder folder;
     ASSERT_TRUE(write_spm(folder.path() / "again.spm", model.prepared, model.simplification, {}));
     EXPECT_EQ(content_of(folder.path() / "again.spm"), first);
@@ -52,7 +53,7 @@ TEST(WriteSpm, the_file_does_not_depend_on_the_threads)
     options.threads = 5;
     const auto path = folder.path() / "threads.spm";
     ASSERT_TRUE(write_spm(path, model.prepared, model.simplification, options));
-    EXPECT_EQ(content_of(path), content_of(model.path()));
+    EXPECT_EQ(content_of(path), content_of(model.path));
 }
 
 TEST(WriteSpm, the_header_describes_the_mesh)

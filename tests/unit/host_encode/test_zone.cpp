@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "host_tools/encode/zone.hpp"
-#include "tests/unit/host_simplify/distance_oracle.hpp"
+#include "tests/shared/distance_oracle.hpp"
 #include "tests/unit/rt_core/support.hpp"
 
 #include <gtest/gtest.h>
@@ -14,16 +14,21 @@ namespace tactus
 namespace
 {
 
-using test::LongPoint;
 using test::Random;
+using LongPoint = test::DistanceOracle::Point;
+
+LongPoint to_long(const Vec3& v)
+{
+    return test::DistanceOracle::difference(v, Vec3::Zero());
+}
 
 /// Whether anything is left of the triangle when all that lies outside the box is cut off.
 bool oracle_touches(const BoxZone& box, const Triangle& triangle)
 {
-    std::vector<LongPoint> polygon{test::to_long(triangle[0]), test::to_long(triangle[1]),
-                                   test::to_long(triangle[2])};
-    const LongPoint low = test::to_long(box.low_m);
-    const LongPoint high = test::to_long(box.high_m);
+    std::vector<LongPoint> polygon{to_long(triangle[0]), to_long(triangle[1]),
+                                   to_long(triangle[2])};
+    const LongPoint low = to_long(box.low_m);
+    const LongPoint high = to_long(box.high_m);
     for (std::size_t side = 0; side < 6; ++side)
     {
         const std::size_t axis = side / 2;
@@ -57,9 +62,7 @@ bool oracle_touches(const BoxZone& box, const Triangle& triangle)
 
 bool oracle_touches(const BallZone& ball, const Triangle& triangle)
 {
-    return test::oracle_distance(test::to_long(ball.center_m),
-                                 {test::to_long(triangle[0]), test::to_long(triangle[1]),
-                                  test::to_long(triangle[2])}) <=
+    return test::DistanceOracle::distance(ball.center_m, triangle) <=
            static_cast<long double>(ball.radius_m);
 }
 

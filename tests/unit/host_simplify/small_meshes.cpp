@@ -2,15 +2,16 @@
 // Copyright the Tactus authors.
 #include "tests/unit/host_simplify/small_meshes.hpp"
 
+#include "host_tools/shapes/shapes.hpp"
+#include "tests/shared/test_model.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <initializer_list>
-#include <map>
 #include <numbers>
 #include <random>
 #include <stdexcept>
-#include <utility>
 
 namespace tactus::test
 {
@@ -29,34 +30,16 @@ std::array<std::int32_t, 3> on_grid(double x, double y, double z)
     return {place(x), place(y), place(z)};
 }
 
-using Point = std::array<double, 3>;
-
-/// Four faces to one; the new vertices on the unit sphere.
-void subdivide(std::vector<Point>& points, std::vector<std::array<std::uint32_t, 3>>& faces)
+/// A generated mesh of this radius.
+QuantisedMesh on_grid(const TriangleMesh& mesh, double radius_m)
 {
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
-    const auto middle = [&](std::uint32_t a, std::uint32_t b)
+    QuantisedMesh result;
+    result.faces = mesh.faces;
+    for (const auto& [x, y, z] : mesh.positions)
     {
-        const auto [at, is_new] =
-            middles.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(points.size()));
-        if (is_new)
-        {
-            Point p{points[a][0] + points[b][0], points[a][1] + points[b][1],
-                    points[a][2] + points[b][2]};
-            const double length = std::hypot(p[0], p[1], p[2]);
-            points.push_back({p[0] / length, p[1] / length, p[2] / length});
-        }
-        return at->second;
-    };
-    std::vector<std::array<std::uint32_t, 3>> finer;
-    for (const auto& [a, b, c] : faces)
-    {
-        const std::uint32_t ab = middle(a, b);
-        const std::uint32_t bc = middle(b, c);
-        const std::uint32_t ca = middle(c, a);
-        finer.insert(finer.end(), {{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}});
+        result.positions.push_back(on_grid(x / radius_m, y / radius_m, z / radius_m));
     }
-    faces = finer;
+    return result;
 }
 
 /// Removes all faces of some vertices that are far enough apart for the holes not to touch.
@@ -120,64 +103,22 @@ double hills(double x, double y)
 
 } // namespace
 
-QuantisedMesh make_icosphere(unsigned levels, double noise)
+QuantisedMesh make_sphere(std::uint32_t faces, double noise)
 {
-    const double g = (1 + std::sqrt(5.0)) / 2;
-    std::vector<Point> points{{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0},
-                              {0, -1, g}, {0, 1, g}, {0, -1, -g}, {0, 1, -g},
-                              {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
-    for (auto& p : points)
-    {
-        const double length = std::hypot(p[0], p[1], p[2]);
-        p = {p[0] / length, p[1] / length, p[2] / length};
-    }
-    std::vector<std::array<std::uint32_t, 3>> faces{
-        {0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-        {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-        {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
-    for (unsigned level = 0; level < levels; ++level)
-    {
-        subdivide(points, faces);
-    }
+    TriangleMesh mesh = make_shape(Shape::sphere, faces).value();
     std::mt19937 random(7);
     std::uniform_real_distribution<double> draw(-noise, 0);
-    QuantisedMesh mesh;
-    mesh.faces = faces;
-    for (const auto& p : points)
+    for (auto& position : mesh.positions)
     {
         const double radius = noise > 0 ? 1 + draw(random) : 1;
-        mesh.positions.push_back(on_grid(radius * p[0], radius * p[1], radius * p[2]));
+        position = {radius * position[0], radius * position[1], radius * position[2]};
     }
-    return mesh;
+    return on_grid(mesh, 0.05);
 }
 
-QuantisedMesh make_uv_sphere(unsigned rings, unsigned sectors)
+QuantisedMesh make_needle_sphere(std::uint32_t rings, std::uint32_t sectors)
 {
-    QuantisedMesh mesh;
-    mesh.positions = {on_grid(0, 0, 1), on_grid(0, 0, -1)};
-    const auto at = [=](unsigned ring, unsigned sector)
-    { return 2 + (ring - 1) * sectors + sector % sectors; };
-    for (unsigned ring = 1; ring < rings; ++ring)
-    {
-        const double polar = kPi * ring / rings;
-        for (unsigned s = 0; s < sectors; ++s)
-        {
-            const double around = 2 * kPi * s / sectors;
-            mesh.positions.push_back(on_grid(std::sin(polar) * std::cos(around),
-                                             std::sin(polar) * std::sin(around), std::cos(polar)));
-        }
-    }
-    for (unsigned s = 0; s < sectors; ++s)
-    {
-        mesh.faces.push_back({0, at(1, s), at(1, s + 1)});
-        mesh.faces.push_back({1, at(rings - 1, s + 1), at(rings - 1, s)});
-        for (unsigned ring = 1; ring + 1 < rings; ++ring)
-        {
-            mesh.faces.push_back({at(ring, s), at(ring + 1, s), at(ring + 1, s + 1)});
-            mesh.faces.push_back({at(ring, s), at(ring + 1, s + 1), at(ring, s + 1)});
-        }
-    }
-    return mesh;
+    return on_grid(make_uv_sphere(rings, sectors).value(), 0.05);
 }
 
 QuantisedMesh make_grid(unsigned columns, unsigned rows,
@@ -206,30 +147,9 @@ QuantisedMesh make_grid(unsigned columns, unsigned rows,
     return mesh;
 }
 
-QuantisedMesh make_torus(unsigned around, unsigned across)
+QuantisedMesh make_torus(std::uint32_t faces)
 {
-    QuantisedMesh mesh;
-    for (unsigned i = 0; i < around; ++i)
-    {
-        for (unsigned j = 0; j < across; ++j)
-        {
-            const double a = 2 * kPi * i / around;
-            const double b = 2 * kPi * j / across;
-            const double radius = 0.7 + 0.25 * std::cos(b);
-            mesh.positions.push_back(
-                on_grid(radius * std::cos(a), radius * std::sin(a), 0.25 * std::sin(b)));
-        }
-    }
-    const auto at = [=](unsigned i, unsigned j) { return i % around * across + j % across; };
-    for (unsigned i = 0; i < around; ++i)
-    {
-        for (unsigned j = 0; j < across; ++j)
-        {
-            mesh.faces.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
-            mesh.faces.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
-        }
-    }
-    return mesh;
+    return on_grid(make_shape(Shape::torus, faces).value(), 0.075);
 }
 
 QuantisedMesh make_cone(unsigned rings, unsigned sectors)
@@ -312,21 +232,31 @@ QuantisedMesh make_crumbs(std::uint32_t triangles, std::uint32_t solids)
 const std::vector<NamedMesh>& all_small_meshes()
 {
     static const std::vector<NamedMesh> meshes{
-        {"sphere", make_icosphere(3, 0)},
-        {"noisy sphere", make_icosphere(3, 0.1)},
-        {"torus", make_torus(40, 16)},
+        {"sphere", make_sphere(1'280, 0)},
+        {"noisy sphere", make_sphere(1'280, 0.1)},
+        {"torus", make_torus(1'280)},
         {"hills", make_grid(24, 24, hills)},
         {"plate", make_grid(20, 20, [](double, double) { return 0.0; })},
-        {"sphere with holes", cut_holes(make_icosphere(3, 0.02))},
-        {"needle sphere", make_uv_sphere(8, 120)},
+        {"sphere with holes", cut_holes(make_sphere(1'280, 0.02))},
+        {"needle sphere", make_needle_sphere(8, 120)},
         {"cone", make_cone(6, 90)},
-        {"squeezed sphere", squeeze(make_icosphere(3, 0))},
+        {"squeezed sphere", squeeze(make_sphere(1'280, 0))},
         {"squeezed hills", squeeze(make_grid(24, 24, hills))},
-        {"two components", join(make_icosphere(2, 0.05), make_grid(12, 12, hills), 70'000)},
+        {"two components", join(make_sphere(320, 0.05), make_grid(12, 12, hills), 70'000)},
         {"crumbs", make_crumbs(150, 0)},
         {"crumbs of every kind", make_crumbs(40, 40)},
-        {"crumbs round a sphere", join(make_icosphere(2, 0), make_crumbs(20, 20), 0)}};
+        {"crumbs round a sphere", join(make_sphere(320, 0), make_crumbs(20, 20), 0)}};
     return meshes;
+}
+
+std::vector<Face> faces_of(const QuantisedMesh& mesh,
+                           std::span<const std::array<std::uint32_t, 3>> faces)
+{
+    PreparedMesh part;
+    part.mesh.positions = mesh.positions;
+    part.mesh.faces.assign(faces.begin(), faces.end());
+    part.quantum_m = 1.0;
+    return faces_on_grid(part);
 }
 
 Simplification simplified(const QuantisedMesh& mesh, std::uint32_t base_faces, unsigned threads)

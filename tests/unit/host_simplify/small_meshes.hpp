@@ -3,27 +3,30 @@
 #pragma once
 
 #include "host_tools/simplify/simplify.hpp"
+#include "tests/shared/brute_force.hpp"
 
+#include <array>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace tactus::test
 {
 
-/// Closed; 20 x 4^levels faces; radial noise as a share of the radius.
-[[nodiscard]] QuantisedMesh make_icosphere(unsigned levels, double noise);
+/// Closed; 20 n^2 faces, 180 at least; radial noise as a share of the radius.
+[[nodiscard]] QuantisedMesh make_sphere(std::uint32_t faces, double noise);
 
 /// Closed, with two poles of valence `sectors`; (rings - 1) x sectors x 2 faces.
-[[nodiscard]] QuantisedMesh make_uv_sphere(unsigned rings, unsigned sectors);
+[[nodiscard]] QuantisedMesh make_needle_sphere(std::uint32_t rings, std::uint32_t sectors);
 
 /// Open; a height field over columns x rows squares.
 [[nodiscard]] QuantisedMesh make_grid(unsigned columns, unsigned rows,
                                       const std::function<double(double, double)>& height);
 
-/// Closed, genus 1; around x across x 2 faces.
-[[nodiscard]] QuantisedMesh make_torus(unsigned around, unsigned across);
+/// Closed, genus 1.
+[[nodiscard]] QuantisedMesh make_torus(std::uint32_t faces);
 
 /// Open; an apex of valence `sectors` over `rings` rings.
 [[nodiscard]] QuantisedMesh make_cone(unsigned rings, unsigned sectors);
@@ -45,6 +48,10 @@ struct NamedMesh
 /// One of each kind, small: closed, open, with holes, high valence, coincident vertices, faces
 /// without area, several components.
 [[nodiscard]] const std::vector<NamedMesh>& all_small_meshes();
+
+/// Some faces over the mesh's vertices, in quanta.
+[[nodiscard]] std::vector<Face> faces_of(const QuantisedMesh& mesh,
+                                         std::span<const std::array<std::uint32_t, 3>> faces);
 
 /// For meshes that must be accepted: throws the refusal.
 [[nodiscard]] Simplification simplified(const QuantisedMesh& mesh, std::uint32_t base_faces = 40,

@@ -88,7 +88,7 @@ TEST(EdgeMatch, refuses_a_vertex_with_two_fans)
     QuantisedMesh mesh = five_points();
     mesh.faces = {{0, 1, 2}, {0, 3, 4}};
     EXPECT_EQ(refusal(mesh), "the faces of vertex 0 form more than one fan");
-    QuantisedMesh closed = make_icosphere(1, 0);
+    QuantisedMesh closed = make_sphere(180, 0);
     const auto other = join(closed, closed, 0);
     QuantisedMesh touching = other;
     const auto first = static_cast<std::uint32_t>(closed.positions.size());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "host_tools/simplify/point_triangle.hpp"
-#include "tests/unit/host_simplify/distance_oracle.hpp"
+#include "tests/shared/distance_oracle.hpp"
 
 #include <gtest/gtest.h>
 
@@ -25,9 +25,8 @@ void expect_oracle(const std::array<Vec3, 3>& t, const PointColumns& points)
     sut.squared_distances(points, 0, squared.data());
     for (std::size_t i = 0; i < points.size(); ++i)
     {
-        const long double expected =
-            searched_distance(to_long(points[i]), {to_long(t[0]), to_long(t[1]), to_long(t[2])});
-        ASSERT_NEAR(std::sqrt(squared[i]), static_cast<double>(expected), 2e-7);
+        const auto expected = static_cast<double>(QuadDistanceOracle::distance(points[i], t));
+        ASSERT_NEAR(std::sqrt(squared[i]), expected, 2e-7);
     }
 }
 

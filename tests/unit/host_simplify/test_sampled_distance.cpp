@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/simplify/grid_point.hpp"
 #include "host_tools/simplify/sampled_distance.hpp"
-#include "tests/unit/host_simplify/distance_oracle.hpp"
+#include "tests/shared/surface_points.hpp"
 #include "tests/unit/host_simplify/small_meshes.hpp"
 
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <random>
 #include <vector>
 
 namespace tactus::test
@@ -89,39 +85,13 @@ TEST(SampledDistance, is_below_the_certificate_and_not_below_a_smaller_sample_by
         const double sut = sampled_distance_to_base(mesh, simplification, kSamples, 1);
         const float bound = *std::ranges::max_element(simplification.base_error);
         EXPECT_LE(sut, static_cast<double>(bound) + 1e-6) << named.name;
-        const auto corner = [&](std::uint32_t vertex)
-        {
-            const auto& p = mesh.positions[vertex];
-            return LongPoint{static_cast<long double>(p[0]), static_cast<long double>(p[1]),
-                             static_cast<long double>(p[2])};
-        };
-        std::mt19937_64 random(7);
-        std::vector<double> areas;
-        for (const auto& [a, b, c] : mesh.faces)
-        {
-            const Vec3 origin = grid_point(mesh, a);
-            areas.push_back(
-                (grid_point(mesh, b) - origin).cross(grid_point(mesh, c) - origin).norm());
-        }
-        std::discrete_distribution<std::size_t> by_area(areas.begin(), areas.end());
+        const std::vector<Face> source = faces_of(mesh, mesh.faces);
+        const std::vector<Face> base = faces_of(mesh, simplification.base_corners);
+        SurfacePoints points(source, 7);
         long double largest = 0.0L;
         for (int i = 0; i < kBruteSamples; ++i)
         {
-            const auto& face = mesh.faces[by_area(random)];
-            const long double s = static_cast<long double>(random() % 1'000) / 1'000;
-            const long double t = (1 - s) * static_cast<long double>(random() % 1'000) / 1'000;
-            LongPoint point{};
-            for (std::size_t axis = 0; axis < 3; ++axis)
-            {
-                point[axis] = (1 - s - t) * corner(face[0])[axis] + s * corner(face[1])[axis] +
-                              t * corner(face[2])[axis];
-            }
-            long double least = std::numeric_limits<long double>::infinity();
-            for (const auto& [a, b, c] : simplification.base_corners)
-            {
-                least = std::min(least, oracle_distance(point, {corner(a), corner(b), corner(c)}));
-            }
-            largest = std::max(largest, least);
+            largest = std::max(largest, brute_distance(points.draw_by_area(), base));
         }
         EXPECT_GE(sut + 1e-6, 0.95 * static_cast<double>(largest)) << named.name;
     }
@@ -129,7 +99,7 @@ TEST(SampledDistance, is_below_the_certificate_and_not_below_a_smaller_sample_by
 
 TEST(SampledDistance, depends_on_the_seed_a_little_and_on_nothing_else)
 {
-    const QuantisedMesh mesh = make_icosphere(4, 0.05);
+    const QuantisedMesh mesh = make_sphere(5'120, 0.05);
     const Simplification simplification = simplified(mesh);
     const double one = sampled_distance_to_base(mesh, simplification, kSamples, 1);
     const double two = sampled_distance_to_base(mesh, simplification, kSamples, 2);
@@ -140,7 +110,7 @@ TEST(SampledDistance, depends_on_the_seed_a_little_and_on_nothing_else)
 
 TEST(SampledDistance, a_mesh_that_was_not_simplified_has_none)
 {
-    const QuantisedMesh mesh = make_torus(12, 8);
+    const QuantisedMesh mesh = make_torus(192);
     const Simplification simplification = simplified(mesh, 1'000);
     EXPECT_LE(sampled_distance_to_base(mesh, simplification, kSamples, 1), 1e-6);
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "host_tools/simplify/simplify.hpp"
-#include "tests/unit/host_simplify/forest_replay.hpp"
 #include "tests/unit/host_simplify/small_meshes.hpp"
 
 #include <gtest/gtest.h>
@@ -49,8 +48,8 @@ TEST(Simplify, reaches_the_base_size_and_not_much_less)
 
 TEST(Simplify, does_nothing_to_a_mesh_that_is_small_enough)
 {
-    const QuantisedMesh mesh = make_icosphere(1, 0);
-    const Simplification sut = simplified(mesh, 80);
+    const QuantisedMesh mesh = make_sphere(180, 0);
+    const Simplification sut = simplified(mesh, 180);
     EXPECT_TRUE(sut.collapses.empty());
     EXPECT_EQ(sut.rounds, 0U);
     EXPECT_EQ(sut.base_corners, mesh.faces);
@@ -58,8 +57,8 @@ TEST(Simplify, does_nothing_to_a_mesh_that_is_small_enough)
 
 TEST(Simplify, stops_a_closed_component_at_a_tetrahedron)
 {
-    EXPECT_EQ(simplified(make_icosphere(2, 0.05), 1).base_faces.size(), 4U);
-    EXPECT_EQ(simplified(make_uv_sphere(6, 40), 1).base_faces.size(), 4U);
+    EXPECT_EQ(simplified(make_sphere(320, 0.05), 1).base_faces.size(), 4U);
+    EXPECT_EQ(simplified(make_needle_sphere(6, 40), 1).base_faces.size(), 4U);
 }
 
 TEST(Simplify, brings_an_open_component_down_to_one_face)
@@ -71,7 +70,7 @@ TEST(Simplify, brings_an_open_component_down_to_one_face)
 
 TEST(Simplify, keeps_the_genus)
 {
-    const Simplification sut = simplified(make_torus(30, 12), 1);
+    const Simplification sut = simplified(make_torus(720), 1);
     // No torus has fewer than 14 faces; the degree and star caps may end it earlier.
     EXPECT_GE(sut.base_faces.size(), 14U);
     EXPECT_LE(sut.base_faces.size(), 30U);
@@ -79,8 +78,8 @@ TEST(Simplify, keeps_the_genus)
 
 TEST(Simplify, lets_components_vanish_where_they_can_not_shrink)
 {
-    const QuantisedMesh pair = join(make_icosphere(1, 0), make_icosphere(2, 0), 70'000);
-    const QuantisedMesh spheres = join(pair, make_icosphere(0, 0), 140'000);
+    const QuantisedMesh pair = join(make_sphere(180, 0), make_sphere(320, 0), 70'000);
+    const QuantisedMesh spheres = join(pair, make_sphere(180, 0), 140'000);
     EXPECT_EQ(simplified(spheres, 12).base_faces.size(), 12U);
     EXPECT_EQ(simplified(spheres, 11).base_faces.size(), 8U);
     EXPECT_EQ(simplified(spheres, 1).base_faces.size(), 4U);
@@ -118,25 +117,25 @@ TEST(Simplify, leaves_what_has_no_collapse)
 TEST(Simplify, collapses_needles_and_poles_of_high_valence)
 {
     // The strict guard against thin faces alone would stop far above.
-    EXPECT_LE(simplified(make_uv_sphere(10, 800), 500).base_faces.size(), 500U);
-    EXPECT_LE(simplified(make_uv_sphere(3, 1500), 100).base_faces.size(), 100U);
+    EXPECT_LE(simplified(make_needle_sphere(10, 800), 500).base_faces.size(), 500U);
+    EXPECT_LE(simplified(make_needle_sphere(3, 1500), 100).base_faces.size(), 100U);
 }
 
 TEST(Simplify, collapses_a_mesh_whose_vertices_share_one_place)
 {
-    QuantisedMesh mesh = make_icosphere(2, 0);
+    QuantisedMesh mesh = make_sphere(320, 0);
     mesh.positions.assign(mesh.positions.size(), {5, 6, 7});
     EXPECT_LE(simplified(mesh, 20).base_faces.size(), 20U);
 }
 
 TEST(Simplify, needs_few_rounds)
 {
-    EXPECT_LE(simplified(make_icosphere(5, 0.02), 200).rounds, 45U);
+    EXPECT_LE(simplified(make_sphere(20'480, 0.02), 200).rounds, 45U);
 }
 
 TEST(Simplify, gives_the_same_for_any_number_of_threads)
 {
-    for (const QuantisedMesh& mesh : {make_icosphere(4, 0.05), make_uv_sphere(20, 150)})
+    for (const QuantisedMesh& mesh : {make_sphere(5'120, 0.05), make_needle_sphere(20, 150)})
     {
         const Simplification one = simplified(mesh, 100, 1);
         for (const unsigned threads : {2U, 3U, 8U})
@@ -148,7 +147,7 @@ TEST(Simplify, gives_the_same_for_any_number_of_threads)
 
 TEST(Simplify, reports_progress_and_can_be_cancelled)
 {
-    const QuantisedMesh mesh = make_icosphere(3, 0);
+    const QuantisedMesh mesh = make_sphere(1'280, 0);
     std::vector<std::size_t> left;
     SimplifyOptions options;
     options.base_faces = 100;
@@ -169,7 +168,7 @@ TEST(Simplify, reports_progress_and_can_be_cancelled)
 
 TEST(Simplify, refuses_options_out_of_range)
 {
-    const QuantisedMesh mesh = make_icosphere(0, 0);
+    const QuantisedMesh mesh = make_sphere(180, 0);
     SimplifyOptions options;
     options.base_faces = 0;
     EXPECT_EQ(simplify(mesh, options).error().text, "base_faces is 0; it must be 1 or more");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "host_tools/simplify/triangle_cut.hpp"
-#include "tests/unit/host_simplify/distance_oracle.hpp"
+#include "tests/shared/distance_oracle.hpp"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -30,14 +30,9 @@ Part whole_part(PointColumns& points)
     return part;
 }
 
-std::array<LongPoint, 3> corners_of(const Part& part)
+Triangle corners_of(const Part& part)
 {
-    std::array<LongPoint, 3> corners{};
-    for (std::size_t i = 0; i < 3; ++i)
-    {
-        corners[i] = to_long(kFrame.point(part.at[i]));
-    }
-    return corners;
+    return {kFrame.point(part.at[0]), kFrame.point(part.at[1]), kFrame.point(part.at[2])};
 }
 
 } // namespace
@@ -84,7 +79,7 @@ TEST(TriangleCut, parts_cover_the_part_up_to_the_stated_rounding)
             for (const Part& part : parts)
             {
                 const double gap = part.generation * kFrame.rounding() + 1e-10;
-                least = std::min(least, oracle_distance(to_long(p), corners_of(part)) -
+                least = std::min(least, DistanceOracle::distance(p, corners_of(part)) -
                                             static_cast<long double>(gap));
             }
             ASSERT_LE(least, 0);
