@@ -6,7 +6,10 @@
 /// The validators look at the cuts, too.
 
 #include "rt_core/forest/validate_forest.hpp"
+#include "rt_core/query/surface_query.hpp"
 #include "tests/shared/loaded_forest.hpp"
+#include "tests/shared/manifold.hpp"
+#include "tests/shared/owned_surface.hpp"
 
 #include <gtest/gtest.h>
 
@@ -36,22 +39,15 @@ std::multiset<Face> canonical_set(const std::vector<Face>& faces)
     return set;
 }
 
-/// Every directed edge once, so each edge has at most two faces, in opposite directions.
-bool is_manifold(LoadedForest& sut)
+std::string manifold_fault_of(LoadedForest& sut)
 {
-    std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+    std::vector<Corners> faces;
     for (const PrimId prim : sut.active())
     {
-        const auto& corners = sut.forest().face(prim).corners;
-        for (std::size_t i = 0; i < 3; ++i)
-        {
-            if (!edges.insert({corners[i].value, corners[(i + 1) % 3].value}).second)
-            {
-                return false;
-            }
-        }
+        const auto& [a, b, c] = sut.forest().face(prim).corners;
+        faces.push_back({a.value, b.value, c.value});
     }
-    return true;
+    return manifold_fault(faces);
 }
 
 class ForestProperties : public testing::TestWithParam<std::size_t>
@@ -103,7 +99,8 @@ TEST_P(ForestProperties, splits_and_merges_undone_in_any_legal_order_return_the_
         }
         if (step % 1'000 == 999)
         {
-            ASSERT_TRUE(is_manifold(sut)) << model_.name << " seed " << seed_ << " step " << step;
+            ASSERT_EQ(manifold_fault_of(sut), "")
+                << model_.name << " seed " << seed_ << " step " << step;
             ASSERT_STREQ(text_of(find_flaw(sut.forest())).data(), "") << "step " << step;
         }
     }
@@ -176,6 +173,69 @@ TEST_P(ForestProperties, the_record_that_last_changed_a_face_is_its_finest_corne
 }
 
 INSTANTIATE_TEST_SUITE_P(small_models, ForestProperties, testing::Range<std::size_t>(0, 6));
+
+/// I4: a certified ball equals the full mesh.
+class CertifiedBall : public testing::TestWithParam<std::size_t>
+{
+};
+
+TEST_P(CertifiedBall, holds_the_same_faces_and_distances_as_the_full_mesh)
+{
+    const TestModel& model = small_model(GetParam());
+    const std::uint64_t seed = seed_of(500 + GetParam());
+    SCOPED_TRACE(model.name + " seed " + std::to_string(seed));
+    Random random = Random::seeded(seed);
+    FrameRig sut(model, {});
+    OwnedSurface surface;
+    int exact = 0;
+    int answered = 0;
+    for (int trial = 0; trial < 60; ++trial)
+    {
+        const Face& face = model.faces[random.below(model.faces.size())];
+        const Vec3 place = to_vec3(face[1]) + random.in_cube(0.01 * model.diagonal_m);
+        sut.settle(place, {}, 400);
+        const double reach = random.between(0.008, 0.015) * model.diagonal_m;
+        const FrameOutput output = sut.step(place);
+        const Vec3 center = output.tools[0].proxy_m;
+        WalkBudget budget{100'000, 1'000'000};
+        QueryMemory memory;
+        gather_surface(sut.model().tree, center, reach, memory, budget, surface);
+        const double radius = surface.answer.certified_radius_m;
+        std::set<Face> found;
+        for (std::uint32_t i = 0; i < surface.count; ++i)
+        {
+            found.insert(surface.triangles[i].corners_m);
+        }
+        // A face at the very edge of the ball may fall on either side of it by rounding.
+        const double slack = 1e-12 * model.diagonal_m;
+        for (const Face& source : model.faces)
+        {
+            if (brute_distance(center, source) < static_cast<long double>(radius - slack))
+            {
+                Face turned = source;
+                bool present = false;
+                for (int turn = 0; turn < 3; ++turn)
+                {
+                    std::rotate(turned.begin(), turned.begin() + 1, turned.end());
+                    present = present || found.contains(turned);
+                }
+                ASSERT_TRUE(present) << "trial " << trial << ": a source face is missing";
+            }
+        }
+        answered += surface.answer.kind == AnswerKind::decided ? 1 : 0;
+        if (surface.answer.kind == AnswerKind::exact)
+        {
+            ++exact;
+            ++answered;
+            const auto truth = static_cast<double>(brute_distance(center, model.faces));
+            EXPECT_NEAR(surface.answer.upper_m, truth, 1e-14) << "trial " << trial;
+        }
+    }
+    EXPECT_GT(exact, 3) << "of 60 trials";
+    EXPECT_GT(answered, 50) << "of 60 trials";
+}
+
+INSTANTIATE_TEST_SUITE_P(small_models, CertifiedBall, testing::Range<std::size_t>(0, 6));
 
 } // namespace
 } // namespace tactus::test

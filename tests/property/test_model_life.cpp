@@ -4,8 +4,8 @@
 /// Models of which a frame starts with the header alone: they come when a tool is near, enter in
 /// slices, answer truly from the first frame on, and go again.
 
-#include "platform/recording/replay.hpp"
 #include "platform/recording/replay_door.hpp"
+#include "tests/property/replay_checks.hpp"
 #include "tests/shared/face_tree.hpp"
 #include "tests/shared/frame_rig.hpp"
 #include "tests/shared/random.hpp"
@@ -260,11 +260,7 @@ TEST(ModelLife, a_model_whose_host_is_silent_gives_its_room_to_others_and_comes_
     EXPECT_EQ(sut.output.models[0].stage, ModelStage::known);
     sut.rig->link({0}).regain_host();
     EXPECT_LT(sut.until(ModelStage::resident, 0, 0, 0.05), 400U);
-    const auto recording = Recording::parse(sut.rig->finish_recording(), "silent");
-    ASSERT_TRUE(recording) << recording.error().text;
-    const auto report = replay(recording.value(), nullptr, {});
-    ASSERT_TRUE(report);
-    EXPECT_FALSE(report.value().difference) << replay_line(recording.value(), report.value());
+    expect_same_again(sut.rig->finish_recording());
 }
 
 /// All hosts are silent, and there is room for one. The nearest waits for that of the next, which
@@ -648,12 +644,7 @@ TEST(ModelLife, a_run_with_models_that_come_and_go_replays_bit_for_bit)
     }
     EXPECT_TRUE(std::ranges::any_of(sut.output.models, [](const ModelOutput& model)
                                     { return model.stage != ModelStage::resident; }));
-    const auto recording = Recording::parse(sut.rig->finish_recording(), "guests");
-    ASSERT_TRUE(recording) << recording.error().text;
-    const auto report = replay(recording.value(), nullptr, {});
-    ASSERT_TRUE(report);
-    EXPECT_EQ(report.value().frames, 300U);
-    EXPECT_FALSE(report.value().difference) << replay_line(recording.value(), report.value());
+    expect_same_again(sut.rig->finish_recording(), 300);
 }
 
 /// A frame that wants a base mesh, and a replay's door before it.

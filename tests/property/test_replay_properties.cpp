@@ -5,10 +5,10 @@
 /// with one bit changed is noticed.
 
 #include "platform/recording/frame_encoder.hpp"
-#include "platform/recording/replay.hpp"
+#include "tests/property/replay_checks.hpp"
 #include "tests/shared/altered_recording.hpp"
-#include "tests/shared/frame_rig.hpp"
-#include "tests/shared/random.hpp"
+#include "tests/stability/hardships.hpp"
+#include "tests/stability/random_motion.hpp"
 
 #include <gtest/gtest.h>
 
@@ -21,95 +21,47 @@ namespace tactus::test
 namespace
 {
 
-struct Hardship
-{
-    const char* name;
-    Budgets budgets;
-    std::size_t pool_bytes;
-    LoopbackFaults faults;
-    std::uint32_t courier_steps;
-    bool static_when_it_fits{false};
-    Prediction prediction{Prediction::automatic};
-};
+constexpr std::array kHardships{"usual", "starved", "small-pools", "lossy-link", "static"};
 
-std::vector<Hardship> hardships()
-{
-    Budgets starved;
-    starved.splits = 4;
-    starved.merges = 4;
-    starved.nodes = 12;
-    starved.triangles = 60;
-    starved.pages = 1;
-    starved.requests = 2;
-    starved.regions = 1;
-    LoopbackFaults bad;
-    bad.loss = 0.2;
-    bad.duplicates = 0.1;
-    bad.damage = 0.05;
-    bad.mix_ups = 0.05;
-    bad.delay_polls_max = 200;
-    LoopbackFaults uneven;
-    uneven.delay_polls_max = 40;
-    return {
-        {"usual", {}, std::size_t{8} << 20U, {}, 4},
-        {"starved", starved, std::size_t{8} << 20U, uneven, 1},
-        {"tiny-pools", {}, std::size_t{400} << 10U, uneven, 2, false, Prediction::local_neighbours},
-        {"bad-link", {}, std::size_t{600} << 10U, bad, 3},
-        {"static", {}, std::size_t{8} << 20U, uneven, 2, true}};
-}
-
-/// A goal that slides, leaps and rests, and a sample that is invalid now and then.
+/// RandomMotion's hand over an object that stays where it is.
 class Wander
 {
 public:
-    Wander(const TestModel& model, Random& random) : model_(model), random_(random) { leap(); }
-
+    Wander(const TestModel& model, Random& random)
+        : tree_(model.faces), motion_(model, tree_, 0.01 * model.diagonal_m, 1.0, random)
+    {
+    }
     Vec3 next()
     {
-        const double dice = random_.between(0.0, 1.0);
-        if (dice < 0.02)
-        {
-            leap();
-        }
-        place_ += dice < 0.7 ? velocity_ : Vec3(0.0, 0.0, 0.0);
-        return place_;
+        const Moment moment = motion_.next();
+        return to_model(moment.pose, moment.goal_m);
     }
 
 private:
-    void leap()
-    {
-        const Face& face = model_.faces[random_.below(model_.faces.size())];
-        place_ = to_vec3(face[0]) + random_.in_cube(0.01 * model_.diagonal_m);
-        velocity_ = random_.in_cube(0.004 * model_.diagonal_m);
-    }
-
-    const TestModel& model_;
-    Random& random_;
-    Vec3 place_{0.0, 0.0, 0.0};
-    Vec3 velocity_{0.0, 0.0, 0.0};
+    FaceTree tree_;
+    RandomMotion motion_;
 };
 
 constexpr int kFrames = 400;
 
-std::vector<std::byte> record_run(const TestModel& model, const Hardship& hardship,
-                                  std::uint64_t seed)
+/// Rehearsals change nothing, so the replay needs none.
+std::vector<std::byte> record_run(const TestModel& model, const char* name, std::uint64_t seed)
 {
     Random random = Random::seeded(seed);
     Wander wander(model, random);
-    RigOptions options;
-    options.pool_bytes = hardship.pool_bytes;
-    options.faults = hardship.faults;
+    const Hardship hardship = hardship_named(model, name);
+    RigOptions options = hardship.rig;
     options.faults.seed = seed;
-    options.courier_steps_per_frame = hardship.courier_steps;
+    options.courier_steps_per_frame = 1 + random.below(4U);
     options.record = true;
-    options.static_when_it_fits = hardship.static_when_it_fits;
-    options.prediction = hardship.prediction;
+    options.prediction = random.one_in(2) ? Prediction::automatic : Prediction::local_neighbours;
     FrameRig rig(model, options);
     Budgets budgets = hardship.budgets;
     for (int frame = 0; frame < kFrames; ++frame)
     {
         // Budgets follow what frames cost in a real run, so they change here, too.
         budgets.splits = frame % 50 == 49 ? 1U : hardship.budgets.splits;
+        rig.frame().rehearse();
         static_cast<void>(rig.step(wander.next(), budgets));
         for (std::size_t more = random.below(3); more > 0; --more)
         {
@@ -123,32 +75,21 @@ class Replay : public testing::TestWithParam<std::tuple<std::size_t, std::size_t
 {
 protected:
     [[nodiscard]] static std::size_t model_index() { return std::get<0>(GetParam()); }
-    [[nodiscard]] static Hardship hardship() { return hardships()[std::get<1>(GetParam())]; }
+    [[nodiscard]] static const char* hardship() { return kHardships[std::get<1>(GetParam())]; }
 };
 
-TEST_P(Replay, gives_every_frame_again_bit_for_bit)
+TEST_P(Replay, gives_every_frame_again_bit_for_bit_and_without_rehearsals)
 {
     const TestModel& model = small_model(model_index());
     const std::uint64_t seed = seed_of(500 + 10 * model_index() + std::get<1>(GetParam()));
-    SCOPED_TRACE(model.name + " " + hardship().name + " seed " + std::to_string(seed));
-    const auto recording = Recording::parse(record_run(model, hardship(), seed), "rig");
-    ASSERT_TRUE(recording) << recording.error().text;
-    EXPECT_EQ(recording.value().frame_count(), std::uint64_t{kFrames});
-
-    const auto replayed = replay(recording.value());
-
-    ASSERT_TRUE(replayed) << replayed.error().text;
-    EXPECT_EQ(replayed.value().frames, std::uint64_t{kFrames});
-    if (const auto& difference = replayed.value().difference)
-    {
-        FAIL() << "frame " << difference->frame << ": " << difference->text;
-    }
+    SCOPED_TRACE(model.name + " " + hardship() + " seed " + std::to_string(seed));
+    expect_same_again(record_run(model, hardship(), seed), kFrames);
 }
 
 INSTANTIATE_TEST_SUITE_P(Runs, Replay,
                          testing::Combine(testing::Values(std::size_t{0}, std::size_t{2},
                                                           std::size_t{3}, std::size_t{5}),
-                                          testing::Range(std::size_t{0}, hardships().size())));
+                                          testing::Range(std::size_t{0}, kHardships.size())));
 
 /// Slots go from one model to another and back, in pools that are too small for both.
 TEST(ReplayOfTwoModels, gives_every_frame_again_though_they_take_each_other_s_slots)
@@ -189,24 +130,12 @@ TEST(ReplayOfTwoModels, gives_every_frame_again_though_they_take_each_other_s_sl
     EXPECT_GT(evictions, 20U);
     EXPECT_GT(most[0], rig.model({0}).capacities.pages) << "it had its own pages only";
     EXPECT_GT(most[1], rig.model({1}).capacities.pages) << "it had its own pages only";
-    const auto recording = Recording::parse(rig.finish_recording(), "rig");
-    ASSERT_TRUE(recording) << recording.error().text;
-
-    const auto replayed = replay(recording.value());
-
-    ASSERT_TRUE(replayed) << replayed.error().text;
-    EXPECT_EQ(replayed.value().frames, std::uint64_t{2 * kFrames});
-    if (const auto& difference = replayed.value().difference)
-    {
-        FAIL() << "frame " << difference->frame << ": " << difference->text;
-    }
+    expect_same_again(rig.finish_recording(), 2 * kFrames);
 }
 
 void expect_noticed(const std::vector<std::byte>& bytes, std::uint64_t frame)
 {
-    const auto recording = Recording::parse(bytes, "altered");
-    ASSERT_TRUE(recording) << recording.error().text;
-    const auto replayed = replay(recording.value());
+    const auto replayed = replay(parsed(bytes));
     ASSERT_TRUE(replayed) << replayed.error().text;
     ASSERT_TRUE(replayed.value().difference.has_value());
     EXPECT_EQ(replayed.value().difference->frame, frame) << replayed.value().difference->text;
@@ -216,8 +145,7 @@ void expect_noticed(const std::vector<std::byte>& bytes, std::uint64_t frame)
 TEST(ReplayOfAnAlteredRecording, is_noticed_in_the_frame_that_was_altered)
 {
     const TestModel& model = small_model(0);
-    const auto recording = Recording::parse(record_run(model, hardships()[0], 900), "rig");
-    ASSERT_TRUE(recording) << recording.error().text;
+    const Recording recording = parsed(record_run(model, "usual", 900));
     const auto flip_from_end = [](std::size_t bytes) {
         return [bytes](std::span<std::byte> coded) { coded[coded.size() - bytes] ^= std::byte{1}; };
     };
@@ -225,21 +153,20 @@ TEST(ReplayOfAnAlteredRecording, is_noticed_in_the_frame_that_was_altered)
     {
         SCOPED_TRACE("frame " + std::to_string(frame));
         // The goal's x; a bit of the state hash; one of the last output hash.
-        expect_noticed(alter_frame(recording.value(), frame, change_goal), frame);
-        expect_noticed(alter_frame(recording.value(), frame, flip_from_end(40)), frame);
-        expect_noticed(alter_frame(recording.value(), frame, flip_from_end(1)), frame);
+        expect_noticed(alter_frame(recording, frame, change_goal), frame);
+        expect_noticed(alter_frame(recording, frame, flip_from_end(40)), frame);
+        expect_noticed(alter_frame(recording, frame, flip_from_end(1)), frame);
     }
 }
 
 TEST(ReplayOfAnAlteredRecording, notices_another_budget_once_it_is_spent)
 {
     const TestModel& model = small_model(0);
-    const auto recording = Recording::parse(record_run(model, hardships()[0], 900), "rig");
-    ASSERT_TRUE(recording) << recording.error().text;
+    const Recording recording = parsed(record_run(model, "usual", 900));
     constexpr std::size_t kTool = 38; // Not turned, and of no device.
     const auto no_splits = [](std::span<std::byte> coded)
     { coded[4 + 1 + 8 + kTool] = std::byte{0}; };
-    const auto parsed = Recording::parse(alter_frame(recording.value(), 0, no_splits), "altered");
+    const auto parsed = Recording::parse(alter_frame(recording, 0, no_splits), "altered");
     ASSERT_TRUE(parsed) << parsed.error().text;
 
     const auto replayed = replay(parsed.value());
@@ -251,8 +178,7 @@ TEST(ReplayOfAnAlteredRecording, notices_another_budget_once_it_is_spent)
 TEST(ReplayOfAnAlteredRecording, ends_whatever_its_frames_say)
 {
     const TestModel& model = small_model(0);
-    const auto recording = Recording::parse(record_run(model, hardships()[3], 900), "rig");
-    ASSERT_TRUE(recording) << recording.error().text;
+    const Recording recording = parsed(record_run(model, "lossy-link", 900));
     const std::uint64_t seed = seed_of(901);
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random = Random::seeded(seed);
@@ -267,8 +193,8 @@ TEST(ReplayOfAnAlteredRecording, ends_whatever_its_frames_say)
                     static_cast<std::byte>(random.below(256));
             }
         };
-        const auto altered = Recording::parse(
-            alter_frame(recording.value(), random.below(kFrames), scribble), "altered");
+        const auto altered =
+            Recording::parse(alter_frame(recording, random.below(kFrames), scribble), "altered");
         if (altered)
         {
             const auto replayed = replay(altered.value());

@@ -32,6 +32,11 @@ Mat3 rotation_about(const Vec3& axis, double angle)
     return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
 }
 
+Vec3 origin_of(const TestModel& model)
+{
+    return {model.origin_m[0], model.origin_m[1], model.origin_m[2]};
+}
+
 /// A hand that comes from one place to another, in the source's frame, and stays.
 struct Press
 {
@@ -75,7 +80,7 @@ protected:
     {
         SCOPED_TRACE(tool.name + " on " + model.name + ", press " + std::to_string(errors.presses));
         FrameRig rig = rig_of(tool, model);
-        const Vec3 origin(model.origin_m[0], model.origin_m[1], model.origin_m[2]);
+        const Vec3 origin = origin_of(model);
         const Vec3 axis_angle = [&]
         {
             const Eigen::AngleAxisd way(hand.to * hand.from.transpose());
@@ -150,6 +155,45 @@ TEST_F(RigidRest, a_box_and_a_capsule_on_a_plate_and_over_its_edge)
     EXPECT_LT(errors.torque, 5e-3);
 }
 
+TEST_F(RigidRest, flat_on_a_plate_is_at_the_radius_pushes_by_the_depth_and_lets_go_at_once)
+{
+    const TestModel& plate = test_model("rest-plate", make_shape(Shape::plate, 2'000).value(), 100);
+    const Vec3 half(0.012, 0.008, 0.004);
+    for (const SolidCore& tool :
+         {box_core("box", half, 0.001), box_core("box without a radius", 2.0 * half, 0.0)})
+    {
+        SCOPED_TRACE(tool.name);
+        FrameRig rig = rig_of(tool, plate);
+        ToolState state;
+        const Vec3 above(0.05, 0.043, 0.05);
+        const Vec3 goal = above - Vec3(0, 0, 0.045);
+        FrameOutput output;
+        for (int i = 0; i < 600; ++i)
+        {
+            state.position_m = above + std::min(1.0, i / 300.0) * (goal - above) - origin_of(plate);
+            output = rig.step(std::span(&state, 1), {});
+        }
+        const ToolOutput pressed = output.tools[0];
+        const double radius_m = std::max(tool.radius_m, kLeastSkin * 2.0 * half.norm());
+        const double depth_m = pressed.proxy_m.z() - state.position_m.z();
+        EXPECT_TRUE(pressed.in_contact && !pressed.frozen);
+        EXPECT_NEAR(output.pairs[0].lower_m, radius_m, 1e-3 * radius_m);
+        EXPECT_GT(depth_m, 0.002);
+        EXPECT_LE((pressed.force_n - Vec3(0, 0, 500.0 * depth_m)).norm(), 1e-3);
+        EXPECT_LE(pressed.torque_nm.norm(), 1e-4);
+        EXPECT_LE((pressed.proxy_rotation - Mat3::Identity()).norm(), 1e-4);
+        state.position_m = above + Vec3(0, 0, 0.2) - origin_of(plate);
+        ToolOutput away;
+        for (int i = 0; i < 100; ++i)
+        {
+            away = rig.step(std::span(&state, 1), {}).tools[0];
+        }
+        EXPECT_EQ(away.proxy_m, state.position_m);
+        EXPECT_EQ(away.force_n, Vec3(0, 0, 0));
+        EXPECT_EQ(away.torque_nm, Vec3(0, 0, 0));
+    }
+}
+
 TEST_F(RigidRest, a_peg_with_a_fifth_of_a_millimetre_of_room)
 {
     const TestModel& socket =
@@ -174,7 +218,7 @@ TEST_F(RigidRest, in_a_tight_fit_it_follows_late_and_tells_by_how_much)
     const TestModel& socket =
         test_model("rest-socket", make_shape(Shape::socket, 2'000).value(), 100);
     const TestModel& peg = test_model("rest-pin", make_shape(Shape::peg, 600).value(), 100);
-    const Vec3 origin(socket.origin_m[0], socket.origin_m[1], socket.origin_m[2]);
+    const Vec3 origin = origin_of(socket);
     constexpr double kJump_m = 0.01;
     for (const SolidCore& tool : {pin(0.01, 0.008), mesh_core("mesh", peg, 1e-4)})
     {
@@ -233,13 +277,6 @@ TEST_F(RigidRest, a_cylinder_on_a_cylinder)
 
 TEST_F(RigidRest, a_box_a_hull_and_a_mesh_on_bumps_and_on_teeth)
 {
-    const std::array<Vec3, 4> s{Vec3(0, 0, -0.02), Vec3(0.006, 0, 0.01), Vec3(-0.004, 0.005, 0.01),
-                                Vec3(-0.004, -0.005, 0.01)};
-    const SolidCore hull{
-        "hull",
-        Hull::create(s).value(),
-        {{s[0], s[1], s[2]}, {s[0], s[2], s[3]}, {s[0], s[3], s[1]}, {s[1], s[2], s[3]}},
-        0.001};
     TriangleMesh ball = make_uv_sphere(8, 10).value();
     for (auto& corner : ball.positions)
     {
@@ -253,8 +290,8 @@ TEST_F(RigidRest, a_box_a_hull_and_a_mesh_on_bumps_and_on_teeth)
         test_model("rest-bumps", make_shape(Shape::bumpy_sphere, 2'000).value(), 100);
     const TestModel& gear = test_model("rest-gear", make_shape(Shape::gear, 1'500).value(), 100);
     Random random(2'512);
-    for (const SolidCore& tool : {box_core("box", Vec3(0.012, 0.008, 0.004), 0.001), hull,
-                                  mesh_core("mesh", probe, 0.0015)})
+    for (const SolidCore& tool : {box_core("box", Vec3(0.012, 0.008, 0.004), 0.001),
+                                  spike_core(0.001), mesh_core("mesh", probe, 0.0015)})
     {
         for (const TestModel* model : {&bumps, &gear})
         {

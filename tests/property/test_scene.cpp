@@ -42,9 +42,10 @@ TEST(Scene, of_objects_that_come_move_and_go_is_answered_truly_and_refuses_what_
     SceneFigures all;
     for (std::uint64_t trial = 0; trial < 4; ++trial)
     {
-        const Hardship usual{"late", {}, scene_options(small_model(0).diagonal_m, 3)};
-        all.add(run_scene_trial(
-            {{&small_model(0), &small_model(2)}, usual, 3, seed_of(2'100 + trial), 800}));
+        const std::vector<const TestModel*> models{&small_model(2 * trial % kSmallModels),
+                                                   &small_model(2 * (trial + 1) % kSmallModels)};
+        const Hardship usual{"late", {}, scene_options(models[0]->diagonal_m, 3)};
+        all.add(run_scene_trial({models, usual, 3, seed_of(2'100 + trial), 800}));
     }
     EXPECT_TRUE(all.truth.holds()) << all.truth.summary();
     EXPECT_EQ(all.truth.trials, 3'200U);

@@ -4,8 +4,7 @@
 /// Scenes with any set of a frame's shortcuts: exact answers, contacts and forces are as with all
 /// of them, to the bit where the query starts warm.
 
-#include "tests/shared/frame_rig.hpp"
-#include "tests/shared/random.hpp"
+#include "tests/property/frame_checks.hpp"
 #include "tests/stability/scene_trial.hpp"
 
 #include <gtest/gtest.h>
@@ -356,6 +355,59 @@ TEST(SceneShortcuts, change_nothing_that_is_known_of_models_that_stream)
     EXPECT_GT(compared.touches, 200U);
     EXPECT_GT(compared.contacts, 1'000U);
     EXPECT_GT(compared.came, 16U);
+}
+
+/// The other differences: answers hold all the same (I5).
+TEST(FrameTolerance, splits_less_and_says_less)
+{
+    const TestModel& model = small_model(0);
+    const double tolerance_m = 2e-3 * model.diagonal_m;
+    const std::uint64_t seed = seed_of(1'790);
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random = Random::seeded(seed);
+    RigOptions options;
+    options.tools = {{0.02 * model.diagonal_m, 500.0, 8.0, 10.0}};
+    options.tools[0].passes_through = true;
+    RigOptions tolerant = options;
+    tolerant.variant.tolerance_m = tolerance_m;
+    for (int place = 0; place < 20; ++place)
+    {
+        FrameRig usual(model, options);
+        FrameRig sut(model, tolerant);
+        const Vec3 goal = place_at_distance(model, random, 0.01 * model.diagonal_m);
+        usual.settle(goal, {}, 1'000);
+        sut.settle(goal, {}, 1'000);
+        const PairOutput pair = sut.step(goal).pairs[0];
+        const long double truth = brute_distance(pair.point_m, model.faces);
+        EXPECT_LE(static_cast<long double>(pair.lower_m), truth);
+        EXPECT_GE(static_cast<long double>(pair.upper_m), truth);
+        EXPECT_NE(pair.kind, AnswerKind::exact);
+        EXPECT_LT(sut.model().forest.refined_records(), usual.model().forest.refined_records());
+    }
+}
+
+TEST(FrameFixedRadius, splits_every_face_within_it)
+{
+    const TestModel& model = small_model(0);
+    const double radius_m = 0.02 * model.diagonal_m;
+    const std::uint64_t seed = seed_of(1'791);
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random = Random::seeded(seed);
+    RigOptions options;
+    options.tools = {{radius_m, 500.0, 8.0, 10.0}};
+    options.tools[0].passes_through = true;
+    std::uint32_t last = 0;
+    const Vec3 goal = place_at_distance(model, random, 0.005 * model.diagonal_m);
+    for (const double factor : {1.0, 2.0, 4.0})
+    {
+        options.variant.fixed_radius = factor;
+        FrameRig sut(model, options);
+        sut.settle(goal, {}, 2'000);
+        EXPECT_TRUE(answer_is_sound(model, sut.step(goal)));
+        const std::uint32_t refined = sut.model().forest.refined_records();
+        EXPECT_GT(refined, last);
+        last = refined;
+    }
 }
 
 } // namespace

@@ -7,94 +7,32 @@
 #include "tests/property/frame_checks.hpp"
 
 #include <array>
-#include <memory>
-#include <optional>
 
 namespace tactus::test
 {
 namespace
 {
 
-/// One frame over two copies of a model, each an object of its own, and one tool.
-class TwoModels
+/// One tool and two copies of a model, each an object of its own.
+FrameRig two_models(const TestModel& model)
 {
-public:
-    explicit TwoModels(const TestModel& model) : memory_(kBytes + Arena::kAlignment)
-    {
-        const auto address = reinterpret_cast<std::uintptr_t>(memory_.data());
-        const std::size_t skip = (Arena::kAlignment - address % Arena::kAlignment) % 64;
-        arena_.emplace(std::span(memory_).subspan(skip, kBytes));
-        std::vector<ModelHeader> headers;
-        for (ServedModel& served : served_)
-        {
-            served = serve_from_file(model.path, model.name, {}).value();
-            headers.push_back(ModelHeader::parse(served.header).value());
-        }
-        std::array<ModelCapacities, 2> capacities;
-        EXPECT_TRUE(try_plan(headers, kBytes / 3 * 2, 0, capacities));
-        std::array<ModelSource, 2> sources;
-        for (std::size_t i = 0; i < 2; ++i)
-        {
-            sources[i] = {served_[i].header, served_[i].base, capacities[i]};
-        }
-        const std::array<ToolSpec, 1> tools{{{0.03 * model.diagonal_m, 500.0, 8.0, 1.0}}};
-        const std::array<ObjectSpec, 2> objects{{{ModelId{0}}, {ModelId{1}}}};
-        FrameSetup setup;
-        setup.models = sources;
-        setup.objects = objects;
-        setup.tools = tools;
-        EXPECT_TRUE(Frame::start(frame_, *arena_, setup));
-        origin_m_ = frame_->model({0}).header.origin_m();
-        for (ObjectPose& pose : poses_)
-        {
-            pose.translation_m = -origin_m_; // Goals are of the model's frame.
-        }
-        courier_.emplace(*arena_, frame_->pools().slots, frame_->pools().cache.door, Log{});
-        for (std::uint32_t i = 0; i < 2; ++i)
-        {
-            Model& parts = frame_->model({i});
-            courier_->add(parts.header, parts.linker, *served_[i].link, model.name);
-        }
-    }
+    RigOptions options;
+    options.tools = {{0.03 * model.diagonal_m, 500.0, 8.0, 1.0}};
+    options.objects = {{ModelId{0}}, {ModelId{1}}};
+    return FrameRig(std::vector{&model, &model}, options);
+}
 
-    FrameOutput step(const Vec3& goal_m, const Budgets& budgets)
-    {
-        for (int i = 0; i < 4; ++i)
-        {
-            now_ns_ += 250'000;
-            courier_->step(now_ns_);
-        }
-        tools_[0].position_m = goal_m;
-        std::array<SceneChange, 2> moves;
-        for (std::uint32_t i = 0; i < 2; ++i)
-        {
-            moves[i].number = i;
-            moves[i].pose = poses_[i];
-        }
-        return frame_->run({tools_, moves, budgets});
-    }
-    void move_away(std::size_t object, double distance_m)
-    {
-        poses_[object].translation_m.z() = distance_m - origin_m_.z();
-    }
-    [[nodiscard]] std::uint32_t refined(std::uint32_t model) const
-    {
-        return frame_->model({model}).forest.refined_records();
-    }
+std::uint32_t refined(FrameRig& rig, std::uint32_t model)
+{
+    return rig.model({model}).forest.refined_records();
+}
 
-private:
-    static constexpr std::size_t kBytes = std::size_t{24} << 20U;
-
-    std::vector<std::byte> memory_;
-    std::optional<Arena> arena_;
-    std::array<ServedModel, 2> served_;
-    std::optional<Frame> frame_;
-    std::optional<Courier> courier_;
-    std::int64_t now_ns_{0};
-    std::array<ToolState, 1> tools_;
-    Vec3 origin_m_{0.0, 0.0, 0.0};
-    std::array<ObjectPose, 2> poses_;
-};
+ObjectPose away_from(const TestModel& model)
+{
+    ObjectPose away;
+    away.translation_m = Vec3(0.0, 0.0, 20.0 * model.diagonal_m);
+    return away;
+}
 
 /// To and fro along a line beside the surface, far enough that records are split and left behind.
 Vec3 swinging(const TestModel& model, const Vec3& place, int frame)
@@ -108,7 +46,7 @@ TEST(SharedBudgets, one_split_a_frame_refines_both_models)
 {
     const TestModel& model = small_model(0);
     Random random = Random::seeded(seed_of(800));
-    TwoModels sut(model);
+    FrameRig sut = two_models(model);
     const Vec3 place = place_at_distance(model, random, 0.0306 * model.diagonal_m);
     Budgets one;
     one.splits = 1;
@@ -116,7 +54,7 @@ TEST(SharedBudgets, one_split_a_frame_refines_both_models)
     for (int frame = 0; frame < 400; ++frame)
     {
         static_cast<void>(sut.step(swinging(model, place, frame), one));
-        refined_min = std::max(refined_min, std::min(sut.refined(0), sut.refined(1)));
+        refined_min = std::max(refined_min, std::min(refined(sut, 0), refined(sut, 1)));
     }
     EXPECT_GT(refined_min, 5U) << "one of the models was left coarse throughout";
 }
@@ -127,7 +65,7 @@ TEST(SharedBudgets, a_model_that_was_left_coarsens_while_another_is_scanned)
     for (std::size_t left = 0; left < 2; ++left)
     {
         Random random = Random::seeded(seed_of(801));
-        TwoModels sut(model);
+        FrameRig sut = two_models(model);
         const Vec3 place = place_at_distance(model, random, 0.0306 * model.diagonal_m);
         Budgets few;
         few.scanned = 8;
@@ -136,14 +74,46 @@ TEST(SharedBudgets, a_model_that_was_left_coarsens_while_another_is_scanned)
             static_cast<void>(sut.step(swinging(model, place, frame), few));
         }
         const auto which = static_cast<std::uint32_t>(left);
-        ASSERT_GT(sut.refined(which), 20U);
-        sut.move_away(left, 20.0 * model.diagonal_m);
-        for (int frame = 0; frame < 2'000 && sut.refined(which) > 0; ++frame)
+        ASSERT_GT(refined(sut, which), 20U);
+        sut.place_object(away_from(model), left);
+        for (int frame = 0; frame < 2'000 && refined(sut, which) > 0; ++frame)
         {
             static_cast<void>(sut.step(swinging(model, place, frame), few));
         }
-        EXPECT_EQ(sut.refined(which), 0U) << "model " << left;
+        EXPECT_EQ(refined(sut, which), 0U) << "model " << left;
     }
+}
+
+/// Everything that a ball needs comes at once, before the next frame looks.
+TEST(WorstCases, a_full_inbox_is_adopted_a_few_pages_a_frame)
+{
+    const TestModel& model = small_model(0);
+    RigOptions options;
+    options.tools = {{0.2 * model.diagonal_m, 500.0, 8.0, 1.0}};
+    FrameRig sut(model, options);
+    Budgets budgets;
+    budgets.requests = 64;
+    const Vec3 goal = to_vec3(model.faces[0][0]);
+    for (int frame = 0; frame < 2; ++frame) // First the index page, then the chunks it names.
+    {
+        static_cast<void>(sut.step_without_delivery({goal}, budgets, {}));
+        for (int i = 0; i < 100; ++i)
+        {
+            sut.deliver();
+        }
+    }
+    const auto waiting = static_cast<std::uint32_t>(sut.frame().pools().cache.door.arrived.size());
+    ASSERT_GT(waiting, 12U) << "not enough to fill a frame's share";
+    budgets.pages = 3;
+    std::uint32_t adopted = 0;
+    for (std::uint32_t frame = 0; frame < waiting / 3; ++frame)
+    {
+        const FrameOutput output = sut.step_without_delivery({goal}, budgets, {});
+        EXPECT_LE(output.work.pages_adopted, budgets.pages);
+        ASSERT_TRUE(answer_is_sound(model, output)) << "frame " << frame;
+        adopted += output.work.pages_adopted;
+    }
+    EXPECT_GE(adopted, waiting / 3) << "updates of links may stand between arrivals";
 }
 
 TEST(SharedPools, a_touch_uses_faces_that_another_model_brought_and_that_keeps_its_part)
@@ -157,13 +127,11 @@ TEST(SharedPools, a_touch_uses_faces_that_another_model_brought_and_that_keeps_i
     options.tools[0].passes_through = true;
     FrameRig rig({&model, &model}, options);
     const Vec3 place = to_vec3(model.faces[0][0]);
-    ObjectPose away;
-    away.translation_m = Vec3(0.0, 0.0, 20.0 * model.diagonal_m);
     std::array<std::uint32_t, 2> most{};
     for (std::size_t touched = 0; touched < 2; ++touched)
     {
         rig.place_object({}, touched);
-        rig.place_object(away, 1 - touched);
+        rig.place_object(away_from(model), 1 - touched);
         for (int frame = 0; frame < 400; ++frame)
         {
             const FrameOutput output = rig.step(place);
@@ -189,8 +157,6 @@ TEST(SharedPools, a_touch_takes_pages_that_are_of_no_use_elsewhere_but_for_those
     options.tools[0].passes_through = true;
     FrameRig rig({&model, &model}, options);
     const Vec3 place = to_vec3(model.faces[0][0]);
-    ObjectPose away;
-    away.translation_m = Vec3(0.0, 0.0, 20.0 * model.diagonal_m);
     const std::uint32_t brought = rig.model({0}).capacities.pages;
     ASSERT_EQ(brought, 8U);
     std::array<std::uint32_t, 2> used{};
@@ -198,7 +164,7 @@ TEST(SharedPools, a_touch_takes_pages_that_are_of_no_use_elsewhere_but_for_those
     {
         const std::size_t touched = turn % 2;
         rig.place_object({}, touched);
-        rig.place_object(away, 1 - touched);
+        rig.place_object(away_from(model), 1 - touched);
         const std::uint32_t had = used[1 - touched];
         for (int frame = 0; frame < 600; ++frame)
         {

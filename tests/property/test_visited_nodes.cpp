@@ -29,14 +29,9 @@ protected:
         make_face_grid(grid_sizes()[GetParam()].columns, grid_sizes()[GetParam()].rows);
 };
 
-TEST_P(VisitedNodes, of_the_8_wide_tree_keep_the_papers_bound)
+TEST_P(VisitedNodes, keep_the_papers_bound)
 {
-    expect_lemma_of_8_wide(grid_, 4'096, 5);
-}
-
-TEST_P(VisitedNodes, of_the_binary_tree_keep_the_papers_bound)
-{
-    expect_lemma_of_binary(grid_, 4'096, 5);
+    expect_lemma(grid_, 5);
 }
 
 INSTANTIATE_TEST_SUITE_P(grids, VisitedNodes, testing::Range<std::size_t>(0, 14));

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "tests/shared/test_model.hpp"
 #include "tests/shared/trial_figures.hpp"
 #include "tests/stability/hardships.hpp"
 #include "tests/stability/tool_oracle.hpp"
@@ -46,5 +47,10 @@ struct BracketVerdict
 };
 [[nodiscard]] BracketVerdict judge_bracket(const ToolOracle& oracle, const PairOutput& pair,
                                            const ObjectPose& pose);
+
+/// Frames that see the base mesh only, each at the vertex of the source that is farthest from the
+/// face of the base mesh that is nearest to it: one a face. The true distance is 0, so a face's
+/// bound that is too small makes L > 0, unless another face's covers the point.
+[[nodiscard]] TrialFigures query_worst_points(const TestModel& model);
 
 } // namespace tactus::test

@@ -2,14 +2,18 @@
 // Copyright the Tactus authors.
 #include "tests/stability/day_trial.hpp"
 
+#include "rt_core/abtree/ab_tree.hpp"
+#include "rt_core/forest/vertex_forest.hpp"
 #include "rt_core/limits.hpp"
 #include "tests/shared/frame_rig.hpp"
+#include "tests/shared/loaded_forest.hpp"
 #include "tests/shared/random.hpp"
 #include "tests/shared/surface_slide.hpp"
-#include "tests/stability/rest_state.hpp"
+#include "tests/shared/validate_tree.hpp"
 #include "tests/stability/trial_terms.hpp"
 
 #include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -18,6 +22,41 @@ namespace tactus::test
 
 namespace
 {
+
+/// What must be the same whenever nothing is refined.
+struct RestState
+{
+    std::uint64_t hash{0};
+    std::uint32_t refined{0};
+    std::uint32_t faces{0};
+    std::uint32_t blocks{0};
+    std::uint32_t nodes{0};
+
+    /// Blocks merge later than they part, so that a face that comes and goes moves nothing: which
+    /// blocks there are tells of what was before. They may not become more and more.
+    [[nodiscard]] bool is_again(const RestState& start) const
+    {
+        return hash == start.hash && refined == start.refined && faces == start.faces &&
+               blocks <= 2 * start.blocks && nodes <= 2 * start.nodes;
+    }
+};
+
+RestState state_of(const VertexForest& forest, const AbTree& tree)
+{
+    return {forest.state_hash(), forest.refined_records(), forest.active_faces(),
+            tree.blocks_used(), tree.nodes_used()};
+}
+
+std::string describe(const RestState& now, const RestState& start)
+{
+    const auto one = [](const RestState& state)
+    {
+        return "hash " + std::to_string(state.hash) + ", records " + std::to_string(state.refined) +
+               ", faces " + std::to_string(state.faces) + ", blocks " +
+               std::to_string(state.blocks) + ", nodes " + std::to_string(state.nodes);
+    };
+    return one(now) + "; at the start " + one(start);
+}
 
 constexpr std::size_t kPlaces = 8; ///< Different touches.
 
@@ -183,6 +222,49 @@ private:
     DayFigures figures_;
 };
 
+constexpr std::uint32_t kWave = 50'000;   ///< Operations between two returns to the base.
+constexpr std::uint32_t kRefitEvery = 64; ///< Operations, as many as a frame makes.
+
+/// The boxes, lists and links of the tree against the forest's faces.
+std::string faults_of(LoadedForest& sut)
+{
+    std::vector<ChangedFace> faces;
+    for (const PrimId prim : sut.active())
+    {
+        faces.push_back(sut.forest().describe(prim));
+    }
+    return tree_faults(sut.tree(), faces);
+}
+
+/// One operation, or several where a record needs others; `grows` is the wave's direction.
+std::uint32_t change(LoadedForest& sut, bool grows, Random& random)
+{
+    const RecordId record = sut.random_record(random);
+    if (sut.pages().is_refined(record))
+    {
+        return sut.forest().try_merge(record) ? 1 : 0;
+    }
+    return grows ? sut.split_with_dependencies(record) : 0;
+}
+
+std::uint32_t run_wave(LoadedForest& sut, Random& random)
+{
+    std::uint32_t operations = 0;
+    std::uint32_t refitted = 0;
+    // In shrinking phases fewer and fewer records can be merged, so attempts are counted there.
+    for (std::uint32_t attempt = 0; operations < kWave; ++attempt)
+    {
+        const bool grows = (attempt / 4'000) % 3 != 2;
+        operations += change(sut, grows, random);
+        if (operations - refitted >= kRefitEvery)
+        {
+            static_cast<void>(sut.tree().refit());
+            refitted = operations;
+        }
+    }
+    return operations;
+}
+
 } // namespace
 
 DayFigures run_day_trial(const TestModel& model, std::uint32_t touches, std::uint64_t seed)
@@ -193,6 +275,33 @@ DayFigures run_day_trial(const TestModel& model, std::uint32_t touches, std::uin
 TrialFigures run_press_trial(const TestModel& model, std::uint64_t frames, std::uint64_t seed)
 {
     return Day(model, seed).press(frames);
+}
+
+TrialFigures run_split_merge_trial(const TestModel& model, std::uint64_t operations,
+                                   std::uint64_t seed)
+{
+    TrialFigures figures;
+    figures.name = model.name + ", splits and merges";
+    figures.bound = 0.0;
+    figures.unit = "returns to another state";
+    Random random = Random::seeded(seed);
+    LoadedForest sut(model);
+    static_cast<void>(sut.tree().refit());
+    const RestState start = state_of(sut.forest(), sut.tree());
+    while (figures.trials < operations)
+    {
+        figures.trials += run_wave(sut, random);
+        figures.trials += sut.merge_everything(random);
+        static_cast<void>(sut.tree().refit());
+        const RestState now = state_of(sut.forest(), sut.tree());
+        if (const std::string faults = faults_of(sut); !now.is_again(start) || !faults.empty())
+        {
+            figures.flag(figures.name + ", TACTUS_SEED=" + std::to_string(seed) + ", after " +
+                         std::to_string(figures.trials) + ": " + describe(now, start) + faults);
+            figures.observe(static_cast<double>(figures.violations));
+        }
+    }
+    return figures;
 }
 
 } // namespace tactus::test

@@ -32,4 +32,10 @@ inline constexpr std::uint32_t kTouchFrames = 2'000;
 [[nodiscard]] TrialFigures run_press_trial(const TestModel& model, std::uint64_t frames,
                                            std::uint64_t seed);
 
+/// Random splits, each with its closure, and merges, in waves between base and source. After each
+/// wave everything is merged: then hash, faces, records and tree must be those of the start. Counts
+/// operations.
+[[nodiscard]] TrialFigures run_split_merge_trial(const TestModel& model, std::uint64_t operations,
+                                                 std::uint64_t seed);
+
 } // namespace tactus::test

@@ -88,12 +88,10 @@ public:
     GarbageRun(const TestModel& model, const CenterOracle& oracle, const Garbage& garbage,
                std::uint64_t seed)
         : oracle_(oracle)
-        , garbage_(garbage)
-        , seed_(seed)
-        , random_(Random::seeded(seed))
         , slide_(oracle.tree(), manner_of(model), start_of(oracle.tree(), model))
         , rig_(model, with_tool({}, kRadius_diag * model.diagonal_m))
         , safe_(rig_.frame().tool(0).spec(), 1e-9 * static_cast<double>(kFrame_ns))
+        , episodes_(garbage, seed, figures_)
     {
         figures_.name = model.name + ", " + garbage.name;
         figures_.unit = "of the largest force";
@@ -102,19 +100,12 @@ public:
 
     [[nodiscard]] TrialFigures run(std::uint32_t frames)
     {
-        for (frame_ = 0; frame_ < frames; ++frame_)
+        for (std::uint32_t frame = 0; frame < frames; ++frame)
         {
-            ToolState sample;
-            sample.position_m = slide_.next();
-            sample.sample_time_ns = kFrame_ns * (frame_ + 1'000);
-            if (!episodes_.begin_good_frame(random_))
-            {
-                garbage_.spoil(sample, good_, random_);
-            }
-            else
-            {
-                good_ = sample;
-            }
+            ToolState hand;
+            hand.position_m = slide_.next();
+            hand.sample_time_ns = kFrame_ns * (frame + 1'000);
+            const ToolState sample = episodes_.next(hand);
             check(rig_.step(std::span(&sample, 1), {}), sample.position_m);
         }
         return figures_;
@@ -143,60 +134,26 @@ private:
         const double force_n = safe_.step(tool, position_m).norm();
         figures_.observe(force_n / kForceMax_n);
         const double most_n = std::max(force_n, tool.force_n.norm());
-        expect(std::isfinite(most_n) && most_n <= kForceMax_n * (1.0 + kForceRounding),
-               "the force is " + std::to_string(most_n) + " N");
-        expect(tool.proxy_m.allFinite(), "the proxy is nowhere");
-        const BracketVerdict verdict = judge_bracket(oracle_, output.pairs[0], rig_.pose());
-        expect(verdict.error <= 1.0, verdict.text);
-        episodes_.is_one() ? check_episode(output, force_n) : check_recovery(output);
-    }
-
-    void check_episode(const FrameOutput& output, double force_n)
-    {
-        const auto tells = [&](FrameFault fault)
-        { return fault == FrameFault::none || has_fault(output.faults, fault); };
-        expect(episodes_.age() > 1 || tells(garbage_.fault), "the first frame tells no fault");
-        expect(episodes_.age() <= kHeldFrames || tells(garbage_.lasting_fault),
-               "no fault is told any more");
-        expect(!garbage_.fades || episodes_.age() < kGoneFrames || force_n == 0.0,
-               "there is force without a sample");
-        const bool has_jumped = has_fault(output.faults, FrameFault::tool_jumped);
-        expect(!has_jumped || force_n < kForceMax_n, "a jump pulls with all force");
-    }
-
-    void check_recovery(const FrameOutput& output)
-    {
-        if (frame_ < kRecoveryFrames || episodes_.age() < kRecoveryFrames)
-        {
-            return;
-        }
-        const AnswerKind kind = output.pairs[0].kind;
-        expect(kind == AnswerKind::exact || kind == AnswerKind::decided,
-               "no answer long after the episode");
-        constexpr FrameFault kOfTool =
-            FrameFault::tool_invalid | FrameFault::tool_stuck | FrameFault::tool_jumped;
-        expect(!has_fault(output.faults, kOfTool), "the tool's faults don't end");
-    }
-
-    void expect(bool holds, const std::string& otherwise)
-    {
-        if (!holds)
-        {
-            figures_.flag(figures_.name + ", TACTUS_SEED=" + std::to_string(seed_) + ", frame " +
-                          std::to_string(frame_) + ", " + episodes_.text() + otherwise);
-        }
+        episodes_.expect(std::isfinite(most_n) && most_n <= kForceMax_n * (1.0 + kForceRounding),
+                         "the force is " + std::to_string(most_n) + " N");
+        episodes_.expect(tool.proxy_m.allFinite(), "the proxy is nowhere");
+        const PairOutput& pair = output.pairs[0];
+        const BracketVerdict verdict = judge_bracket(oracle_, pair, rig_.pose());
+        episodes_.expect(verdict.error <= 1.0, verdict.text);
+        const bool has_jumped =
+            episodes_.is_one() && has_fault(output.faults, FrameFault::tool_jumped);
+        episodes_.expect(!has_jumped || force_n < kForceMax_n, "a jump pulls with all force");
+        const bool is_answered = pair.kind == AnswerKind::exact || pair.kind == AnswerKind::decided;
+        episodes_.expect(!episodes_.is_recovered() || is_answered,
+                         "no answer long after the episode");
+        episodes_.check(output, force_n != 0.0);
     }
 
     const CenterOracle& oracle_;
-    const Garbage& garbage_;
-    std::uint64_t seed_;
-    Random random_;
     SurfaceSlide slide_;
     FrameRig rig_;
     SafeForce safe_;
     TrialFigures figures_;
-    ToolState good_;
-    std::uint32_t frame_{0};
     GarbageEpisodes episodes_;
 };
 

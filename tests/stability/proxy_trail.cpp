@@ -3,7 +3,7 @@
 #include "tests/stability/proxy_trail.hpp"
 
 #include "tests/shared/exact_meet.hpp"
-#include "tests/stability/wide_place.hpp"
+#include "tests/stability/tool_oracle.hpp"
 
 #include <array>
 #include <cstdio>

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "tests/stability/rigid_garbage_trial.hpp"
-
 #include "host_tools/shapes/shapes.hpp"
 #include "rt_core/math/infinity.hpp"
 #include "rt_core/math/rotation.hpp"
@@ -10,6 +8,7 @@
 #include "tests/shared/safe_force.hpp"
 #include "tests/shared/solid_cores.hpp"
 #include "tests/stability/garbage_episodes.hpp"
+#include "tests/stability/garbage_trial.hpp"
 
 #include <algorithm>
 #include <array>
@@ -60,11 +59,9 @@ public:
     RigidGarbageRun(const Garbage& garbage, std::uint64_t seed)
         : model_(test_model("rigid-small-flat", make_shape(Shape::plate, 400).value(), 60))
         , box_(box_core("box", Vec3(0.02, 0.015, 0.004), 0.001))
-        , garbage_(garbage)
-        , seed_(seed)
-        , random_(Random::seeded(seed))
         , rig_({&model_}, options())
         , safe_(rig_.frame().tool(0).spec(), kPeriod_s)
+        , episodes_(garbage, seed, figures_)
     {
         figures_.name = "box on a plate, " + std::string(garbage.name);
         figures_.unit = "of the largest force or torque";
@@ -84,15 +81,7 @@ public:
     {
         for (frame_ = 0; frame_ < frames; ++frame_)
         {
-            ToolState sample = hand();
-            if (episodes_.begin_good_frame(random_))
-            {
-                good_ = sample;
-            }
-            else
-            {
-                garbage_.spoil(sample, good_, random_);
-            }
+            const ToolState sample = episodes_.next(hand());
             check(rig_.step(std::span(&sample, 1), {}), sample.position_m);
         }
         return figures_;
@@ -160,51 +149,18 @@ private:
         expect(frame_ == 0 || crossings_on_way(box_, place_, now, center_, model_, 2) == 0,
                "the box goes through");
         place_ = now;
-        episodes_.is_one() ? check_episode(output) : check_recovery(output);
+        expect(!episodes_.is_recovered() || (tool.in_contact && sent_.force_n.norm() > 0.5),
+               "nothing is felt again");
+        episodes_.check(output, sent_.force_n.norm() > 0.0 || sent_.torque_nm.norm() > 0.0);
     }
 
-    void check_episode(const FrameOutput& output)
-    {
-        const auto tells = [&](FrameFault fault)
-        { return fault == FrameFault::none || has_fault(output.faults, fault); };
-        expect(episodes_.age() > 1 || tells(garbage_.fault), "the first frame tells no fault");
-        expect(episodes_.age() <= kHeldFrames || tells(garbage_.lasting_fault),
-               "no fault is told any more");
-        expect(!garbage_.fades || episodes_.age() < kGoneFrames ||
-                   (sent_.force_n.norm() == 0.0 && sent_.torque_nm.norm() == 0.0),
-               "there is force without a sample");
-    }
-
-    void check_recovery(const FrameOutput& output)
-    {
-        if (frame_ < kRecoveryFrames || episodes_.age() < kRecoveryFrames)
-        {
-            return;
-        }
-        constexpr FrameFault kOfTool =
-            FrameFault::tool_invalid | FrameFault::tool_stuck | FrameFault::tool_jumped;
-        expect(!has_fault(output.faults, kOfTool), "the tool's faults don't end");
-        expect(output.tools[0].in_contact && sent_.force_n.norm() > 0.5, "nothing is felt again");
-    }
-
-    void expect(bool holds, const std::string& otherwise)
-    {
-        if (!holds)
-        {
-            figures_.flag(figures_.name + ", TACTUS_SEED=" + std::to_string(seed_) + ", frame " +
-                          std::to_string(frame_) + ", " + episodes_.text() + otherwise);
-        }
-    }
+    void expect(bool holds, const std::string& otherwise) { episodes_.expect(holds, otherwise); }
 
     const TestModel& model_;
     SolidCore box_;
-    const Garbage& garbage_;
-    std::uint64_t seed_;
-    Random random_;
     FrameRig rig_;
     SafeForce safe_;
     TrialFigures figures_;
-    ToolState good_;
     SafetyOutput sent_;
     Similarity place_;
     Vec3 center_{0, 0, 0};

@@ -24,6 +24,7 @@ namespace
 
 constexpr double kTorqueMax_nm = 0.5;
 constexpr double kStepRounding = 1e-9;
+constexpr double kRangeRounding = 1e-12;
 /// Of a frame's way, that are looked at.
 constexpr int kPlacesOnWay = 2;
 
@@ -237,6 +238,12 @@ private:
     /// In each object's frame: the way there begins where the last frame left the tool.
     void judge(std::uint32_t frame, const ToolOutput& output, const FrameRig& rig)
     {
+        const bool is_in_range = output.force_n.norm() <= kForceMax_n * (1.0 + kRangeRounding) &&
+                                 output.torque_nm.norm() <= kTorqueMax_nm * (1.0 + kRangeRounding);
+        if (!is_in_range || (!output.in_contact && !output.force_n.isZero(0.0)))
+        {
+            figures_.crossings.flag(where(frame) + "a force that is none, too large or of nothing");
+        }
         figures_.contacts += output.in_contact ? 1 : 0;
         figures_.frozen += output.frozen ? 1 : 0;
         figures_.squeezed += output.squeezed ? 1 : 0;
@@ -342,6 +349,24 @@ std::vector<RigidTrial> rigid_trials(RigidStage stage)
         {
             trials.push_back(
                 {tool, object, trials.size() % 2 == 0 ? Material{} : rough, stage, 0, 0});
+        }
+    }
+    return trials;
+}
+
+std::vector<RigidTrial> rigid_trials_on_small_models()
+{
+    const Vec3 half(0.012, 0.008, 0.004);
+    const TestModel& mesh = test_model("rigid-tool", make_uv_sphere(12, 16).value(), 60);
+    std::vector<RigidTrial> trials;
+    for (const SolidCore& tool :
+         {box_core("box", half, 0.001),
+          segment_core("capsule", {{-0.01, 0, 0}, {0.02, 0, 0.003}}, 0.002), spike_core(0.001),
+          box_core("box without a radius", 2.0 * half, 0.0), mesh_core("mesh", mesh, 0.0015)})
+    {
+        for (const TestModel* object : small_models())
+        {
+            trials.push_back({tool, object, Material{}, RigidStage::still, 0, 0});
         }
     }
     return trials;

@@ -35,7 +35,9 @@ struct RigidTrial
 
 struct RigidFigures
 {
-    /// Faces of the core that met the object's on the way of a frame, by exact arithmetic.
+    /// Faces of the core that met the object's on the way of a frame, by exact arithmetic. A force
+    /// or torque that is no number or too large is a violation as well, and so is one of a tool
+    /// that touches nothing.
     TrialFigures crossings;
     /// Changes of force and torque in frames that say `squeezed`, and in the next ones, over what
     /// springs make of the hand's way and a proxy that waited may add.
@@ -54,6 +56,8 @@ struct RigidFigures
 /// made once a process.
 [[nodiscard]] std::vector<RigidTrial> rigid_trials(RigidStage stage = RigidStage::still);
 
+/// A core of each kind on each of the small_models().
+[[nodiscard]] std::vector<RigidTrial> rigid_trials_on_small_models();
 [[nodiscard]] RigidFigures run_rigid_trial(const RigidTrial& trial);
 
 } // namespace tactus::test

@@ -6,9 +6,8 @@
 
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/shared/random.hpp"
+#include "tests/shared/worst_shapes.hpp"
 #include "tests/stability/bracket_trial.hpp"
-#include "tests/stability/trial_models.hpp"
-#include "tests/stability/worst_points.hpp"
 
 #include <gtest/gtest.h>
 

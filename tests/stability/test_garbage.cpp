@@ -5,7 +5,6 @@
 
 #include "tests/stability/bracket_trial.hpp"
 #include "tests/stability/garbage_trial.hpp"
-#include "tests/stability/rigid_garbage_trial.hpp"
 
 #include <gtest/gtest.h>
 

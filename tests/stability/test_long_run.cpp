@@ -5,7 +5,6 @@
 
 #include "tests/shared/random.hpp"
 #include "tests/stability/day_trial.hpp"
-#include "tests/stability/split_merge_trial.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/shared/random.hpp"
+#include "tests/shared/worst_shapes.hpp"
 #include "tests/stability/mesh_trial.hpp"
-#include "tests/stability/trial_models.hpp"
 
 #include <gtest/gtest.h>
 

@@ -44,13 +44,6 @@ TEST(Placement, rotations_of_any_angle_are_orthonormal_and_no_mirrors)
     EXPECT_LE(worst, kOrthonormal);
 }
 
-TEST(Placement, turns_counter_clockwise_round_its_axis)
-{
-    const Vec3 turned = place_turned(Vec3(0.0, 0.0, 90.0)).rotation * Vec3(1.0, 0.0, 0.0);
-    EXPECT_NEAR((turned - Vec3(0.0, 1.0, 0.0)).norm(), 0.0, 1e-15);
-    EXPECT_EQ(place_turned(Vec3(0.0, 0.0, 0.0)).rotation, Mat3::Identity());
-}
-
 } // namespace
 
 } // namespace tactus::test

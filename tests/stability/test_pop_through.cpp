@@ -10,7 +10,6 @@
 #include "tests/shared/worst_shapes.hpp"
 #include "tests/stability/pop_through_trial.hpp"
 #include "tests/stability/proxy_trail.hpp"
-#include "tests/stability/trial_models.hpp"
 
 #include <gtest/gtest.h>
 

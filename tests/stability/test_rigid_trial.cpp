@@ -11,11 +11,11 @@ namespace tactus::test
 namespace
 {
 
-RigidFigures try_all(RigidStage stage, std::uint32_t frames, std::uint64_t first_seed)
+RigidFigures try_all(std::vector<RigidTrial> trials, std::uint32_t frames, std::uint64_t first_seed)
 {
     RigidFigures all;
     std::uint64_t seed = seed_of(first_seed);
-    for (RigidTrial& trial : rigid_trials(stage))
+    for (RigidTrial& trial : trials)
     {
         trial.seed = seed++;
         trial.frames = frames;
@@ -29,14 +29,21 @@ RigidFigures try_all(RigidStage stage, std::uint32_t frames, std::uint64_t first
 
 TEST(RigidTrial, pegs_plates_gears_and_needles_never_go_through)
 {
-    const RigidFigures all = try_all(RigidStage::still, 400, 1);
+    const RigidFigures all = try_all(rigid_trials(RigidStage::still), 400, 1);
     EXPECT_GT(all.contacts, 500U);
     EXPECT_LT(all.frozen, all.contacts);
 }
 
+TEST(RigidTrial, boxes_capsules_hulls_and_meshes_never_go_through_any_shape)
+{
+    const RigidFigures all = try_all(rigid_trials_on_small_models(), 400, 401);
+    EXPECT_GT(all.contacts, 1'500U);
+    EXPECT_EQ(all.squeezed, 0U);
+}
+
 TEST(RigidTrial, nor_through_objects_that_turn)
 {
-    const RigidFigures all = try_all(RigidStage::turning, 200, 101);
+    const RigidFigures all = try_all(rigid_trials(RigidStage::turning), 200, 101);
     EXPECT_GT(all.contacts, 200U);
     EXPECT_EQ(all.run_over, 0U);
     EXPECT_EQ(all.squeezed, 0U);
@@ -44,14 +51,14 @@ TEST(RigidTrial, nor_through_objects_that_turn)
 
 TEST(RigidTrial, nor_through_what_stands_far_away_turned_and_of_another_size)
 {
-    const RigidFigures all = try_all(RigidStage::far, 200, 201);
+    const RigidFigures all = try_all(rigid_trials(RigidStage::far), 200, 201);
     EXPECT_GT(all.contacts, 200U);
     EXPECT_EQ(all.squeezed, 0U);
 }
 
 TEST(RigidTrial, between_objects_that_close_in_are_run_over_only_where_they_say_so)
 {
-    const RigidFigures all = try_all(RigidStage::closing, 600, 301);
+    const RigidFigures all = try_all(rigid_trials(RigidStage::closing), 600, 301);
     EXPECT_GT(all.contacts, 2'000U);
     EXPECT_GT(all.run_over, 100U); // Or nothing would be tried.
     EXPECT_GT(all.squeezed, 100U);
