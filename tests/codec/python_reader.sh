@@ -37,8 +37,8 @@ agrees torus 1000 0
 agrees terrain 1000 1
 (($(figure border_edges read.json) > 0)) || fail 'the terrain has no border'
 
-# One byte changed, in one process. A prime step, so that header, base, index and chunks are hit at all
-# alignments.
+# One byte changed, in one process. A prime step, so that header, base, index and chunks are hit at
+# all alignments.
 python3 - "$here" torus.spm <<'PYTHON' || fail 'a changed byte'
 import sys
 

@@ -21,7 +21,7 @@ end_well() { # end_well REFUSAL
     check_clean report.json
     grep -q 'tool 0: [0-9]* datagrams .* refused, most of them: ' hrtc.log \
         || fault 'no line tells of the strangers'
-    (($(wc -l <hrtc.log) < 100)) || fault 'the log is full'
+    check_sizes hrtc.log
 }
 touch_by_udp() {
     model bumpy-sphere-20000 bumpy.spm
@@ -64,8 +64,8 @@ case $attack in
                 printf "f 1 2 %d\n", i + 3
             }
         }' >fan.obj
-        # What is left can't vanish in the rounds that are left, which it finds after seconds. It may
-        # tell how far it is before.
+        # What is left can't vanish in the rounds that are left. It may tell how far it is before.
+        # Ten minutes of a processor are for what hangs.
         code=0
         (ulimit -t 600 && "$build" fan.obj --unit m -o fan.spm) >build.log 2>&1 || code=$?
         { ((code == 2)) && tail -n 1 build.log | grep -Eq \

@@ -28,7 +28,8 @@ wait_for_line publish.log 'controller hand subscribed'
 
 expect 2 "is not published" "$hrtc" --domain "$domain" --model bumpy --allow-no-rt --wait 2
 code=0
-ATTACKER_PATIENCE_S=5 CYCLONEDDS_URI=$plain "$attacker" "$domain" 1 catalogue_forged >outsider.log 2>&1 || code=$?
+ATTACKER_PATIENCE_S=5 CYCLONEDDS_URI=$plain "$attacker" "$domain" 1 catalogue_forged \
+    >outsider.log 2>&1 || code=$?
 { [[ $code == 2 ]] && grep -q 'saw no host and controller' outsider.log; } \
     || fault "an outsider ended with $code: $(cat outsider.log)"
 

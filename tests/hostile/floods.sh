@@ -102,7 +102,7 @@ end_well() { # end_well KIND
     stop_hrtc >/dev/null
     check report.json force.max_n '<=' 8
     check_clean report.json
-    (($(wc -l <hrtc.log) < 200)) || fault "$1: the log is full"
+    check_sizes hrtc.log
     row "$1"
 }
 

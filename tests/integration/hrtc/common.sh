@@ -195,7 +195,8 @@ run_hrtc() {
 was_held_up() { ! "$check_report" "$1" safety.begun.stall == 0 >/dev/null; }
 was_disturbed() {
     ! "$check_report" "$1" wire.host_lost == 0 >/dev/null || {
-        was_held_up "$1" && ! "$check_report" "$1" force.contact_share '>=' "${contact:-0.5}" >/dev/null
+        was_held_up "$1" \
+            && ! "$check_report" "$1" force.contact_share '>=' "${contact:-0.5}" >/dev/null
     }
 }
 
@@ -210,6 +211,14 @@ check_contact() {
 # check FILE [LEFT OP RIGHT]...: see check_report.cpp.
 check() {
     "$check_report" "$@" || fault "$1, see above"
+}
+
+# check_sizes FILE...: these logs hold a summary and no more than 40 lines a second.
+check_sizes() {
+    local file
+    for file; do
+        (($(wc -l <"$file") < 100 + 40 * SECONDS)) || fault "$file is full"
+    done
 }
 
 # check_clean FILE: what holds for every run. Under a sanitizer, which allocates and faults on its

@@ -114,8 +114,9 @@ check report.json tools.0.force_max_n '<=' 8 answers.exact+answers.decided '>' '
 readonly port=$((20000 + $$ % 20000))
 python3 "$docs/examples/udp_driver.py" "$port" >driver.log 2>&1 &
 started+=("$!")
-"$hrtc" --allow-no-rt --wait "$patience_s" --transport file --model ball.spm --tool mesh:./ball.spm,0.001 \
-    --pool-mib 16 --device "udp:$port" --duration 1 --report report.json >hrtc.log 2>&1 \
+"$hrtc" --allow-no-rt --wait "$patience_s" --transport file --model ball.spm \
+    --tool mesh:./ball.spm,0.001 --pool-mib 16 --device "udp:$port" --duration 1 \
+    --report report.json >hrtc.log 2>&1 \
     || fault 'two models in one place are more than it can stand'
 check report.json tools.0.force_max_n '<=' 8 realtime.allocations '>=' 0 answers.exact '>' 0
 

@@ -26,7 +26,8 @@ expect 3 extra "$network_relay" extra
 start_relay --delay-ms 10
 for command in '' 'set loss 2' 'set speed 1' halt; do
     printf '%s\n' "$command" >&"$relay_in"
-    read -r -t "$patience_s" relay_answer <&"$relay_out" || fail "the relay says nothing to '$command'"
+    read -r -t "$patience_s" relay_answer <&"$relay_out" \
+        || fail "the relay says nothing to '$command'"
     [[ "$relay_answer" == 'refused: '*'set loss 0..1'* ]] || fault "'$command': $relay_answer"
 done
 

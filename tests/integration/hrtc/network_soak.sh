@@ -22,7 +22,7 @@ check_holdings() {
         first_kib[$name]=$(resident_kib "$2")
         first_files[$name]=$(open_files "$2")
     fi
-    wait_until "end of $name's growth from ${first_kib[$name]} KiB and ${first_files[$name]} files" \
+    wait_until "end of $name's growth, ${first_kib[$name]} KiB and ${first_files[$name]} files" \
         has_no_more "$name" "$2"
     echo "cycle $3: $name has $(resident_kib "$2") KiB and $(open_files "$2") files"
 }
