@@ -414,7 +414,7 @@ main() {
         programs) build_programs spm_build spm_inspect spm_publish spm_view hrtc ;;
         test)
             install_packages "${lists[@]}"
-            [[ " ${more_options[*]} " != *' -L '* ]] || targets+=(tests_left_out)
+            [[ ! " ${more_options[*]} " =~ " -L "|bench|extended ]] || targets+=(tests_left_out)
             build_targets "${targets[@]}"
             run_tests "${more_options[@]}"
             ;;
