@@ -56,7 +56,7 @@ void expect_unknown_where_files_tell(const std::vector<Finding>& findings)
     }
 }
 
-TEST(Examine, has_nothing_to_mend_on_a_good_machine)
+TEST(Examine, has_nothing_to_say_against_a_good_machine)
 {
     MadeUpMachine machine;
     make_good(machine);
@@ -288,7 +288,7 @@ void expect_left(const MadeUpMachine& machine, const std::string& check, const s
     const std::size_t sign = left.find('=');
     if (sign == std::string::npos)
     {
-        EXPECT_EQ(finding_of(machine, check).verdict, Verdict::good) << "it is not mended";
+        EXPECT_EQ(finding_of(machine, check).verdict, Verdict::good) << "the remedy is none";
         return;
     }
     EXPECT_EQ(machine.content_of(path_of(left.substr(0, sign))), unescaped(left.substr(sign + 1)));
