@@ -142,8 +142,10 @@ grep -q '3000 faces were asked for' notes.txt || fail 'no word about the rounded
 mkdir half
 "$build" --shape bumpy-sphere --faces 400000 -o half/a.spm >/dev/null 2>&1 &
 readonly job=$!
-# Somewhere in its work, of which it says nothing: when it has had a third of a second of a processor.
-until (($(awk '{ print $14 + $15 }' "/proc/$job/stat") * 3 > $(getconf CLK_TCK))); do sleep 0.05; done
+# Its work is not reported: a third of a second of processor time is somewhere in it.
+until (($(awk '{ print $14 + $15 }' "/proc/$job/stat") * 3 > $(getconf CLK_TCK))); do
+    sleep 0.05
+done
 kill -TERM "$job"
 wait "$job" && fail 'the interrupted run says that it is done'
 [[ -z $(ls -A half) ]] || fail "left behind: $(ls -A half)"
