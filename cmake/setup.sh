@@ -145,10 +145,10 @@ readonly left_out='^(bench|extended|guard|other_builds|packages|pictures)$'
 # the test programs wrote.
 skipped_tests() {
     local results
+    local skip='s/^.*<testcase name="([^"]*)".* result="skipped".* classname="([^"]*)".*$/\2.\1/p'
     sed -n 's/^.*<testcase name="\([^"]*\)".* status="notrun".*$/\1/p' "$1"
     for results in "$build"/tests/results/*.xml; do
-        sed -nE 's/^.*<testcase name="([^"]*)".* result="skipped".* classname="([^"]*)".*/\2.\1/p' \
-            "$results" | sed "s|^|$(basename "${results%%.*}").|"
+        sed -nE "$skip" "$results" | sed "s|^|$(basename "${results%%.*}").|"
     done
 }
 
@@ -156,8 +156,8 @@ skipped_tests() {
 name_left_out() {
     local count
     count=$(ctest --test-dir "$build" -N --label-regex "$left_out" | sed -n 's/^Total Tests: //p')
-    echo "Left out: $count tests with the labels ${left_out//[^a-z_|]/}; 'bash cmake/setup.sh test" \
-        "--all' runs every test, 'bash cmake/setup.sh test -- -L bench' those of one label"
+    echo "Left out: $count tests with the labels ${left_out//[^a-z_|]/};" \
+        "'bash cmake/setup.sh test --all' runs all, '... test -- -L bench' those of one label"
 }
 
 run_tests() { # run_tests [CTEST-OPTION...]: without options those that are not left out.
