@@ -144,11 +144,12 @@ readonly left_out='^(bench|extended|guard|other_builds|packages|pictures)$'
 # Names of the tests that were not run, one per line: from ctest's JUnit file, and from those that
 # the test programs wrote.
 skipped_tests() {
-    local results
+    local results program
     local skip='s/^.*<testcase name="([^"]*)".* result="skipped".* classname="([^"]*)".*$/\2.\1/p'
     sed -n 's/^.*<testcase name="\([^"]*\)".* status="notrun".*$/\1/p' "$1"
     for results in "$build"/tests/results/*.xml; do
-        sed -nE "$skip" "$results" | sed "s|^|$(basename "${results%%.*}").|"
+        program=$(basename "$results")
+        sed -nE "$skip" "$results" | sed "s|^|${program%%.*}.|"
     done
 }
 
