@@ -20,7 +20,7 @@ using Corners = std::array<std::uint32_t, 3>;
 /// The corners turned so that the least comes first: equal for the same oriented face.
 [[nodiscard]] inline Corners turned(Corners corners)
 {
-    std::ranges::rotate(corners, std::ranges::min_element(corners));
+    std::rotate(corners.begin(), std::ranges::min_element(corners), corners.end());
     return corners;
 }
 
