@@ -16,7 +16,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <ranges>
 #include <set>
 
 namespace tactus
@@ -143,9 +142,12 @@ void expect_manifold_cuts(const EncodedModel& model, int cuts, Random& random)
         const Extraction sut = extract(*model.decoded, random_request(model, random));
         EXPECT_EQ(test::manifold_fault(sut.mesh.faces), "") << "cut " << i;
         std::vector<bool> is_used(sut.mesh.positions.size());
-        for (const std::uint32_t vertex : std::views::join(sut.mesh.faces))
+        for (const auto& face : sut.mesh.faces)
         {
-            is_used[vertex] = true;
+            for (const std::uint32_t vertex : face)
+            {
+                is_used[vertex] = true;
+            }
         }
         EXPECT_EQ(std::ranges::count(is_used, false), 0) << "cut " << i;
     }
