@@ -260,7 +260,9 @@ TEST(SmoothNormals, look_at_no_more_faces_than_they_may_in_the_widest_and_the_na
             .looks;
     };
     EXPECT_LE(looks(kSmoothWidthMin_m), 8U);
-    EXPECT_EQ(looks(kSmoothWidthMax_m), kMaxSmoothFaces);
+    // Faces that share their nearest corner are as far as each other: all of them or none.
+    EXPECT_LE(looks(kSmoothWidthMax_m), kMaxSmoothFaces);
+    EXPECT_GT(looks(kSmoothWidthMax_m), kMaxSmoothFaces - 8U);
 }
 
 TEST(SmoothNormals, take_steps_from_a_sphere_of_5000_faces_and_keep_the_ball_out)
