@@ -28,28 +28,6 @@ constexpr std::uint32_t kFrames = 500;
 /// Of a tool that is a mesh: one costs hundreds of others where it lies half within an object.
 constexpr std::uint32_t kMeshFrames = 20;
 
-/// RandomMotion's hand over an object that stays where it is.
-class Hand
-{
-public:
-    Hand(const TestModel& model, std::uint64_t seed)
-        : tree_(model.faces)
-        , random_(Random::seeded(seed))
-        , motion_(model, tree_, 0.01 * model.diagonal_m, 1.0, random_)
-    {
-    }
-    Vec3 next()
-    {
-        const Moment moment = motion_.next();
-        return to_model(moment.pose, moment.goal_m);
-    }
-
-private:
-    FaceTree tree_;
-    Random random_;
-    RandomMotion motion_;
-};
-
 /// Onto the model's highest corner, and a little into it.
 Vec3 land(const TestModel& model, std::uint32_t frame)
 {
@@ -92,7 +70,8 @@ struct Run
 {
     const char* name;
     std::vector<const TestModel*> models;
-    Vec3 (*motion)(const TestModel&, std::uint32_t){nullptr}; ///< None: each tool has a Hand.
+    Vec3 (*motion)(const TestModel&,
+                   std::uint32_t){nullptr}; ///< None: each tool has a WanderingHand.
     RigOptions options;
     Budgets budgets;
     std::uint32_t frames{kFrames};
@@ -256,10 +235,12 @@ bool record(const Run& run, const std::filesystem::path& folder)
 {
     FrameRig rig(run.models, run.options);
     std::vector<ToolState> tools(std::max<std::size_t>(run.options.tools.size(), 1));
-    std::deque<Hand> hands; // Their motions keep addresses.
+    std::deque<Random> randoms; // The hands keep their addresses.
+    std::deque<WanderingHand> hands;
     for (std::uint32_t i = 0; i < tools.size(); ++i)
     {
-        hands.emplace_back(*run.models[0], 20'261'127 + i);
+        randoms.push_back(Random::seeded(20'261'127 + i));
+        hands.emplace_back(*run.models[0], randoms.back());
     }
     std::uint64_t faces = 0;
     std::uint32_t contacts = 0;

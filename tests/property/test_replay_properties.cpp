@@ -23,32 +23,13 @@ namespace
 
 constexpr std::array kHardships{"usual", "starved", "small-pools", "lossy-link", "static"};
 
-/// RandomMotion's hand over an object that stays where it is.
-class Wander
-{
-public:
-    Wander(const TestModel& model, Random& random)
-        : tree_(model.faces), motion_(model, tree_, 0.01 * model.diagonal_m, 1.0, random)
-    {
-    }
-    Vec3 next()
-    {
-        const Moment moment = motion_.next();
-        return to_model(moment.pose, moment.goal_m);
-    }
-
-private:
-    FaceTree tree_;
-    RandomMotion motion_;
-};
-
 constexpr int kFrames = 400;
 
 /// Rehearsals change nothing, so the replay needs none.
 std::vector<std::byte> record_run(const TestModel& model, const char* name, std::uint64_t seed)
 {
     Random random = Random::seeded(seed);
-    Wander wander(model, random);
+    WanderingHand wander(model, random);
     const Hardship hardship = hardship_named(model, name);
     RigOptions options = hardship.rig;
     options.faults.seed = seed;
@@ -98,7 +79,7 @@ TEST(ReplayOfTwoModels, gives_every_frame_again_though_they_take_each_other_s_sl
     const std::uint64_t seed = seed_of(590);
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random = Random::seeded(seed);
-    Wander wander(model, random);
+    WanderingHand wander(model, random);
     RigOptions options;
     options.pool_bytes = std::size_t{700} << 10U;
     options.cache_bytes = 10 * sizeof(Page);

@@ -153,4 +153,15 @@ void RandomMotion::carry_object()
     pose.translation_m = moment_.goal_m - pose.scale * (pose.rotation * place);
 }
 
+WanderingHand::WanderingHand(const TestModel& model, Random& random)
+    : tree_(model.faces), motion_(model, tree_, 0.01 * model.diagonal_m, 1.0, random)
+{
+}
+
+Vec3 WanderingHand::next()
+{
+    const Moment moment = motion_.next();
+    return to_model(moment.pose, moment.goal_m);
+}
+
 } // namespace tactus::test

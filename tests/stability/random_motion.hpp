@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rt_core/records/frame_input.hpp"
+#include "tests/shared/face_tree.hpp"
 #include "tests/shared/random.hpp"
 #include "tests/shared/surface_slide.hpp"
 #include "tests/shared/test_model.hpp"
@@ -82,6 +83,23 @@ private:
     Vec3 axis_{0.0, 0.0, 1.0};
     double rate_rad_{0.0};
     Mat3 rotation_before_{Mat3::Identity()};
+};
+
+/// The hand of RandomMotion over an object that stays where it is, held by a ball of 1 % of the
+/// model's diagonal. Model and numbers must outlive it, and it must stay at its address.
+class WanderingHand
+{
+public:
+    WanderingHand(const TestModel& model, Random& random);
+    WanderingHand(const WanderingHand&) = delete;
+    WanderingHand& operator=(const WanderingHand&) = delete;
+
+    /// The place of the next frame, in the model's frame.
+    [[nodiscard]] Vec3 next();
+
+private:
+    FaceTree tree_;
+    RandomMotion motion_;
 };
 
 } // namespace tactus::test

@@ -26,7 +26,7 @@ constexpr double kTorqueMax_nm = 0.5;
 constexpr double kStepRounding = 1e-9;
 constexpr double kRangeRounding = 1e-12;
 /// Of a frame's way, that are looked at.
-constexpr int kPlacesOnWay = 2;
+constexpr int kPlacesOnWay = 4;
 
 Vec3 middle_of(const TestModel& model)
 {
@@ -163,7 +163,7 @@ RigOptions options_of(const RigidTrial& trial)
     spec.force_max_n = kForceMax_n;
     spec.torque_max_nm = kTorqueMax_nm;
     options.tools = {spec};
-    options.faults.loss = 0.05;
+    options.faults.loss = 0.1;
     options.faults.delay_polls_max = 10;
     options.faults.seed = trial.seed;
     return options;

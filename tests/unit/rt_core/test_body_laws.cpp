@@ -40,6 +40,11 @@ struct Ball
     static constexpr double kTurnOff_nm = 0.0; ///< That may be left of a torque.
     static constexpr double kSlip_m = kSlipShare * kRadius; ///< A way that is not worth a step.
     static constexpr double kBumpDepth_m = 1.5e-3;
+    static constexpr double kPressed_n = 1e-3; ///< Error of a normal force while the body slides.
+    static constexpr double kLag_n = 2e-3;     ///< Error of the drag that lets go.
+    static constexpr double kSpring_n = 1e-9;  ///< Error of a spring's force at rest.
+    static constexpr double kBump_n = 1e-4;    ///< Error of a texture's normal force.
+    static constexpr double kAcross_n = 2e-4;  ///< Error of its tangential force.
     static constexpr int kLetGoFrames = 3;
     static constexpr bool kTurns = false;
 
@@ -74,6 +79,11 @@ struct Block
     static constexpr double kTurnOff_nm = 1e-5;
     static constexpr double kSlip_m = 0.0;
     static constexpr double kBumpDepth_m = 1e-3;
+    static constexpr double kPressed_n = 0.02;
+    static constexpr double kLag_n = 3e-3;
+    static constexpr double kSpring_n = 1e-3;
+    static constexpr double kBump_n = 1e-2;
+    static constexpr double kAcross_n = 1e-3;
     static constexpr int kLetGoFrames = 100;
     static constexpr bool kTurns = true;
 
@@ -382,7 +392,7 @@ TYPED_TEST(BodyLaws, sliding_meets_coulombs_force_against_the_motion_and_sticks_
             goal.x() += step_m;
             output = rig.step(goal);
         }
-        EXPECT_NEAR(-output.force_n.x(), 0.3 * output.force_n.z(), 0.01 * output.force_n.z());
+        EXPECT_NEAR(-output.force_n.x(), 0.3 * output.force_n.z(), 0.003 * output.force_n.z());
         EXPECT_NEAR(output.force_n.y(), 0.0, 1e-3);
         EXPECT_NEAR(output.force_n.z(), kStiffness * 0.004, 0.01);
         static_cast<void>(this->hold(rig, goal, 10));
@@ -449,7 +459,7 @@ TYPED_TEST(BodyLaws, viscosity_drags_with_viscosity_times_speed_beside_friction_
                 const double drag_n = viscosity * speed + friction * kStiffness * 0.002;
                 EXPECT_NEAR(output.force_n.x(), -drag_n, 0.01 * drag_n + 1e-3)
                     << viscosity << ' ' << friction << ' ' << speed;
-                EXPECT_NEAR(output.force_n.z(), kStiffness * 0.002, 0.02);
+                EXPECT_NEAR(output.force_n.z(), kStiffness * 0.002, TypeParam::kPressed_n);
                 // The hand stands: what was held is let go, without a push beyond.
                 for (int i = 0; i < 400; ++i)
                 {
@@ -477,11 +487,11 @@ TYPED_TEST(BodyLaws, viscosity_lets_go_of_a_hand_at_rest_as_spring_and_damper_do
     {
         const ToolOutput output = rig.step(this->at(0.001, 0, 0.002));
         stretch_m *= kept;
-        EXPECT_NEAR(output.force_n.x(), -kStiffness * stretch_m, 3e-3) << frame;
+        EXPECT_NEAR(output.force_n.x(), -kStiffness * stretch_m, TypeParam::kLag_n) << frame;
     }
     rig.objects[0].material.viscosity_n_s_per_m = kDampingMax_n_s_per_m;
     const ToolOutput held = this->hold(rig, this->at(-0.003, 0, 0.002), 50);
-    EXPECT_NEAR(held.force_n.x(), kStiffness * (held.proxy_m.x() + 0.003), 1e-3)
+    EXPECT_NEAR(held.force_n.x(), kStiffness * (held.proxy_m.x() + 0.003), TypeParam::kSpring_n)
         << "never more than the spring";
 }
 
@@ -552,12 +562,11 @@ TYPED_TEST(BodyLaws, a_texture_is_felt_where_spring_and_bumps_are_in_balance)
             proxy_m += 0.5 * (hand.x() - slope - proxy_m);
         }
         EXPECT_NEAR(output.proxy_m.x(), proxy_m, TypeParam::kBalance_m) << i;
-        EXPECT_NEAR(output.force_n.x(), kStiffness * (proxy_m - hand.x()),
-                    kStiffness * TypeParam::kBalance_m + 1e-4);
+        EXPECT_NEAR(output.force_n.x(), kStiffness * (proxy_m - hand.x()), TypeParam::kAcross_n);
         const double rise =
             (e_at(output.proxy_m.x(), kDepth + 1e-9) - e_at(output.proxy_m.x(), kDepth - 1e-9)) /
             2e-9;
-        EXPECT_NEAR(output.force_n.z(), kStiffness * (kDepth + rise), 1e-2);
+        EXPECT_NEAR(output.force_n.z(), kStiffness * (kDepth + rise), TypeParam::kBump_n);
         EXPECT_NEAR(output.stiffness_n_per_m, kStiffness * Texture::stiffening(material), 1e-9);
         most_n = std::max(most_n, std::abs(output.force_n.x()));
     }
