@@ -264,10 +264,13 @@ deadline_test() {
         check run.json passed == $((ended_with == 0))
         [[ -z "$sanitizer" ]] && is_realtime run.json || return 0
         check run.json self_check.injected == 20 self_check.flagged+self_check.disturbed == 20 \
-            deadline.cycles.allocation+deadline.cycles.gave_way+deadline.cycles.over_work == 0
+            deadline.cycles.allocation+deadline.cycles.over_work == 0
         ((ended_with != 0)) || return 0
         echo "not passed, try $try"
     done
+    # The kernel may take a switch for a voluntary one, once in a while beside a busy disk; a lock or
+    # a wait in the loop shows in each run.
+    check run.json deadline.cycles.gave_way == 0
 }
 
 # is_realtime FILE: whether that run had SCHED_FIFO and locked memory.
