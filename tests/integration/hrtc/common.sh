@@ -268,8 +268,8 @@ deadline_test() {
         ((ended_with != 0)) || return 0
         echo "not passed, try $try"
     done
-    # One such cycle in three runs beside a busy disk was seen, its cause unknown. A lock or a wait in
-    # the loop shows in each run.
+    # One such cycle was seen once beside a busy disk, its cause unknown. A lock or a wait in the
+    # loop shows in each run.
     check run.json deadline.cycles.gave_way == 0
 }
 
