@@ -38,6 +38,7 @@ constexpr auto kWords = std::to_array<Words>({
     {"objects leave the tool no room", "when they do"},
     {"a button parts hand and tool", "when it is released"},
     {"a piece of the surface was asked for a second ago and has not come", "when it has"},
+    {"it would have grown faster than hand and objects moved", "step by step"},
 });
 static_assert(kWords.size() == kForceOffs);
 

@@ -238,6 +238,8 @@ void tell_tool(FieldSink& sink, const ReplayedFrameView& frame, std::size_t tool
     sink.number("stiffness_n_per_m", output.stiffness_n_per_m);
     sink.number("lag_m", output.lag_m);
     sink.number("clear_m", output.clear_m);
+    sink.number("object_way_m", output.object_way_m);
+    sink.number("object_turn_rad", output.object_turn_rad);
     sink.flag("in_contact", output.in_contact);
     sink.flag("frozen", output.frozen);
     sink.flag("squeezed", output.squeezed);

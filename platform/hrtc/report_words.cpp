@@ -42,6 +42,7 @@ constexpr ReportWord kWords[] = {
     {"squeezed", "force off: objects leave the tool no room"},
     {"clutch", "force off: the button of --clutch is held"},
     {"starved", "force off: the tool waits at a model of which a piece hasn't come for a second"},
+    {"growth", "force short: it would have grown faster than hand and objects moved"},
     {"supervisor", "a thread beside the loop, which brakes the devices when that is silent"},
 };
 

@@ -20,7 +20,7 @@ namespace tactus
 
 /// docs/recording.md describes the file.
 inline constexpr std::array<char, 8> kRecordingMagic{'T', 'A', 'C', 'T', 'R', 'E', 'C', '\n'};
-inline constexpr std::uint32_t kRecordingVersion = 11;
+inline constexpr std::uint32_t kRecordingVersion = 12;
 inline constexpr std::size_t kRecordingPrologueBytes = 12;
 
 enum class SectionKind : std::uint32_t

@@ -44,6 +44,10 @@ struct ToolOutput
     bool crowded{false};     ///< More touches it than limits allow: force and torque may lack some.
     bool lost_object{false}; ///< In touch, and an object near it went or jumped in this frame.
     bool is_gone{false};     ///< SceneChangeKind::tool_goes: everything else is as it was made.
+    /// The longest way that the frame believes any point within the tool's reach to have gone with
+    /// an object since the last frame, and the largest angle by which one of them has turned. >= 0.
+    double object_way_m{0.0};
+    double object_turn_rad{0.0};
     /// Proven distance of its core from every object that no PairOutput names, at the proxy at the
     /// start of the frame; infinite where there is none.
     double clear_m{kInfinity};

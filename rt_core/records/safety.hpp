@@ -42,9 +42,10 @@ enum class ForceOff : std::uint32_t
     squeezed = 1U << 12U,  ///< Objects leave the tool no room.
     clutch = 1U << 13U,    ///< A button has parted hand and tool.
     starved = 1U << 14U,   ///< The proxy waits for a piece that hasn't come for a second.
+    growth = 1U << 15U,    ///< It would have grown faster than hand and objects moved.
 };
-inline constexpr std::size_t kForceOffs = 15;
-static_assert(static_cast<std::uint32_t>(ForceOff::starved) == 1U << (kForceOffs - 1));
+inline constexpr std::size_t kForceOffs = 16;
+static_assert(static_cast<std::uint32_t>(ForceOff::growth) == 1U << (kForceOffs - 1));
 
 [[nodiscard]] constexpr ForceOff operator|(ForceOff a, ForceOff b) noexcept
 {
@@ -69,6 +70,6 @@ inline constexpr std::array<const char*, kSafetyStates> kSafetyStateNames{"reset
 /// In the order of ForceOff's bits.
 inline constexpr std::array<const char*, kForceOffs> kForceOffNames{
     "velocity", "watchdog",  "software", "disconnect", "deadman",  "stale",  "garbage", "stall",
-    "host",     "assertion", "jump",     "frozen",     "squeezed", "clutch", "starved"};
+    "host",     "assertion", "jump",     "frozen",     "squeezed", "clutch", "starved", "growth"};
 
 } // namespace tactus
