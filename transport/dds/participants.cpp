@@ -244,7 +244,6 @@ std::set<std::string> Participants::names() const
     return names;
 }
 
-/// The program, its process and machine, as DDS tells them.
 std::string Participants::name_of(const ParticipantId& who) const
 {
     std::string name = "a program that is gone";
@@ -253,13 +252,50 @@ std::string Participants::name_of(const ParticipantId& who) const
         [&](const dds_builtintopic_participant_t& about, const dds_sample_info_t& info)
         {
             const std::string program = info.valid_data ? property(about.qos, "__ProcessName") : "";
+            const std::string certificate = certificate_of(who);
             if (!program.empty())
             {
-                name = fmt::format("{} (process {} on {})", program, property(about.qos, "__Pid"),
-                                   property(about.qos, "__Hostname"));
+                name = fmt::format("{} (process {} on {}{})", program, property(about.qos, "__Pid"),
+                                   property(about.qos, "__Hostname"),
+                                   certificate.empty() ? "" : ", cert:" + certificate);
             }
         });
     return name;
+}
+
+bool Participants::is_called(const ParticipantId& who, const std::string& server) const
+{
+    constexpr std::string_view kCertificate = "cert:";
+    if (server.starts_with(kCertificate))
+    {
+        const std::string certificate = certificate_of(who);
+        return !certificate.empty() && server.substr(kCertificate.size()) == certificate;
+    }
+    bool is_it = false;
+    read_participant(
+        participants_, who,
+        [&](const dds_builtintopic_participant_t& about, const dds_sample_info_t& info)
+        {
+            const std::string machine = info.valid_data ? property(about.qos, "__Hostname") : "";
+            is_it = server == machine || server == machine + ":" + property(about.qos, "__Pid");
+        });
+    return is_it;
+}
+
+std::string Participants::certificate_of(const ParticipantId& who) const
+{
+    constexpr std::uint8_t kSecured = 0x80; // Without security a GUID begins with the vendor's 01.
+    constexpr std::size_t kBytes = 6;
+    if ((own_[0] & kSecured) == 0 || (who[0] & kSecured) == 0)
+    {
+        return {};
+    }
+    std::string text;
+    for (const std::uint8_t byte : std::span(who).first(kBytes))
+    {
+        text += fmt::format("{:02x}", byte);
+    }
+    return text;
 }
 
 } // namespace tactus::dds

@@ -43,6 +43,15 @@ public:
 
     /// All but us that are: program, process and machine, in order; each once. Some 10 us each.
     [[nodiscard]] std::set<std::string> names() const;
+    /// The program with its process and machine, as it tells them; with DDS Security also its
+    /// certificate's name, which nobody else can tell. 10 us.
+    [[nodiscard]] std::string name_of(const ParticipantId& who) const;
+    /// Whether it is called so: MACHINE, MACHINE:PROCESS or cert:HEX (is_valid_server). 10 us.
+    [[nodiscard]] bool is_called(const ParticipantId& who, const std::string& server) const;
+    /// With DDS Security 12 hexadecimal digits, the hash of the subject of its certificate: they
+    /// begin its GUID, and the authentication plugin refuses a peer whose GUID begins with those of
+    /// another subject. Empty without.
+    [[nodiscard]] std::string certificate_of(const ParticipantId& who) const;
 
     /// Counts what the writer behind a publication_handle said under its participant; nothing when
     /// that is gone and was never seen.
@@ -55,7 +64,6 @@ public:
 
 private:
     void report_other_versions(RateLimitedLog& log);
-    [[nodiscard]] std::string name_of(const ParticipantId& who) const;
 
     std::int32_t writers_; ///< Readers of what DDS itself publishes; they end with the participant.
     std::int32_t participants_;
