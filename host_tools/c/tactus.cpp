@@ -63,10 +63,9 @@ struct tactus_frame
     /// until the object is there.
     StaticVector<SceneChange, kMaxSceneChanges> changes;
     std::uint32_t objects{0};
-    std::vector<Similarity> places;                  ///< Of the objects, as the frame has them.
-    StaticVector<ObjectTouch, kMaxPairs> touches;    ///< After the last frame,
-    std::array<std::uint32_t, kMaxPairs> touching{}; ///< and the tools that do.
-    std::array<bool, kMaxTools> is_outrun{};         ///< Of tools, in the last frame.
+    std::vector<Similarity> places;          ///< Of the objects, as the frame has them.
+    ObjectTouches touches;                   ///< After the last frame.
+    std::array<bool, kMaxTools> is_outrun{}; ///< Of tools, in the last frame.
     BelievedSpeed belief;
     std::int64_t period_ns{0};
     std::atomic<std::int64_t> now_ns{0}; ///< Written where frames run, read where they load.
@@ -492,13 +491,13 @@ bool carry(tactus_frame& frame, SceneChange& move)
     {
         if (touch.object == move.number)
         {
-            way_m = std::max(way_m, carried_m(place, move.pose, touch.place_m));
+            way_m = std::max(way_m, way_in_ball_m(place, move.pose, touch.place_m, touch.radius_m));
         }
     }
-    for (std::size_t i = 0; i < frame.touches.size(); ++i)
+    for (const ObjectTouch& touch : frame.touches)
     {
-        frame.is_outrun[frame.touching[i]] |=
-            frame.touches[i].object == move.number && frame.belief.outruns(way_m, since_s);
+        frame.is_outrun[touch.tool] |= touch.object == move.number && touch.is_in_reach &&
+                                       frame.belief.outruns(way_m, since_s);
     }
     const bool is_held = frame.belief.is_too_fast(way_m, since_s);
     if (is_held)
@@ -526,21 +525,6 @@ StaticVector<SceneChange, kMaxSceneChanges> take_changes(tactus_frame& frame)
     return changes;
 }
 
-/// For the changes of the next frame.
-void note_touches(tactus_frame& frame)
-{
-    frame.touches.clear();
-    for (const PairOutput& pair : frame.output.pairs)
-    {
-        const double radius_m = frame.frame->tool(pair.tool).spec().radius_m;
-        if (may_touch(pair, frame.output.tools[pair.tool], radius_m))
-        {
-            frame.touching[frame.touches.size()] = pair.tool;
-            frame.touches.push_back({pair.object, pair.point_m});
-        }
-    }
-}
-
 void run_one(tactus_frame& frame)
 {
     const std::int64_t now_ns = frame.now_ns.load(std::memory_order_relaxed) + frame.period_ns;
@@ -548,7 +532,7 @@ void run_one(tactus_frame& frame)
     const auto changes = take_changes(frame);
     frame.output = frame.frame->run(
         {.tools = frame.states, .changes = changes.view(), .budgets = {}, .now_ns = now_ns});
-    note_touches(frame);
+    frame.frame->list_touches(frame.belief, frame.touches); // For the changes of the next frame.
     ++frame.frames;
 }
 

@@ -240,6 +240,8 @@ void tell_tool(FieldSink& sink, const ReplayedFrameView& frame, std::size_t tool
     sink.number("clear_m", output.clear_m);
     sink.number("object_way_m", output.object_way_m);
     sink.number("object_turn_rad", output.object_turn_rad);
+    sink.vector("carried_world_m", output.carried_m);
+    sink.vector("carried_world_rad", output.carried_rad);
     sink.flag("in_contact", output.in_contact);
     sink.flag("frozen", output.frozen);
     sink.flag("squeezed", output.squeezed);

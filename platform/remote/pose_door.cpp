@@ -31,6 +31,13 @@ constexpr std::size_t first_of(std::size_t word, std::uint64_t bits) noexcept
     return word * kWordBits + static_cast<std::size_t>(std::countr_zero(bits));
 }
 
+/// Between two times of a host's clock; 0 where that is no time: what it says may be anything.
+std::int64_t since_ns(std::int64_t before_ns, std::int64_t now_ns) noexcept
+{
+    const bool is_time = now_ns > before_ns && (before_ns >= 0) == (now_ns >= 0);
+    return is_time ? now_ns - before_ns : 0;
+}
+
 } // namespace
 
 PoseDoor::PoseDoor(std::span<const ObjectPose> placed, std::size_t objects, Duration age_limit,
@@ -157,6 +164,7 @@ std::span<const SceneChange> PoseDoor::refresh(MonotonicTime now,
     touches_ = touches;
     for (const ObjectTouch& touch : touches)
     {
+        glides_[touch.object].is_near = true;
         glides_[touch.object].outruns = false;
     }
     if (last_refresh_ == MonotonicTime{})
@@ -166,8 +174,8 @@ std::span<const SceneChange> PoseDoor::refresh(MonotonicTime now,
     std::size_t changes = take_passages();
     take_letters(now);
     look_at_ages(now);
-    // What is touched has its turn in every frame, or the surface would jump under the tool; it
-    // leaves the others half of the room.
+    // What tools may touch has its turn in every frame, or the surface would jump under the tool;
+    // it leaves the others half of the room.
     const std::size_t passed = changes;
     for (const ObjectTouch& touch : touches)
     {
@@ -204,6 +212,10 @@ std::span<const SceneChange> PoseDoor::refresh(MonotonicTime now,
     for (std::size_t i = passed; i < touched; ++i)
     {
         awake_[changes_[i].number / kWordBits] |= bit_of(changes_[i].number);
+    }
+    for (const ObjectTouch& touch : touches)
+    {
+        glides_[touch.object].is_near = false;
     }
     first_ = next;
     last_refresh_ = now;
@@ -347,8 +359,8 @@ void PoseDoor::begin_glide(std::size_t object, const Letter& letter, MonotonicTi
     glide.start = start;
     glide.is_under_way = true;
     const bool has_stamps = letter.stamp_ns != 0 && before.stamp_ns != 0;
-    const std::int64_t between_ns =
-        has_stamps ? letter.stamp_ns - before.stamp_ns : letter.arrival_ns - before.arrival_ns;
+    const std::int64_t between_ns = has_stamps ? since_ns(before.stamp_ns, letter.stamp_ns)
+                                               : letter.arrival_ns - before.arrival_ns;
     const bool rested = between_ns <= 0 || between_ns > kGlideMax.ns;
     const double way_m = (glide.to.translation_m - glide.from.translation_m).norm();
     const bool is_at_once = !uses_[object].is_followed || is_overdue || (rested && way_m > kJump_m);
@@ -366,33 +378,34 @@ void PoseDoor::move_on(std::size_t object, MonotonicTime now) noexcept
 {
     Glide& glide = glides_[object];
     const Duration since = now - glide.moved;
-    if (glide.is_held && !way_touched_m(object, glide.to))
+    if (glide.is_held && !glide.is_near)
     {
         glide.from = places_[object];
         glide.start = glide.moved;
         glide.time = kGlideMax;
     }
     const Similarity wanted = place_at(glide, now);
-    const double way_m = way_touched_m(object, wanted).value_or(0.0);
+    const double way_m = way_near_m(object, wanted);
     const double since_s = to_seconds(since);
     const bool is_too_fast = belief_.is_too_fast(way_m, since_s);
     glide.outruns = belief_.outruns(way_m, since_s);
     uses_[object].outran_frames += is_too_fast ? 1U : 0U;
-    glide.is_held = is_too_fast && glide.time > Duration{0};
+    glide.is_held = is_too_fast && (glide.time > Duration{0} || !glide.outruns);
     move_to(object, glide.is_held ? belief_.held(places_[object], wanted, way_m, since_s) : wanted);
     glide.is_under_way = glide.is_held || now - glide.start < glide.time;
 }
 
-/// How far the object would carry what touches it; none where nothing does.
-std::optional<double> PoseDoor::way_touched_m(std::size_t object,
-                                              const Similarity& to) const noexcept
+/// How far the object would move what some tool may meet of it; 0 where none is near.
+double PoseDoor::way_near_m(std::size_t object, const Similarity& to) const noexcept
 {
-    std::optional<double> way_m;
-    for (const ObjectTouch& touch : touches_)
+    double way_m = 0.0;
+    for (std::size_t i = 0; i < touches_.size() && glides_[object].is_near; ++i)
     {
+        const ObjectTouch& touch = touches_[i];
         if (touch.object == object)
         {
-            way_m = std::max(way_m.value_or(0.0), carried_m(places_[object], to, touch.place_m));
+            way_m =
+                std::max(way_m, way_in_ball_m(places_[object], to, touch.place_m, touch.radius_m));
         }
     }
     return way_m;

@@ -31,7 +31,7 @@ struct PoseUse
     Duration age_max{};          ///< Longest silence of its host that a frame met.
     double step_max_m{0.0};      ///< Farthest that the object's origin went between two frames.
     std::uint64_t old_frames{0}; ///< Frames in which that was longer than the limit.
-    /// Frames in which a tool touched it and its poses moved it faster than is believed.
+    /// Frames in which a tool was near and its poses moved it faster than is believed.
     std::uint64_t outran_frames{0};
 };
 
@@ -45,9 +45,9 @@ struct PoseUse
 /// come early or late. Nothing is extrapolated: it never goes where its host didn't put
 /// it. After a rest a pose that is farther than kJump_m is taken at once: that is no motion.
 ///
-/// Where a tool touches it, an object is carried no faster than is believed (BelievedSpeed),
-/// whatever its host says. It catches up when it may. What is taken at once isn't held back, and
-/// outruns its belief likewise.
+/// Where a tool touches it, or may soon, an object is carried no faster than is believed
+/// (BelievedSpeed), whatever its host says: no point of it that the tool may meet goes faster. It
+/// catches up when it may. What is taken at once isn't held back if it outruns its belief.
 ///
 /// An object's age is the time since its host was last heard, on this machine's clock. One that
 /// rests needs no poses, and costs no changes while its host is heard. Until its first pose an
@@ -67,7 +67,7 @@ public:
 
     /// Objects by their numbers, of generation 0, where they stand at the start, and room for
     /// `objects` in all: 0.8 KiB each. `age_limit`: older ones are counted; the frame has the same
-    /// limit. `speed_max_m_per_s`: believed of an object that is touched; above 0.
+    /// limit. `speed_max_m_per_s`: believed of an object that a tool may touch; above 0.
     PoseDoor(std::span<const ObjectPose> placed, std::size_t objects, Duration age_limit,
              double speed_max_m_per_s = kInfinity);
     PoseDoor(std::span<const ObjectPose> placed, Duration age_limit)
@@ -93,18 +93,20 @@ public:
 
     /// The haptic thread, at the start of a frame: what moves, and objects whose host fell silent
     /// or was heard again; at most kMaxSceneChanges. More wait for the next frame, which begins
-    /// with them; up to half of the room is for what is touched, in every frame. `touches`: as the
-    /// last frame left the tools, at most kMaxPairs. Valid until the next call. Allocates nothing;
-    /// 0.1 us an object that glides, 0.6 us for all that rest.
+    /// with them; up to half of the room is for what tools may touch, in every frame and in its
+    /// order. `touches`: as the last frame left the tools (Frame::list_touches), at most kMaxPairs.
+    /// Valid until the next call. Allocates nothing; 0.1 us an object that glides, 0.6 us for all
+    /// that rest.
     [[nodiscard]] std::span<const SceneChange>
     refresh(MonotonicTime now, std::span<const ObjectTouch> touches = {}) noexcept;
 
-    /// The haptic thread: whether in the last refresh() this object, which was touched, was moved
-    /// faster than is believed for longer than BelievedSpeed::kPatience_s.
+    /// The haptic thread: whether in the last refresh() this object, which a tool may touch, was
+    /// moved faster than is believed for longer than BelievedSpeed::kPatience_s.
     [[nodiscard]] bool outruns(std::size_t object) const noexcept
     {
         return glides_[object].outruns;
     }
+    [[nodiscard]] const BelievedSpeed& belief() const noexcept { return belief_; }
 
     /// One an object. The haptic thread, or others once it has ended.
     [[nodiscard]] std::span<const PoseUse> uses() const noexcept { return uses_; }
@@ -144,7 +146,8 @@ private:
         bool is_here{false};
         bool is_under_way{false};
         bool is_told_old{false}; ///< The frame knows when its host was last heard.
-        bool is_held{false};     ///< Behind where it would be, since a tool touches it.
+        bool is_near{false};     ///< A tool touches it or may soon, during refresh().
+        bool is_held{false};     ///< Behind where it would be, since a tool is near.
         bool outruns{false};     ///< As outruns() tells.
     };
 
@@ -158,8 +161,7 @@ private:
                                 SceneChange& change) noexcept;
     void begin_glide(std::size_t object, const Letter& letter, MonotonicTime now) noexcept;
     void move_on(std::size_t object, MonotonicTime now) noexcept;
-    [[nodiscard]] std::optional<double> way_touched_m(std::size_t object,
-                                                      const Similarity& to) const noexcept;
+    [[nodiscard]] double way_near_m(std::size_t object, const Similarity& to) const noexcept;
     [[nodiscard]] static Similarity place_at(const Glide& glide, MonotonicTime now) noexcept;
     [[nodiscard]] Duration age_of(std::size_t object, MonotonicTime now) const noexcept;
     /// Before the limit, so that the frame meets it at the right time.

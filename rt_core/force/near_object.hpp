@@ -27,6 +27,7 @@ struct NearObject
     const ObjectPose* before{nullptr};
     const ObjectPose* now{nullptr};
     ProxyMemory* memory{nullptr};
+    double lower_m{0.0}; ///< Proven distance of the tool's core in the last frame.
 
     [[nodiscard]] bool has_moved() const noexcept { return before != now; }
 };

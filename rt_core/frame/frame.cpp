@@ -290,13 +290,39 @@ void Frame::place(std::uint32_t object) noexcept
 /// Of tools that have no eye on the object: it was too far away in the last frame.
 void Frame::look_for_leap(std::uint32_t object, const ObjectPose& before) noexcept
 {
+    const ObjectPose& now = objects_[object].pose;
     const Ball ball = model_ball(models_[objects_[object].spec.model].header);
     for (std::uint32_t i = 0; i < tools_.size(); ++i)
     {
         if (presences_[i].is_here && std::ranges::none_of(pairs_.of(i), [object](const Pair* pair)
                                                           { return pair->object() == object; }))
         {
-            tools_[i].look_for_leap(before, objects_[object].pose, ball);
+            tools_[i].look_for_leap(before, now, ball);
+            const Ball reach = tools_[i].reach_ball();
+            presences_[i].leap_m = std::max(presences_[i].leap_m,
+                                            way_in_ball_m(before, now, reach.center, reach.radius));
+        }
+    }
+}
+
+void Frame::list_touches(const BelievedSpeed& belief, ObjectTouches& touches) const noexcept
+{
+    touches.clear();
+    const std::span<const PairOutput> pairs(pair_outputs_.data(), pairs_.all().size());
+    for (const bool is_in_reach : {true, false})
+    {
+        for (const PairOutput& pair : pairs)
+        {
+            const Tool& tool = tools_[pair.tool];
+            const double radius_m = tool.spec().radius_m;
+            const double soon_m = radius_m + kTouchSlack_m + belief.soon_m(tool.speed_m_per_s());
+            if (!tool.spec().passes_through && pair.lower_m <= soon_m &&
+                tactus::is_in_reach(pair, radius_m) == is_in_reach)
+            {
+                const Ball reach = tool.reach_ball();
+                touches.push_back(
+                    {pair.object, pair.tool, reach.center, reach.radius, is_in_reach});
+            }
         }
     }
 }
@@ -435,6 +461,7 @@ void Frame::find_clearances(const Nearness& first_out) noexcept
     for (std::uint32_t tool = 0; tool < tools_.size(); ++tool)
     {
         Presence& presence = presences_[tool];
+        presence.leap_m = 0.0;
         if (!presence.is_here)
         {
             continue;
@@ -472,13 +499,16 @@ void Frame::begin_pair(std::uint32_t tool, std::uint32_t object) noexcept
     pairs_.begin(parts);
 }
 
-/// Unless both were proven apart in the last frame, one has come round the other. What a frame
-/// starts with is where it is meant to be.
+/// Unless both were proven apart in the last frame, by more than an object that moves has gone
+/// since, one has come round the other. What a frame starts with is where it is meant to be.
 bool Frame::begins_apart(std::uint32_t tool, std::uint32_t object) const noexcept
 {
+    const Presence& presence = presences_[tool];
+    const bool has_moved = objects_[object].moved_frame == frame_;
+    const double ways_m = has_moved ? presence.leap_m + tools_[tool].went_m() : 0.0;
     return frame_ > ChunkCache::kFirstFrame + 1 &&
            (objects_[object].came_frame == frame_ ||
-            !(presences_[tool].clear_m > tools_[tool].radius_m()));
+            !(presence.clear_m - ways_m > tools_[tool].radius_m()));
 }
 
 /// What is open for it in its models is of no use any more.

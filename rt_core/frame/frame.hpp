@@ -12,6 +12,7 @@
 #include "rt_core/frame/pair_shedding.hpp"
 #include "rt_core/frame/refinement.hpp"
 #include "rt_core/frame/tool.hpp"
+#include "rt_core/geometry/believed_motion.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_output.hpp"
 #include "rt_core/scene/broad_phase.hpp"
@@ -60,6 +61,10 @@ public:
 
     /// In set-up order; there must be such a tool, which nothing checks. Likewise with models.
     [[nodiscard]] const Tool& tool(std::uint32_t index) const noexcept { return tools_[index]; }
+    /// Objects that tools may touch within BelievedSpeed::kPatience_s, as the last frame left both,
+    /// those in reach first. Tools without a force are left out.
+    void list_touches(const BelievedSpeed& belief,
+                      ObjectTouches& touches) const noexcept TACTUS_NONBLOCKING;
     /// The scene's objects by their numbers, as the last frame left them.
     [[nodiscard]] const ObjectTable& objects() const noexcept { return objects_; }
     /// What tools may touch, most urgent first: where pages were looked for last.
@@ -133,6 +138,7 @@ private:
     {
         bool is_here{true};
         double clear_m{0.0};    ///< ToolOutput::clear_m, or below zero where nothing is known yet.
+        double leap_m{0.0};     ///< Farthest way in this frame of what it has no pair of.
         bool is_crowded{false}; ///< In this frame it asks for more than that.
         bool rests{false};      ///< In this frame it answers as in the last one.
     };

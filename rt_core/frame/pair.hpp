@@ -171,7 +171,7 @@ public:
     [[nodiscard]] NearObject near() noexcept
     {
         const ObjectPose& now = parts_.object->pose;
-        return {parts_.object_number, has_moved() ? &stood_ : &now, &now, &body_};
+        return {parts_.object_number, has_moved() ? &stood_ : &now, &now, &body_, lower_m_};
     }
     /// The same of one that stands still.
     void stand() noexcept

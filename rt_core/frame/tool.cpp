@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/frame/tool.hpp"
 
+#include "rt_core/geometry/believed_motion.hpp"
 #include "rt_core/math/rotation.hpp"
 
 #include <algorithm>
@@ -22,6 +23,13 @@ constexpr double kApproachTime_s = 0.01;
 
 /// What a tool can come to in this time is looked at: chunks of it are asked for that far ahead.
 constexpr double kNearTime_s = 0.15;
+
+/// As a rotation vector, about the world's axes.
+Vec3 rotation_between(const Mat3& from, const Mat3& to) noexcept
+{
+    return from == to ? Vec3(0.0, 0.0, 0.0)
+                      : rotation_vector(orthonormalised(to * from.transpose()));
+}
 
 } // namespace
 
@@ -65,22 +73,31 @@ FrameFault Tool::begin(const ToolState& sample, double period_s,
                        std::span<const NearObject> objects) noexcept
 {
     TACTUS_ASSERT(period_s > 0.0);
-    lost_object_ = lost_object_ || (output_.in_contact &&
-                                    std::ranges::any_of(objects, [this](const NearObject& object)
-                                                        { return is_jump(object); }));
+    lost_object_ =
+        lost_object_ || std::ranges::any_of(objects, [this](const NearObject& object)
+                                            { return object.has_moved() && is_jump(object); });
     const ToolGoal last = goal_;
     goal_.elapsed_s = period_s * static_cast<double>(std::max(sample.elapsed_periods, 1U));
     const FrameFault fault = take(sample);
     is_still_ = fault == FrameFault::none && objects.empty() && !lost_object_ && !leapt_by_ &&
                 goal_ == last && goal_.velocity_m_per_s == Vec3(0.0, 0.0, 0.0);
+    look_at_motion(objects);
     with(body_,
          [&](auto& body)
          {
              body.see(goal_);
+             const Similarity before = body.place();
              body.carry(objects, goal_.elapsed_s);
+             if (!objects.empty())
+             {
+                 const Similarity now = body.place();
+                 motion_.carried_m = now.translation_m - before.translation_m;
+                 motion_.carried_rad = rotation_between(before.rotation, now.rotation);
+             }
              way_left_m_ = spec_.speed_max_m_per_s * goal_.elapsed_s;
              stand(body);
          });
+    began_m_ = ball().center;
     // A mesh in contact is refined ahead by what it moves: see MeshPair.
     const double ahead_s = output_.in_contact && is_mesh(spec_) ? 0.0 : kApproachTime_s;
     stance_.approach_m = ahead_s * goal_.velocity_m_per_s;
@@ -115,24 +132,42 @@ FrameFault Tool::take(const ToolState& sample) noexcept
                                  : Vec3(0.0, 0.0, 0.0);
     const Mat3 rotation = orthonormalised(sample.rotation);
     goal_.spin_rad_per_s = Vec3(0.0, 0.0, 0.0);
-    if (goal_.change == GoalChange::motion && rotation != goal_.rotation)
+    if (goal_.change == GoalChange::motion)
     {
-        goal_.spin_rad_per_s =
-            rotation_vector(orthonormalised(rotation * goal_.rotation.transpose())) /
-            verdict.since_s;
+        goal_.spin_rad_per_s = rotation_between(goal_.rotation, rotation) / verdict.since_s;
     }
     goal_.position_m = sample.position_m;
     goal_.rotation = rotation;
     return verdict.fault;
 }
 
-/// No surface that a hand holds on to goes so far in one frame that the spring would change by more
-/// than the device's largest force.
+/// No surface that a hand holds on to, or is to meet, goes so far in one frame that the spring
+/// would change by more than the device's largest force.
 bool Tool::is_jump(const NearObject& object) const noexcept
 {
-    const Vec3 proxy_m = stance_.place.translation_m;
-    const Vec3 along_m = to_world(*object.now, to_model(*object.before, proxy_m));
-    return (along_m - proxy_m).norm() * spec_.stiffness_n_per_m > spec_.force_max_n;
+    const Ball reach = reach_ball();
+    const double way_m = way_in_ball_m(*object.before, *object.now, reach.center, reach.radius);
+    return way_m * spec_.stiffness_n_per_m > spec_.force_max_n &&
+           (output_.in_contact || object.lower_m <= spec_.radius_m + kTouchSlack_m + way_m);
+}
+
+/// Of objects whose surface may be at the tool: what is farther changes no force in this frame.
+void Tool::look_at_motion(std::span<const NearObject> objects) noexcept
+{
+    motion_ = {};
+    const Ball reach = reach_ball();
+    for (const NearObject& object : objects)
+    {
+        if (!object.has_moved() || object.lower_m > spec_.radius_m + kTouchSlack_m)
+        {
+            continue;
+        }
+        const double way_m = way_in_ball_m(*object.before, *object.now, reach.center, reach.radius);
+        motion_.object_way_m = std::max(motion_.object_way_m, way_m);
+        motion_.object_turn_rad =
+            std::max(motion_.object_turn_rad,
+                     rotation_between(object.before->rotation, object.now->rotation).norm());
+    }
 }
 
 void Tool::forget(const PlacedSurface& gone) noexcept
@@ -149,9 +184,8 @@ void Tool::look_for_leap(const ObjectPose& before, const ObjectPose& now,
     {
         return; // It is not held, or is nowhere yet.
     }
-    const Vec3 center_m = output_.proxy_m + output_.proxy_rotation * ball_.center;
-    const Vec3 from_m = to_model(before, center_m) - object.center;
-    const Vec3 way_m = to_model(now, center_m) - object.center - from_m;
+    const Vec3 from_m = to_model(before, center_m()) - object.center;
+    const Vec3 way_m = to_model(now, center_m()) - object.center - from_m;
     const double length_sq = way_m.squaredNorm();
     const double share =
         length_sq > 0.0 ? std::clamp(-from_m.dot(way_m) / length_sq, 0.0, 1.0) : 0.0;
@@ -210,6 +244,10 @@ ToolOutput Tool::finish(ToolOutput output, double clear_m) noexcept
     output.sample_fault = watch_.fault();
     output.clear_m = std::max(clear_m, 0.0);
     output.lost_object = lost_object_;
+    output.object_way_m = motion_.object_way_m;
+    output.object_turn_rad = motion_.object_turn_rad;
+    output.carried_m = motion_.carried_m;
+    output.carried_rad = motion_.carried_rad;
     lost_object_ = false;
     output.squeezed = output.squeezed || leapt_by_;
     leapt_by_ = false;

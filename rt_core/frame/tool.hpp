@@ -8,8 +8,10 @@
 #include "rt_core/force/rigid_proxy.hpp"
 #include "rt_core/frame/sample_watch.hpp"
 #include "rt_core/records/frame_output.hpp"
+#include "rt_core/records/object_touch.hpp"
 #include "rt_core/scene/outlook.hpp"
 
+#include <algorithm>
 #include <span>
 #include <variant>
 
@@ -81,6 +83,19 @@ public:
     {
         return {stance_.place.to_there(ball_.center), ball_.radius};
     }
+    /// Holds what of a surface it may meet in a frame.
+    [[nodiscard]] Ball reach_ball() const noexcept
+    {
+        const Ball core = ball();
+        return {core.center, core.radius + spec_.radius_m + kTouchSlack_m};
+    }
+    /// How fast it may go.
+    [[nodiscard]] double speed_m_per_s() const noexcept
+    {
+        return std::max(spec_.speed_max_m_per_s, goal_.velocity_m_per_s.norm());
+    }
+    /// How far its core's middle went in the last frame, from begin() to finish().
+    [[nodiscard]] double went_m() const noexcept { return (center_m() - began_m_).norm(); }
     /// How far round that ball's centre a surface may matter to it soon.
     [[nodiscard]] double near_m() const noexcept TACTUS_NONBLOCKING;
     /// Surfaces are kept at least this far from the core.
@@ -100,6 +115,12 @@ private:
     void stand(const auto& body) noexcept;
     [[nodiscard]] FrameFault take(const ToolState& sample) noexcept;
     [[nodiscard]] bool is_jump(const NearObject& object) const noexcept;
+    void look_at_motion(std::span<const NearObject> objects) noexcept;
+    /// Of its core, as the last frame left it.
+    [[nodiscard]] Vec3 center_m() const noexcept
+    {
+        return output_.proxy_m + output_.proxy_rotation * ball_.center;
+    }
 
     ToolSpec spec_;
     Ball ball_; ///< Holds the core, in the tool's frame.
@@ -107,8 +128,18 @@ private:
     ToolGoal goal_;
     Body body_;
     ToolStance stance_;
-    double way_left_m_{0.0}; ///< In this frame, by the speed limit.
-    ToolOutput output_;      ///< The last frame's.
+    Vec3 began_m_{0.0, 0.0, 0.0}; ///< Its core's middle, when this frame or the last one began.
+    double way_left_m_{0.0};      ///< In this frame, by the speed limit.
+    ToolOutput output_;           ///< The last frame's.
+    /// How objects move and carry it in this frame, as ToolOutput tells.
+    struct Motion
+    {
+        double object_way_m{0.0};
+        double object_turn_rad{0.0};
+        Vec3 carried_m{0.0, 0.0, 0.0};
+        Vec3 carried_rad{0.0, 0.0, 0.0};
+    };
+    Motion motion_;
     bool is_still_{false};
     std::uint32_t equal_outputs_{0};
     bool lost_object_{false}; ///< In this one, while it was: an object went or jumped.

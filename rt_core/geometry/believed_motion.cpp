@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "rt_core/geometry/believed_motion.hpp"
 
+#include <cmath>
+
 namespace tactus
 {
 
@@ -18,9 +20,16 @@ Similarity between(const Similarity& from, const Similarity& to, double share) n
     return place;
 }
 
-double carried_m(const Similarity& from, const Similarity& to, const Vec3& touch_m) noexcept
+/// A point goes as the centre does and about it, there by its distance times what the scale grows
+/// and the chord of the angle. The latter is the norm of the rotations' difference over sqrt(2).
+double way_in_ball_m(const Similarity& from, const Similarity& to, const Vec3& center_m,
+                     double radius_m) noexcept
 {
-    return (to.to_there(from.to_here(touch_m)) - touch_m).norm();
+    const double way_m = (to.to_there(from.to_here(center_m)) - center_m).norm();
+    const double grown = std::abs(to.scale / from.scale - 1.0);
+    const double turned =
+        from.rotation == to.rotation ? 0.0 : (to.rotation - from.rotation).norm() * std::sqrt(0.5);
+    return way_m + radius_m * (grown + turned);
 }
 
 } // namespace tactus

@@ -15,17 +15,18 @@ namespace tactus
 [[nodiscard]] Similarity between(const Similarity& from, const Similarity& to,
                                  double share) noexcept TACTUS_NONBLOCKING;
 
-/// How far an object that goes from one place to another carries what is at `touch_m`, which is
-/// where it touches it in the world.
-[[nodiscard]] double carried_m(const Similarity& from, const Similarity& to,
-                               const Vec3& touch_m) noexcept TACTUS_NONBLOCKING;
+/// How far an object that goes from one place to another moves any of its points in a ball of the
+/// world, at most.
+[[nodiscard]] double way_in_ball_m(const Similarity& from, const Similarity& to,
+                                   const Vec3& center_m,
+                                   double radius_m) noexcept TACTUS_NONBLOCKING;
 
-/// How fast an object that a tool touches is believed to move, whatever is said of it: a force
+/// How fast an object that a tool may touch is believed to move, whatever is said of it: a force
 /// can't change faster by that than by stiffness x speed.
 struct BelievedSpeed
 {
     /// An object that is behind by more than it may go in this time outruns its belief: the force
-    /// of what touches it has to go.
+    /// of what it may touch has to go. What may touch within this time is limited, too.
     static constexpr double kPatience_s = 0.02;
 
     double speed_max_m_per_s{kInfinity}; ///< Above 0.
@@ -34,7 +35,12 @@ struct BelievedSpeed
     {
         return speed_max_m_per_s * since_s;
     }
-    /// Of a way that it would carry what touches it within `since_s`.
+    /// How far tool and object may come towards each other before they may touch unforeseen.
+    [[nodiscard]] double soon_m(double tool_speed_m_per_s) const noexcept
+    {
+        return kPatience_s * (tool_speed_m_per_s + speed_max_m_per_s);
+    }
+    /// Of a way that its points in reach would go within `since_s`.
     [[nodiscard]] bool is_too_fast(double way_m, double since_s) const noexcept
     {
         return way_m > most_m(since_s);
@@ -43,7 +49,8 @@ struct BelievedSpeed
     {
         return way_m > most_m(since_s + kPatience_s);
     }
-    /// Where it is carried in that time. The way of what touches it is `way_m`, which is too fast.
+    /// Where it is carried in that time. The way of its points in reach is `way_m`, which is too
+    /// fast.
     [[nodiscard]] Similarity held(const Similarity& from, const Similarity& to, double way_m,
                                   double since_s) const noexcept
     {

@@ -48,6 +48,10 @@ struct ToolOutput
     /// an object since the last frame, and the largest angle by which one of them has turned. >= 0.
     double object_way_m{0.0};
     double object_turn_rad{0.0};
+    /// How far, and about which rotation vector, objects took the proxy along in this frame. What
+    /// the force does along that way is work of those who move the objects, and not of the wall.
+    Vec3 carried_m{0.0, 0.0, 0.0};
+    Vec3 carried_rad{0.0, 0.0, 0.0};
     /// Proven distance of its core from every object that no PairOutput names, at the proxy at the
     /// start of the frame; infinite where there is none.
     double clear_m{kInfinity};

@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/static_vector.hpp"
+#include "rt_core/limits.hpp"
 #include "rt_core/math/vec3.hpp"
 #include "rt_core/records/frame_output.hpp"
 
@@ -11,12 +13,17 @@
 namespace tactus
 {
 
-/// Where a tool touches an object, in the world.
+/// A tool and an object that touch, or may within BelievedSpeed::kPatience_s. World frame.
 struct ObjectTouch
 {
     std::uint32_t object{0};
+    std::uint32_t tool{0};
+    /// A ball that holds the tool and all of the object that it may meet in a frame.
     Vec3 place_m{0.0, 0.0, 0.0};
+    double radius_m{0.0};
+    bool is_in_reach{true}; ///< The object may be at the tool in this frame.
 };
+using ObjectTouches = StaticVector<ObjectTouch, kMaxPairs>;
 
 /// What a tool may go in a frame, and the skin of one without a radius.
 inline constexpr double kTouchSlack_m = 5e-3;

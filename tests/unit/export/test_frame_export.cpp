@@ -50,6 +50,8 @@ struct Example
         tool.lag_m = 61.0;
         tool.object_way_m = 88.0;
         tool.object_turn_rad = 89.0;
+        tool.carried_m = Vec3(90.0, 91.0, 92.0);
+        tool.carried_rad = Vec3(93.0, 94.0, 95.0);
         tool.in_contact = true;
         tool.held_back = true;
         tool.sample_fault = FrameFault::tool_stuck;
@@ -161,7 +163,9 @@ TEST(FrameExport, tells_every_value_under_its_name)
             "sent_torque_world_nm": [45.0, 46.0, 47.0], "sent_gripper_n": 48.0,
             "force_world_n": [51.0, 52.0, 53.0], "torque_world_nm": [54.0, 55.0, 56.0],
             "proxy_world_m": [57.0, 58.0, 59.0], "stiffness_n_per_m": 60.0, "lag_m": 61.0,
-            "clear_m": null, "object_way_m": 88.0, "object_turn_rad": 89.0, "in_contact": true, "held_back": true, "frozen": false,
+            "clear_m": null, "object_way_m": 88.0, "object_turn_rad": 89.0,
+            "carried_world_m": [90.0, 91.0, 92.0], "carried_world_rad": [93.0, 94.0, 95.0],
+            "in_contact": true, "held_back": true, "frozen": false,
             "faults": ["tool_stuck"]}],
         "pairs": [{
             "object": 3, "answer": "exact", "point_world_m": [62.0, 63.0, 64.0], "lower_m": 65.0,

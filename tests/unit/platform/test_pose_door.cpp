@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <random>
 #include <thread>
 #include <vector>
@@ -327,7 +328,7 @@ TEST(PoseDoor, moves_what_is_touched_in_every_frame_however_many_move)
         std::vector<ObjectTouch> touches; // Two of the first: a tool each.
         for (const std::uint32_t object : {first, first, first + 1, first + 90})
         {
-            touches.push_back({object, places_m[object]});
+            touches.push_back({.object = object, .place_m = places_m[object], .radius_m = 0.01});
         }
         std::vector<int> told(kObjects);
         for (const SceneChange& change : sut.refresh(now, touches))
@@ -353,6 +354,108 @@ TEST(PoseDoor, moves_what_is_touched_in_every_frame_however_many_move)
         EXPECT_EQ(sut.uses()[i].outran_frames, 0U) << i;
         EXPECT_GT(moves[i], 300) << "each has its turn: " << i;
     }
+}
+
+/// A pose 50 ms later, and what of the way to it a tool of 7 mm round `tool_m` could meet in each
+/// frame; the object stood without a turn.
+double farthest_way_m(const ObjectPose& to, const Vec3& tool_m, Duration rest, bool& outran)
+{
+    constexpr double kReach_m = 0.007;
+    ObjectPose from;
+    from.stamp_ns = 1;
+    PoseDoor sut({&from, 1}, 1, kLimit, 0.5);
+    sut.put(0, from, kStart);
+    static_cast<void>(sut.refresh(kStart));
+    ObjectPose news = to;
+    news.stamp_ns = 1 + rest.ns;
+    sut.put(0, news, kStart + rest);
+    const ObjectTouch touch{.place_m = tool_m, .radius_m = kReach_m};
+    static_cast<void>(sut.refresh(kStart + rest - milliseconds(1), {&touch, 1}));
+    Similarity last = from;
+    double most_m = 0.0;
+    outran = false;
+    for (int ms = 0; ms < 500; ++ms)
+    {
+        for (const SceneChange& change : sut.refresh(kStart + rest + milliseconds(ms), {&touch, 1}))
+        {
+            for (int corner = 0; corner < 6; ++corner)
+            {
+                Vec3 point_m = tool_m;
+                point_m[corner % 3] += corner < 3 ? kReach_m : -kReach_m;
+                const Vec3 now_m = change.pose.to_there(last.to_here(point_m));
+                most_m = std::max(most_m, (now_m - point_m).norm());
+            }
+            last = change.pose;
+        }
+        outran = outran || sut.outruns(0);
+    }
+    EXPECT_NEAR((last.to_there(Vec3::UnitX()) - to.to_there(Vec3::UnitX())).norm(), 0.0, 1e-12);
+    return most_m;
+}
+
+/// By a way, by a turn about itself or about the tool, by growing; after a rest and without one.
+TEST(PoseDoor, moves_nothing_that_a_tool_may_meet_faster_than_is_believed)
+{
+    const Vec3 tool_m(0.3, 0.2, 0.1);
+    const auto about = [&](const Vec3& center_m, double angle, double scale)
+    {
+        ObjectPose pose;
+        pose.rotation = Eigen::AngleAxisd(angle, Vec3::UnitZ()).toRotationMatrix();
+        pose.scale = scale;
+        pose.translation_m = center_m - scale * (pose.rotation * center_m);
+        return pose;
+    };
+    ObjectPose away;
+    away.translation_m = Vec3(0.009, 0.0, 0.0);
+    for (const ObjectPose& to :
+         {away, about(Vec3::Zero(), 0.02, 1.0), about(tool_m, 1.0, 1.0), about(tool_m, 0.0, 1.9),
+          about(tool_m, 0.5, 0.7), about(tool_m + Vec3(0.001, 0.0, 0.0), 1.2, 1.0)})
+    {
+        for (const Duration rest : {milliseconds(2), milliseconds(80)})
+        {
+            bool outran = false;
+            EXPECT_LE(farthest_way_m(to, tool_m, rest, outran), 5.2e-4)
+                << to.translation_m.transpose() << " after " << rest.ns;
+            EXPECT_FALSE(outran);
+        }
+    }
+}
+
+TEST(PoseDoor, takes_what_outruns_its_belief_after_a_rest_at_once_and_says_so)
+{
+    ObjectPose to;
+    to.translation_m = Vec3(0.03, 0.0, 0.0);
+    bool outran = false;
+    EXPECT_NEAR(farthest_way_m(to, Vec3::Zero(), milliseconds(80), outran), 0.03, 1e-12);
+    EXPECT_TRUE(outran);
+    EXPECT_LE(farthest_way_m(to, Vec3::Zero(), milliseconds(2), outran), 5.2e-4);
+    EXPECT_TRUE(outran);
+}
+
+/// What its host's clock says is a number like any other: it can't overflow, and it stops nothing.
+TEST(PoseDoor, takes_poses_whatever_the_clock_of_their_host_says)
+{
+    constexpr std::int64_t kLeast = std::numeric_limits<std::int64_t>::min();
+    constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+    const std::vector<ObjectPose> placed{pose_at(0.0, {})};
+    PoseDoor sut(placed, kLimit);
+    int ms = 0;
+    for (const std::int64_t first : {kLeast, kLeast + 1, std::int64_t{-1}, std::int64_t{0}, kMost})
+    {
+        for (const std::int64_t second : {kMost, kMost - 1, std::int64_t{1}, kLeast})
+        {
+            for (const std::int64_t stamp : {first, second})
+            {
+                sut.put(0, pose_at(1e-5 * ms, Duration{stamp}), kStart + milliseconds(ms));
+                static_cast<void>(sut.refresh(kStart + milliseconds(ms)));
+                ++ms;
+            }
+        }
+    }
+    const auto last = sut.refresh(kStart + milliseconds(ms) + PoseDoor::kGlideMax);
+    ASSERT_EQ(last.size(), 1U);
+    EXPECT_EQ(last[0].pose.translation_m.x(), 1e-5 * (ms - 1));
+    EXPECT_LT(sut.uses()[0].step_max_m, 1e-3);
 }
 
 /// More objects than a frame looks at the ages of.

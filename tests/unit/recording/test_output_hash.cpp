@@ -62,6 +62,8 @@ std::vector<Part> parts()
           tool([](auto& t) { t.lag_m = 1.0; }),
           tool([](auto& t) { t.object_way_m = 1.0; }),
           tool([](auto& t) { t.object_turn_rad = 1.0; }),
+          tool([](auto& t) { t.carried_m.x() = 1.0; }),
+          tool([](auto& t) { t.carried_rad.z() = 1.0; }),
           tool([](auto& t) { t.sample_fault = FrameFault::tool_stuck; }),
           tool([](auto& t) { t.torque_nm.y() = 1.0; }),
           tool([](auto& t) { t.proxy_rotation(1, 2) = 1.0; })}},
