@@ -25,7 +25,6 @@ Result<Done, Refusal> PeriodicTimer::start(Duration period, Duration margin)
     deadline_ = now() + period;
     wake_lateness_ = {};
     periods_ = 1;
-    sleeps_ = 0;
     in_episode_ = false;
     counts_ = {};
     return Done{};
@@ -42,7 +41,6 @@ void PeriodicTimer::sleep_until_margin() noexcept
         return;
     }
     sleep_until(wake);
-    ++sleeps_;
     wake_lateness_ = std::max(wake_lateness_, now() - wake);
 }
 
@@ -55,7 +53,7 @@ Cycle PeriodicTimer::spin_until_deadline() noexcept
         sleep_until_margin();
         time = wait_out();
     }
-    const Cycle cycle{deadline_, wake_lateness_, time - deadline_, periods_, sleeps_};
+    const Cycle cycle{deadline_, wake_lateness_, time - deadline_, periods_};
     count_cycle();
     return cycle;
 }
@@ -96,7 +94,6 @@ void PeriodicTimer::count_cycle() noexcept
     deadline_ = deadline_ + period_;
     wake_lateness_ = {};
     periods_ = 1;
-    sleeps_ = 0;
 }
 
 } // namespace tactus

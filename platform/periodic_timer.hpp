@@ -26,10 +26,6 @@ struct Cycle
     /// Whole periods since the last cycle: 1 normally, more after a stall. The frame that follows
     /// must use it as the true elapsed time.
     std::uint32_t periods{1};
-    /// How often the timer slept since the last cycle: once normally, more after a stall, never
-    /// when there was no time to. Each costs a voluntary switch of the thread; others are not the
-    /// timer's.
-    std::uint32_t sleeps{1};
 };
 
 /// Sums over the timer's life. One stall of k periods is one episode and k missed periods, however
@@ -101,7 +97,6 @@ private:
     MonotonicTime deadline_{};
     Duration wake_lateness_{};
     std::uint32_t periods_{1};
-    std::uint32_t sleeps_{0};
     bool in_episode_{false};
     TimerCounts counts_{};
 };

@@ -63,7 +63,7 @@ CycleFlag DeadlineAccount::flags_of(const CycleMeasures& measures, bool over_wor
     const Cycle& cycle = measures.cycle;
     return when(usage.minor_faults + usage.major_faults > 0, CycleFlag::page_fault) |
            when(measures.allocations > 0, CycleFlag::allocation) |
-           when(usage.voluntary_switches > cycle.sleeps, CycleFlag::gave_way) |
+           when(usage.voluntary_switches > 0, CycleFlag::gave_way) |
            when(measures.calls.in_frame > calls.in_frame, CycleFlag::system_call) |
            when(over_work, CycleFlag::over_work) |
            when(measures.cpu > cpu_limit_, CycleFlag::over_cpu) |

@@ -195,7 +195,6 @@ Json make_deadline_report(const SelfCheck& check, std::span<const DeadlinePhase>
 {
     Json report = phase_of(phases.back());
     report["self_check"] = {{"injected", check.injected},
-                            {"disturbed", check.disturbed},
                             {"flagged", check.flagged},
                             {"false_flags", check.false_flags},
                             {"allocations_counted", check.allocations_counted},

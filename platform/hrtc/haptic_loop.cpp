@@ -88,6 +88,7 @@ Duration HapticLoop::cpu_time() const noexcept
 void HapticLoop::measure_thread(const ThreadUsage& now) noexcept
 {
     measures_.usage = now - usage_;
+    measures_.usage.voluntary_switches -= timer_switches_;
     usage_ = now;
     measures_.allocations = allocation_counter::of_this_thread().allocations - allocations_;
     allocations_ += measures_.allocations;
@@ -107,14 +108,20 @@ bool HapticLoop::has_to_end() noexcept
 void HapticLoop::wait_for_deadline() noexcept
 {
     measures_.beside = parts_.clock->now() - last_end_;
-    measures_.beside_cpu = cpu_time() - usage_.cpu_time;
+    const ThreadUsage asleep = thread_usage();
     parts_.timer->sleep_until_margin();
-    const Duration cpu_awake = cpu_time();
-    const MonotonicTime awake = parts_.clock->now();
+    const ThreadUsage awake = thread_usage();
+    const MonotonicTime awake_at = parts_.clock->now();
     rehearse();
-    measures_.beside += parts_.clock->now() - awake;
-    measures_.beside_cpu += cpu_time() - cpu_awake;
+    measures_.beside += parts_.clock->now() - awake_at;
+    const ThreadUsage ready = thread_usage();
     measures_.cycle = parts_.timer->spin_until_deadline();
+    measures_.beside_cpu = asleep.cpu_time - usage_.cpu_time + (ready.cpu_time - awake.cpu_time);
+    timer_switches_ = awake.voluntary_switches - asleep.voluntary_switches;
+    if (measures_.cycle.periods > 1) // Only after a stall does it sleep once more.
+    {
+        timer_switches_ += thread_usage().voluntary_switches - ready.voluntary_switches;
+    }
 }
 
 /// Rehearsal and frame are what must make no system call.

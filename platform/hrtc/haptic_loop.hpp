@@ -132,6 +132,7 @@ private:
     MonotonicTime stage_start_{};
     MonotonicTime last_end_{};         ///< Of the last frame.
     ThreadUsage usage_;                ///< Of this thread at that time.
+    std::int64_t timer_switches_{0};   ///< Voluntary ones in the timer's sleeps since then.
     std::uint64_t allocations_{0};     ///< Likewise.
     std::atomic<bool> stopped_{false}; ///< Relaxed: it orders nothing else.
     std::atomic<bool> failing_{false}; ///< Set by the first that fails.

@@ -476,7 +476,7 @@ Json make_report(const Options& options, const Controller& controller, const Fin
     {
         times[name] = times_of(histogram);
     }
-    return {{"schema", 2},
+    return {{"schema", 3},
             {"run", run_of(record)},
             {"frames", statistics.frames},
             {"period_ns", run.period.ns},

@@ -6,16 +6,13 @@
 #include "platform/hrtc/frame_repeater.hpp"
 #include "platform/hrtc/session.hpp"
 #include "platform/hrtc/signals.hpp"
-#include "platform/posix/posix_clock.hpp"
 #include "platform/thread_usage.hpp"
 #include "platform/wrapped_device.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdlib>
 #include <ctime>
-#include <map>
 #include <memory>
 #include <sys/mman.h>
 
@@ -39,22 +36,16 @@ void touch_new_page() noexcept
     }
 }
 
-/// The device as it is, but its readings spoil the frames of the plan; notes when they were.
+/// The device as it is, but its readings spoil the frames of the plan.
 class SpoilingDevice final : public WrappedDevice
 {
 public:
-    /// `reads` has room for as many as are noted, and outlives the device.
-    SpoilingDevice(std::unique_ptr<HapticDevice> device, Duration period,
-                   std::span<MonotonicTime> reads)
-        : WrappedDevice(std::move(device)), period_(period), reads_(reads)
+    SpoilingDevice(std::unique_ptr<HapticDevice> device, Duration period)
+        : WrappedDevice(std::move(device)), period_(period)
     {
     }
     [[nodiscard]] DeviceSample read() noexcept override
     {
-        if (frame_ < reads_.size())
-        {
-            reads_[frame_] = clock_.now();
-        }
         if (const auto fault = InjectionPlan::at(frame_++))
         {
             inject(*fault, period_);
@@ -63,9 +54,7 @@ public:
     }
 
 private:
-    PosixClock clock_;
     Duration period_;
-    std::span<MonotonicTime> reads_;
     std::uint64_t frame_{0};
 };
 
@@ -143,87 +132,40 @@ void inject(InjectedFault fault, Duration period) noexcept
     }
 }
 
-bool is_disturbed(std::uint64_t frame, std::span<const MonotonicTime> reads,
-                  Duration period) noexcept
-{
-    if (frame == 0 || frame + 1 >= reads.size())
-    {
-        return false;
-    }
-    const auto is_off = [&](std::uint64_t from)
-    {
-        const Duration off = reads[from + 1] - reads[from] - period;
-        return std::abs(off.ns) * 10 > period.ns;
-    };
-    return is_off(frame - 1) || is_off(frame);
-}
-
-InjectionJudge::InjectionJudge()
-{
-    check_.allocations_counted = allocation_counter::available();
-    for (std::uint64_t frame = 0; frame < InjectionPlan::kFrames; ++frame)
-    {
-        if (InjectionPlan::at(frame))
-        {
-            open_.push_back(frame);
-        }
-    }
-    check_.injected = open_.size();
-}
-
-void InjectionJudge::judge(DeadlineAccount& deadlines, std::span<const MonotonicTime> reads)
+SelfCheck judge_injections(DeadlineAccount& deadlines)
 {
     std::vector<std::uint64_t> over = deadlines.suspects();
     std::erase_if(over, [&](std::uint64_t frame)
                   { return !is_over_again(frame, deadlines.cpu_limit(), deadlines.period()); });
     deadlines.settle(over);
-    std::map<std::uint64_t, CycleFlag> noted;
-    for (const NotedCycle& cycle : deadlines.noted())
-    {
-        noted[cycle.frame] = cycle.flags;
-        const bool is_own = has_any(cycle.flags, kOwnFaults);
-        check_.false_flags += is_own && !InjectionPlan::at(cycle.frame) ? 1U : 0U;
-    }
-    std::erase_if(open_,
-                  [&](std::uint64_t frame)
-                  {
-                      const InjectedFault fault = *InjectionPlan::at(frame);
-                      const bool is_flagged = has_any(noted[frame], flag_of(fault));
-                      check_.flagged += is_flagged ? 1U : 0U;
-                      bool& is_seen = seen_[static_cast<std::size_t>(fault)];
-                      is_seen = is_seen || is_flagged;
-                      return is_flagged || !is_disturbed(frame, reads, deadlines.period());
-                  });
-}
-
-SelfCheck InjectionJudge::result() const
-{
-    SelfCheck check = check_;
-    check.disturbed = open_.size();
-    check.has_each_kind = true;
+    SelfCheck check;
+    check.allocations_counted = allocation_counter::available();
     for (std::uint64_t frame = 0; frame < InjectionPlan::kFrames; ++frame)
     {
-        const auto fault = InjectionPlan::at(frame);
-        check.has_each_kind =
-            check.has_each_kind && (!fault || seen_[static_cast<std::size_t>(*fault)]);
+        check.injected += InjectionPlan::at(frame) ? 1U : 0U;
+    }
+    for (const NotedCycle& cycle : deadlines.noted())
+    {
+        const auto fault = InjectionPlan::at(cycle.frame);
+        check.flagged += fault && has_any(cycle.flags, flag_of(*fault)) ? 1U : 0U;
+        check.false_flags += !fault && has_any(cycle.flags, kOwnFaults) ? 1U : 0U;
     }
     return check;
 }
 
-namespace
+Result<SelfCheck, Refusal> run_self_check(Options options)
 {
-
-/// Empty when all is well; else why there is nothing to judge.
-std::optional<Refusal> run_spoilt(const Options& options, InjectionJudge& judge)
-{
+    options.devices.clear();
+    options.report_paths.clear();
+    options.duration_s = static_cast<double>(InjectionPlan::kFrames + InjectionPlan::kSpacing) /
+                         static_cast<double>(options.rate_hz);
     auto session = Session::open(options);
     if (!session)
     {
         return session.error();
     }
-    std::vector<MonotonicTime> reads(static_cast<std::size_t>(options.frames()));
     std::unique_ptr<HapticDevice>& device = session.value()->controller().tools().front().device;
-    device = std::make_unique<SpoilingDevice>(std::move(device), options.period(), reads);
+    device = std::make_unique<SpoilingDevice>(std::move(device), options.period());
     auto run = session.value()->run("self-check");
     if (!run)
     {
@@ -233,37 +175,13 @@ std::optional<Refusal> run_spoilt(const Options& options, InjectionJudge& judge)
     {
         return interruption();
     }
-    reads.resize(std::min<std::size_t>(reads.size(), run.value().statistics.frames));
-    judge.judge(run.value().statistics.deadlines, reads);
-    return std::nullopt;
-}
-
-} // namespace
-
-Result<SelfCheck, Refusal> run_self_check(Options options)
-{
-    options.devices.clear();
-    options.report_paths.clear();
-    options.duration_s = static_cast<double>(InjectionPlan::kFrames + InjectionPlan::kSpacing) /
-                         static_cast<double>(options.rate_hz);
-    InjectionJudge judge;
-    for (int run = 0; run < InjectionJudge::kRunsMax && !judge.is_settled(); ++run)
-    {
-        if (auto error = run_spoilt(options, judge))
-        {
-            return *error;
-        }
-    }
-    return judge.result();
+    return judge_injections(run.value().statistics.deadlines);
 }
 
 std::string self_check_line(const SelfCheck& check)
 {
-    return fmt::format("{} of {} injected faults flagged as what they are, {} false flags{}{}",
+    return fmt::format("{} of {} injected faults flagged as what they are, {} false flags{}",
                        check.flagged, check.injected, check.false_flags,
-                       check.disturbed > 0
-                           ? fmt::format("; the machine disturbed {} each time", check.disturbed)
-                           : "",
                        check.allocations_counted ? "" : "; this build doesn't count allocations");
 }
 

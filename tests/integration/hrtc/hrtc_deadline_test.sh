@@ -32,7 +32,7 @@ done
 pass() {
     deadline_test --model good.spm --duration 1 "$@"
     [[ -z $(ls temporary) ]] || fault "left behind: $(ls temporary)"
-    check run.json schema == 2 frames == 1000 self_check.injected '>=' 15 duration_s == 1 \
+    check run.json schema == 3 frames == 1000 self_check.injected '>=' 15 duration_s == 1 \
         times_us.cpu.p50 '>' 0 times_us.response.max '>=' '1*times_us.response.p99' \
         deadline.machine_late+deadline.unexplained '<=' '1*deadline.missed'
     ((ended_with != 0)) || {

@@ -19,12 +19,10 @@ CycleMeasures clean_cycle()
 {
     CycleMeasures measures{};
     measures.cycle.periods = 1;
-    measures.cycle.sleeps = 1;
     measures.cycle.wake_lateness = microseconds(5);
     measures.frame = microseconds(20);
     measures.cpu = microseconds(19);
     measures.lateness_of_end = microseconds(25);
-    measures.usage.voluntary_switches = 1;
     return measures;
 }
 
@@ -55,7 +53,7 @@ TEST(DeadlineAccount, blames_the_loop_for_each_thing_that_it_must_not_do)
         {CycleFlag::page_fault, [](CycleMeasures& m) { m.usage.minor_faults = 1; }},
         {CycleFlag::page_fault, [](CycleMeasures& m) { m.usage.major_faults = 1; }},
         {CycleFlag::allocation, [](CycleMeasures& m) { m.allocations = 1; }},
-        {CycleFlag::gave_way, [](CycleMeasures& m) { m.usage.voluntary_switches = 2; }},
+        {CycleFlag::gave_way, [](CycleMeasures& m) { m.usage.voluntary_switches = 1; }},
         {CycleFlag::system_call, [](CycleMeasures& m) { m.calls.in_frame = 1; }},
     };
     for (const auto& [flag, cause] : kCauses)

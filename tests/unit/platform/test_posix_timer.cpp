@@ -89,14 +89,12 @@ TEST(PosixPeriodicTimer, gives_the_processor_up_but_for_the_margin)
     const MonotonicTime began = clock.now();
     const ThreadUsage before = read_thread_usage();
     ASSERT_TRUE(sut.start(kPosixPeriod, kMargin));
-    std::int64_t sleeps = 0;
     for (int i = 0; i < 20; ++i)
     {
         sut.sleep_until_margin();
-        sleeps += sut.spin_until_deadline().sleeps;
+        static_cast<void>(sut.spin_until_deadline());
     }
     const ThreadUsage used = read_thread_usage() - before;
-    EXPECT_GT(sleeps, 0);
     EXPECT_LT(used.cpu_time * 2, clock.now() - began); // A tenth, if nothing is in the way.
 }
 
