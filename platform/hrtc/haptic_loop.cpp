@@ -274,7 +274,7 @@ void HapticLoop::make_safe(const FrameOutput& output) noexcept
         {
             context.causes |= ForceOff::stale;
         }
-        context.causes |= touches_what_outruns(i) ? ForceOff::jump : ForceOff::none;
+        context.causes |= meets_what_outruns(i) ? ForceOff::jump : ForceOff::none;
         context.causes |= starves(i, output) ? ForceOff::starved : ForceOff::none;
         context.surface_damping_n_s_per_m = damping_touched(i, output);
         const SafetyOutput safe = ports_[i].make_safe(output.tools[i], context);
@@ -287,7 +287,10 @@ void HapticLoop::make_safe(const FrameOutput& output) noexcept
             note(i, safe.state, safe.causes);
         }
     }
-    note_touches(output);
+    if (parts_.pose_door != nullptr) // For the poses that the next frame begins with.
+    {
+        parts_.frame->list_touches(parts_.pose_door->belief(), touches_);
+    }
 }
 
 bool HapticLoop::may_touch(const PairOutput& pair, const FrameOutput& output) const noexcept
@@ -295,32 +298,14 @@ bool HapticLoop::may_touch(const PairOutput& pair, const FrameOutput& output) co
     return tactus::may_touch(pair, output.tools[pair.tool], radii_m_[pair.tool]);
 }
 
-/// For the poses that the next frame begins with.
-void HapticLoop::note_touches(const FrameOutput& output) noexcept
-{
-    touches_.clear();
-    touching_.clear();
-    for (const PairOutput& pair : output.pairs)
-    {
-        if (may_touch(pair, output))
-        {
-            touches_.push_back({pair.object, pair.point_m});
-            touching_.push_back(pair.tool);
-        }
-    }
-}
-
 /// As the frame found it.
-bool HapticLoop::touches_what_outruns(std::uint32_t tool) const noexcept
+bool HapticLoop::meets_what_outruns(std::uint32_t tool) const noexcept
 {
-    for (std::size_t i = 0; i < touches_.size() && parts_.pose_door != nullptr; ++i)
-    {
-        if (touching_[i] == tool && parts_.pose_door->outruns(touches_[i].object))
-        {
-            return true;
-        }
-    }
-    return false;
+    return std::ranges::any_of(touches_,
+                               [&](const ObjectTouch& touch) {
+                                   return touch.tool == tool && touch.is_in_reach &&
+                                          parts_.pose_door->outruns(touch.object);
+                               });
 }
 
 /// Whether the tool waits, and a piece doesn't come of a model that it is at.

@@ -100,8 +100,7 @@ private:
     [[nodiscard]] static bool touches_old_pose(std::uint32_t tool,
                                                const FrameOutput& output) noexcept;
     [[nodiscard]] bool may_touch(const PairOutput& pair, const FrameOutput& output) const noexcept;
-    void note_touches(const FrameOutput& output) noexcept;
-    [[nodiscard]] bool touches_what_outruns(std::uint32_t tool) const noexcept;
+    [[nodiscard]] bool meets_what_outruns(std::uint32_t tool) const noexcept;
     [[nodiscard]] bool starves(std::uint32_t tool, const FrameOutput& output) const noexcept;
     [[nodiscard]] double damping_touched(std::uint32_t tool,
                                          const FrameOutput& output) const noexcept;
@@ -119,9 +118,7 @@ private:
     std::vector<ToolForce> forces_;     ///< Likewise, for those who keep figures.
     std::vector<double> radii_m_;       ///< One a tool.
     std::vector<DeviceRecord> devices_; ///< Likewise, for those who show or record.
-    /// After the last frame: what tools may touch, and whose touch each is.
-    StaticVector<ObjectTouch, kMaxPairs> touches_;
-    StaticVector<std::uint32_t, kMaxPairs> touching_;
+    ObjectTouches touches_;             ///< What tools may touch soon, after the last frame.
     std::uint64_t frame_{0};
     std::uint64_t fade_frames_{0}; ///< That the last forces of a run take.
     std::uint64_t end_;            ///< Frame that is not run any more.
