@@ -4,6 +4,7 @@
 
 #include "rt_core/records/object_pose.hpp"
 
+#include <algorithm>
 #include <string_view>
 
 namespace tactus
@@ -37,6 +38,20 @@ inline constexpr std::string_view kMaterialRanges =
            material.viscosity_n_s_per_m >= 0.0 &&
            material.viscosity_n_s_per_m <= kMostDamped_n_s_per_m &&
            is_texture(material.texture_height_m, material.texture_length_m);
+}
+
+/// The nearest that is in range of one that is_sound().
+[[nodiscard]] constexpr Material within_ranges(Material material) noexcept
+{
+    const bool has_stiffness = material.stiffness_n_per_m != Material{}.stiffness_n_per_m;
+    material.stiffness_n_per_m =
+        has_stiffness ? std::clamp(material.stiffness_n_per_m, kSoftest_n_per_m, kStiffest_n_per_m)
+                      : material.stiffness_n_per_m;
+    material.static_friction = std::min(material.static_friction, kRoughest);
+    material.dynamic_friction = std::min(material.dynamic_friction, kRoughest);
+    material.damping_n_s_per_m = std::min(material.damping_n_s_per_m, kMostDamped_n_s_per_m);
+    material.viscosity_n_s_per_m = std::min(material.viscosity_n_s_per_m, kMostDamped_n_s_per_m);
+    return material;
 }
 
 } // namespace tactus

@@ -4,9 +4,9 @@
 
 #include "platform/base/printable.hpp"
 #include "platform/hrtc/following_hand.hpp"
+#include "platform/hrtc/material_limits.hpp"
 #include "platform/hrtc/object_pose.hpp"
 #include "platform/hrtc/scene_room.hpp"
-#include "platform/hrtc/verdict.hpp"
 #include "platform/simulated/hand_motions.hpp"
 #include "platform/simulated/simulated_device.hpp"
 #include "rt_core/force/angular_stiffness.hpp"
@@ -41,20 +41,6 @@ constexpr double kHandRoom = 10.0;
 double up_to_cents(double value)
 {
     return std::ceil(100.0 * value) / 100.0;
-}
-
-/// Surface damping, in N s/m, with which the device may have such a wall; the wall is one that it
-/// may have without. Rounded down to thousandths.
-double largest_damping(const DeviceLimits& device, double period_s, double wall_n_per_m)
-{
-    double enough = 0.0;
-    double too_much = device.damping_n_s_per_m; // As much as it has: no wall.
-    while (too_much - enough > 1e-6)
-    {
-        const double middle = 0.5 * (enough + too_much);
-        (stiffness_cap(device, period_s, middle) >= wall_n_per_m ? enough : too_much) = middle;
-    }
-    return std::floor(1e3 * enough + 1e-2) * 1e-3;
 }
 
 /// Without one it is simulated.
@@ -348,50 +334,21 @@ std::optional<Refusal> Controller::hang_load(const Options& options, std::size_t
     return std::nullopt;
 }
 
-/// An object whose damping leaves a tool's device no wall could never be felt.
+/// An object whose damping leaves a tool's device no wall could never be felt. What a server says
+/// is limited in the run.
 std::optional<Refusal> Controller::check_damping(const Options& options) const
 {
-    for (const ObjectSpec& object : objects_)
+    const bool is_served = options.transport == TransportKind::dds && !options.scene.empty();
+    for (std::size_t i = 0; i < objects_.size() && !is_served; ++i)
     {
-        if (const auto why = why_unfelt(models_[object.model.value].name, object.material))
+        const ObjectSpec& object = objects_[i];
+        if (const auto why = why_unfelt(models_[object.model.value].name, object.material, tools_))
         {
             return Refusal{
                 fmt::format("{}: {}", options.scene.empty() ? "--material" : "--scene", *why)};
         }
     }
     return std::nullopt;
-}
-
-std::optional<std::string> Controller::why_unfelt(const std::string& name,
-                                                  const Material& material) const
-{
-    std::optional<std::string> why;
-    for (std::size_t i = 0; i < tools_.size() && !why; ++i)
-    {
-        why = wall_refused(tools_[i], name, material);
-    }
-    return why;
-}
-
-std::optional<std::string> Controller::wall_refused(const ToolSetup& tool, const std::string& name,
-                                                    const Material& material) const
-{
-    const DeviceInfo& device = tool.device->info();
-    const double period_s = tool.conditioner.period_s;
-    const double bare_n_per_m = stiffness_cap(device.limits, period_s);
-    const double damping = material.damping_n_s_per_m;
-    if (bare_n_per_m < kSoftestFelt_n_per_m ||
-        stiffness_cap(device.limits, period_s, damping) >= kSoftestFelt_n_per_m)
-    {
-        return std::nullopt;
-    }
-    const double wall_n_per_m =
-        std::min({tool.spec.stiffness_n_per_m, material.stiffness_n_per_m, 0.5 * bare_n_per_m});
-    return fmt::format("a damping of {:.4g} N s/m on '{}' leaves the device {} no wall at {:.6g} "
-                       "Hz; at most {:.3g} leave it one that is felt, {:.3g} one of {:.4g} N/m",
-                       damping, name, device.name, 1.0 / period_s,
-                       largest_damping(device.limits, period_s, kSoftestFelt_n_per_m),
-                       largest_damping(device.limits, period_s, wall_n_per_m), wall_n_per_m);
 }
 
 std::optional<Refusal> Controller::simulate_device(const Options& options, std::size_t tool)

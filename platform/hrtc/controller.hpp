@@ -57,10 +57,6 @@ public:
     [[nodiscard]] const Budgets& budgets() const noexcept { return budgets_; }
     /// What the frame was made of.
     [[nodiscard]] const FrameSetup& setup() const noexcept { return setup_; }
-    /// Why the object of this name, and of this material, gives a tool no wall: its damping leaves
-    /// that tool's device none. Nothing where every tool feels it that feels anything.
-    [[nodiscard]] std::optional<std::string> why_unfelt(const std::string& name,
-                                                        const Material& material) const;
     /// The frame itself, its pools and tables, and the transport's side of them.
     [[nodiscard]] std::size_t pool_bytes() const noexcept { return arena_->used() + sizeof(Frame); }
     /// Of the first model, placed: widths are reported in it.
@@ -82,8 +78,6 @@ private:
     [[nodiscard]] std::optional<Refusal> finish_devices(const Options& options);
     void limit_force(const Options& options, ToolSetup& tool) const;
     [[nodiscard]] std::optional<Refusal> check_damping(const Options& options) const;
-    [[nodiscard]] std::optional<std::string>
-    wall_refused(const ToolSetup& tool, const std::string& name, const Material& material) const;
     [[nodiscard]] std::optional<Refusal> hang_load(const Options& options, std::size_t tool);
     [[nodiscard]] Result<std::size_t, Refusal> object_of_hand(const Options& options,
                                                               std::size_t tool) const;

@@ -271,7 +271,7 @@ Json scene_of(const RunRecord& record)
             {"came", record.run.scene_news.came},
             {"went", record.run.scene_news.went},
             {"feels", record.run.scene_news.feels},
-            {"unfelt", record.run.scene_news.unfelt},
+            {"limited", record.run.scene_news.limited},
             {"passed_over", record.run.scene_news.passed_over},
             {"walks", statistics.scene_walks},
             {"models", models},

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/hrtc/scene_keeper.hpp"
 
+#include "platform/hrtc/material_limits.hpp"
 #include "platform/hrtc/object_pose.hpp"
 #include "transport/content_hash.hpp"
 
@@ -12,9 +13,10 @@
 namespace tactus::hrtc
 {
 
-SceneKeeper::SceneKeeper(const dds::Catalogue& catalogue, std::unique_ptr<dds::SceneReader> reader,
-                         const Controller& controller, ShownScene scene, Log log)
-    : catalogue_(catalogue)
+SceneKeeper::SceneKeeper(std::span<const dds::Authority> authorities,
+                         std::unique_ptr<dds::SceneReader> reader, const Controller& controller,
+                         ShownScene scene, Log log)
+    : authorities_(authorities)
     , reader_(std::move(reader))
     , controller_(controller)
     , scene_(std::move(scene.name))
@@ -28,6 +30,10 @@ SceneKeeper::SceneKeeper(const dds::Catalogue& catalogue, std::unique_ptr<dds::S
     for (const ServedModel& model : controller.models())
     {
         headers_.push_back(ModelHeader::parse(model.header).value());
+    }
+    if (!scene_.empty())
+    {
+        hosts_.assign(1, scene.host_epoch);
     }
     for (std::uint32_t place = 0; place < slots_.size(); ++place)
     {
@@ -44,7 +50,6 @@ SceneKeeper::SceneKeeper(const dds::Catalogue& catalogue, std::unique_ptr<dds::S
         {
             slot.bound = scene.objects[place];
             places_[scene.objects[place]] = place;
-            hosts_.assign(1, scene.objects[place].host_epoch);
         }
     }
 }
@@ -58,27 +63,20 @@ void SceneKeeper::connect(PoseDoor& door, MonotonicTime now)
         if (const auto object = objects.find(name.number); object != objects.end())
         {
             move(place, object->second, now);
-            if (object->second.shown.material != slots_[place].spec.material)
-            {
-                feel(place, object->second.shown);
-            }
+            feel(place, object->second.shown);
         }
     }
 }
 
 void SceneKeeper::step(MonotonicTime now)
 {
-    if (catalogue_.version() != seen_catalogue_)
+    if (scene_.empty())
     {
-        seen_catalogue_ = catalogue_.version();
-        if (scene_.empty())
-        {
-            choose_model_hosts(now);
-        }
-        else
-        {
-            choose_scene_host();
-        }
+        follow_model_hosts(now);
+    }
+    else
+    {
+        follow_scene_host();
     }
     reader_->poll(hosts_, [&](dds::SceneNews news, const dds::SeenObject& object)
                   { take_news(news, object, now); });
@@ -92,10 +90,11 @@ std::optional<HostObject> SceneKeeper::shown_as(std::uint32_t object) const
     return object < slots_.size() ? slots_[object].bound : std::nullopt;
 }
 
-/// As long as it is there, the same one. When it goes, it takes its objects with it.
-void SceneKeeper::choose_scene_host()
+/// What the one before showed goes when another takes its place.
+void SceneKeeper::follow_scene_host()
 {
-    if (!hosts_.empty() && catalogue_.has_host(hosts_.front()))
+    const std::uint64_t epoch = authorities_.front().host();
+    if (hosts_.front() == epoch)
     {
         return;
     }
@@ -105,28 +104,22 @@ void SceneKeeper::choose_scene_host()
     }
     passed_over_.clear();
     left_out_.clear();
-    hosts_.clear();
-    if (const auto epoch = catalogue_.find_scene(scene_))
-    {
-        hosts_.push_back(*epoch);
-    }
+    limited_.clear();
+    hosts_.assign(1, epoch);
 }
 
-/// The offer first seen, as for the model's link: where two hosts serve it, one moves it.
-void SceneKeeper::choose_model_hosts(MonotonicTime now)
+void SceneKeeper::follow_model_hosts(MonotonicTime now)
 {
     hosts_.clear();
     for (std::size_t i = 0; i < model_hosts_.size(); ++i)
     {
-        const ServedModel& model = controller_.models()[i];
-        const dds::Catalogue::Offer* offer = catalogue_.find({model.name, model.hash});
-        const std::uint64_t epoch = offer != nullptr ? offer->host_epoch : 0;
+        const std::uint64_t epoch = authorities_[i].host();
         if (model_hosts_[i] != epoch)
         {
             model_hosts_[i] = epoch;
             find_first(i, now);
         }
-        if (epoch != 0 && std::ranges::find(hosts_, epoch) == hosts_.end())
+        if (std::ranges::find(hosts_, epoch) == hosts_.end())
         {
             hosts_.push_back(epoch);
         }
@@ -248,9 +241,8 @@ void SceneKeeper::bind(std::uint32_t place, const dds::SeenObject& object, Monot
     {
         free_.erase(place);
         slot.spec = {ModelId{static_cast<std::uint32_t>(*model_of(object.shown.model))},
-                     object.shown.material};
+                     felt(name, object.shown)};
         slot.is_here = true;
-        check_wall(object.shown.name, object.shown.material);
         untold_.push_back(place);
     }
     move(place, object, now);
@@ -280,8 +272,12 @@ void SceneKeeper::move(std::uint32_t place, const dds::SeenObject& object, Monot
 void SceneKeeper::feel(std::uint32_t place, const ShownObject& shown)
 {
     Slot& slot = slots_[place];
-    check_wall(shown.name, shown.material);
-    slot.spec.material = shown.material;
+    const Material material = felt(*slot.bound, shown);
+    if (material == slot.spec.material)
+    {
+        return;
+    }
+    slot.spec.material = material;
     if (slot.is_told && !slot.owes_feel)
     {
         slot.owes_feel = true;
@@ -289,14 +285,20 @@ void SceneKeeper::feel(std::uint32_t place, const ShownObject& shown)
     }
 }
 
-/// It is touched all the same, softer than can be felt: the device's cap sees to that.
-void SceneKeeper::check_wall(const std::string& name, const Material& material)
+/// A server takes no wall from a device.
+Material SceneKeeper::felt(const HostObject& object, const ShownObject& shown)
 {
-    if (const auto why = controller_.why_unfelt(name, material))
+    const Material material = limited(shown.material, controller_.tools());
+    if (material != shown.material)
     {
-        ++news_.unfelt;
-        log_.write(*why);
+        ++news_.limited;
+        if (limited_.insert(object).second)
+        {
+            log_.write(fmt::format("the material of object '{}' is limited: {}", shown.name,
+                                   differences(shown.material, material)));
+        }
     }
+    return material;
 }
 
 void SceneKeeper::leave(std::uint32_t place)

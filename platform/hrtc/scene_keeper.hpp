@@ -6,7 +6,7 @@
 #include "platform/hrtc/scene_choice.hpp"
 #include "platform/remote/pose_door.hpp"
 #include "platform/time.hpp"
-#include "transport/dds/catalogue.hpp"
+#include "transport/dds/authority.hpp"
 #include "transport/dds/scene_reader.hpp"
 #include "transport/log.hpp"
 
@@ -17,6 +17,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,25 +31,27 @@ struct SceneNewsCounts
     std::uint64_t came{0};        ///< Objects that the frame was told of,
     std::uint64_t went{0};        ///< and that left it.
     std::uint64_t feels{0};       ///< Other materials that it was told of.
-    std::uint64_t unfelt{0};      ///< Materials whose damping leaves a tool's device no wall.
+    std::uint64_t limited{0};     ///< Materials that are felt otherwise than their server says.
     std::uint64_t passed_over{0}; ///< That can't be touched: no such model, or no room.
 };
 
 /// Keeps our objects where the hosts have theirs. Transport thread.
 ///
-/// With a scene ours are all objects of the host whose scene has that name: they come, move and go
-/// as it says. When it goes, so do they, and those of another host with the scene come.
+/// With a scene ours are all objects of the host whose word counts for it: they come, move and go
+/// as it says. When it is gone they stay and grow stale; where another takes its place, they go and
+/// its objects come.
 ///
-/// Without one, the first object of ours that shows a model moves like an object of the host that
-/// serves the model: the one with the least number of those with that model.
+/// Without one, the first object of ours that shows a model moves like an object of the host whose
+/// word counts for the model: the one with the least number of those with that model.
 class SceneKeeper
 {
 public:
-    /// `reader` has followed the scene's host, if there is a scene. Catalogue and controller must
-    /// outlive it. `log` gets a line for what can't be touched, and
-    /// for what can't be felt.
-    SceneKeeper(const dds::Catalogue& catalogue, std::unique_ptr<dds::SceneReader> reader,
-                const Controller& controller, ShownScene scene, Log log);
+    /// `reader` has followed the scene's host, if there is a scene. `authorities` are the scene's,
+    /// or one a model; they are stepped elsewhere. They and the controller must outlive it. `log` gets a line for what can't be touched, and one for each object that is
+    /// felt otherwise than its server says.
+    SceneKeeper(std::span<const dds::Authority> authorities,
+                std::unique_ptr<dds::SceneReader> reader, const Controller& controller,
+                ShownScene scene, Log log);
 
     /// Where it puts what it learns; lives as long as the run. First of all.
     void connect(PoseDoor& door, MonotonicTime now);
@@ -80,8 +83,8 @@ private:
         std::uint32_t generation{0};
     };
 
-    void choose_scene_host();
-    void choose_model_hosts(MonotonicTime now);
+    void follow_scene_host();
+    void follow_model_hosts(MonotonicTime now);
     void take_news(dds::SceneNews news, const dds::SeenObject& object, MonotonicTime now);
     void find_first(std::size_t model, MonotonicTime now);
     void offer(const dds::SeenObject& object, MonotonicTime now);
@@ -90,21 +93,20 @@ private:
     void unbind(std::uint32_t place);
     void move(std::uint32_t place, const dds::SeenObject& object, MonotonicTime now);
     void feel(std::uint32_t place, const ShownObject& shown);
-    void check_wall(const std::string& name, const Material& material);
+    [[nodiscard]] Material felt(const HostObject& object, const ShownObject& shown);
     void leave(std::uint32_t place);
     void pass_on(MonotonicTime now);
     void hear(MonotonicTime now);
     [[nodiscard]] ObjectPose pose_of(std::size_t model, const dds::SeenObject& object) const;
     [[nodiscard]] std::optional<std::size_t> model_of(const ContentHash& hash) const;
 
-    const dds::Catalogue& catalogue_;
+    std::span<const dds::Authority> authorities_;
     std::unique_ptr<dds::SceneReader> reader_;
     const Controller& controller_;
     std::string scene_;
     RateLimitedLog log_;
     std::vector<ModelHeader> headers_; ///< Views into the controller's models.
     PoseDoor* door_{nullptr};
-    std::uint64_t seen_catalogue_{0};
     std::vector<std::uint64_t> hosts_;       ///< That are followed.
     std::vector<std::uint64_t> model_hosts_; ///< Without a scene: of each model, or 0.
     std::vector<std::uint32_t> first_;       ///< Without a scene: the object of each model.
@@ -113,6 +115,7 @@ private:
     std::set<std::uint32_t> free_;               ///< Places of no object.
     std::set<Generation> passed_over_;           ///< Nobody can touch them,
     std::set<Generation> left_out_;              ///< or there is no room for them.
+    std::set<HostObject> limited_;               ///< A line has told of their materials.
     std::deque<std::uint32_t> untold_; ///< Where is_here and is_told differ, or a feel is owed.
     std::vector<dds::PoseCounts> counts_;
     std::vector<MonotonicTime> heard_;

@@ -50,9 +50,9 @@ std::vector<std::string> losses_of(const Json& report)
                                          softest.get<double>()));
         }
     }
-    if (const auto unfelt = report["scene"]["unfelt"].get<std::uint64_t>(); unfelt > 0)
+    if (const auto limited = report["scene"]["limited"].get<std::uint64_t>(); limited > 0)
     {
-        losses.push_back(fmt::format("{} materials whose damping leaves no wall", unfelt));
+        losses.push_back(fmt::format("{} materials were limited", limited));
     }
     if (report["force"]["contact_share"].get<double>() == 0.0)
     {

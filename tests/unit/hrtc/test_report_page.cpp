@@ -37,7 +37,7 @@ Json report_of(const std::string& model)
         "work": {"splits": 29, "merges": 31},
         "budgets": {"frame_us": null, "at_floor": 37, "splits": {"min": 41}},
         "scene": {"objects": 811, "objects_max": 821, "pairs_awake_max": 823,
-                  "invisible_wall_frames": 827, "unfelt": 0,
+                  "invisible_wall_frames": 827, "limited": 0,
                   "models": {"known": 829, "resident": 839}},
         "pools": {"pages": {"used_max": 43, "capacity": 47},
                   "faces": {"used_max": 53, "capacity": 59}, "total_bytes": 2097169},
@@ -282,9 +282,9 @@ TEST(ReportPage, says_what_went_wrong)
                                         "nothing was touched"}));
     report["tools"][0]["softest_wall_n_per_m"] = 0.5;
     EXPECT_EQ(losses_of(report)[4], "tool 0: a wall of 0.5 N/m, which nobody feels");
-    report["scene"]["unfelt"] = 2;
-    EXPECT_EQ(losses_of(report)[5], "2 materials whose damping leaves no wall");
-    report["scene"]["unfelt"] = 0;
+    report["scene"]["limited"] = 2;
+    EXPECT_EQ(losses_of(report)[5], "2 materials were limited");
+    report["scene"]["limited"] = 0;
     report["tools"][0]["softest_wall_n_per_m"] = nullptr;
     EXPECT_EQ(losses_of(report).size(), 5U);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "platform/hrtc/scene_keeper.hpp"
+#include "rt_core/force/stiffness_rule.hpp"
 #include "tests/shared/test_model.hpp"
 #include "tests/unit/transport/dds_rig.hpp"
 #include "transport/dds/dds_client.hpp"
@@ -9,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -134,6 +136,8 @@ protected:
 
     /// The last object that came.
     [[nodiscard]] const SceneChange& last_come() { return last_[SceneChangeKind::object_comes]; }
+    [[nodiscard]] const SceneChange& last_feel() { return last_[SceneChangeKind::object_feels]; }
+    [[nodiscard]] const ToolSetup& tool() { return controller_->tools().front(); }
 
     tactus::test::Lines lines;
     std::unique_ptr<dds::DdsHost> host;
@@ -195,26 +199,42 @@ TEST_F(FollowedScene, feels_as_its_host_says)
     EXPECT_EQ(keeper->news().feels, 2U);
 }
 
-TEST_F(FollowedScene, tells_what_leaves_a_device_no_wall_and_lets_it_come)
+/// Out of the ranges of --material, or damped by more than leaves the device half of its wall.
+TEST_F(FollowedScene, feels_no_more_than_the_device_allows_and_tells_it_once)
 {
     const std::uint32_t cup = show(*host, "cup", 0.0);
     ASSERT_NO_FATAL_FAILURE(start(true, 4));
-    Material thick;
-    thick.damping_n_s_per_m = 5.0; // The simulated device has less itself.
+    Material thick{9'000.0, 50.0, 40.0, 5.0, 900.0};
     ASSERT_TRUE(host->objects().feel(cup, thick));
     ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_feels] == 1; }));
-    EXPECT_TRUE(lines.has("a damping of 5 N s/m on 'cup' leaves the device sim no wall at 1000 Hz; "
-                          "at most "))
+    const Material felt = last_feel().object.material;
+    EXPECT_EQ(felt.stiffness_n_per_m, 3'000.0);
+    EXPECT_EQ(felt.static_friction, 3.0);
+    EXPECT_EQ(felt.dynamic_friction, 3.0);
+    EXPECT_EQ(felt.viscosity_n_s_per_m, 20.0);
+    const DeviceLimits& device = tool().device->info().limits;
+    const double period_s = tool().conditioner.period_s;
+    EXPECT_GE(stiffness_cap(device, period_s, felt.damping_n_s_per_m),
+              std::min(tool().spec.stiffness_n_per_m, 0.5 * stiffness_cap(device, period_s)));
+    EXPECT_GT(felt.damping_n_s_per_m, 0.5 * device.damping_n_s_per_m);
+    EXPECT_TRUE(lines.has("the material of object 'cup' is limited: stiffness 9000 to 3000, "
+                          "static 50 to 3, dynamic 40 to 3, damping 5 to "))
         << lines.text();
-    EXPECT_EQ(keeper->news().unfelt, 1U);
+    EXPECT_EQ(keeper->news().limited, 1U);
     ShownObject pot{"pot", host->models()[1].store().hash(), {}, {}};
     pot.material = thick;
     ASSERT_TRUE(host->objects().show(pot));
     ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_comes] == 1; }));
-    EXPECT_TRUE(lines.has("a damping of 5 N s/m on 'pot' leaves")) << lines.text();
+    EXPECT_EQ(last_come().object.material, felt);
+    EXPECT_TRUE(lines.has("the material of object 'pot' is limited: ")) << lines.text();
+    thick.static_friction = 60.0; // It is felt as before.
+    ASSERT_TRUE(host->objects().feel(cup, thick));
+    ASSERT_TRUE(step_until([&] { return keeper->news().limited == 3; }));
     ASSERT_TRUE(host->objects().feel(cup, {}));
     ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_feels] == 2; }));
-    EXPECT_EQ(keeper->news().unfelt, 2U);
+    EXPECT_EQ(keeper->news().limited, 3U);
+    const std::string text = lines.text();
+    EXPECT_EQ(text.find("object 'cup' is limited"), text.rfind("object 'cup' is limited"));
 }
 
 TEST_F(FollowedScene, leaves_out_what_has_no_room_until_there_is_some)
