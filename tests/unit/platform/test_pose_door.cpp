@@ -432,8 +432,8 @@ TEST(PoseDoor, takes_what_outruns_its_belief_after_a_rest_at_once_and_says_so)
     EXPECT_TRUE(outran);
 }
 
-/// What its host's clock says is a number like any other: it can't overflow, and it stops nothing.
-TEST(PoseDoor, takes_poses_whatever_the_clock_of_their_host_says)
+/// Times of a host are numbers that may be anything: no difference of them overflows.
+TEST(PoseDoor, takes_poses_of_any_time_that_the_clock_of_their_host_shows)
 {
     constexpr std::int64_t kLeast = std::numeric_limits<std::int64_t>::min();
     constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
