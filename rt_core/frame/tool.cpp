@@ -81,7 +81,7 @@ FrameFault Tool::begin(const ToolState& sample, double period_s,
     const FrameFault fault = take(sample);
     is_still_ = fault == FrameFault::none && objects.empty() && !lost_object_ && !leapt_by_ &&
                 goal_ == last && goal_.velocity_m_per_s == Vec3(0.0, 0.0, 0.0);
-    look_at_motion(objects);
+    motion_ = objects.empty() ? Motion{} : motion_of(objects);
     with(body_,
          [&](auto& body)
          {
@@ -152,9 +152,9 @@ bool Tool::is_jump(const NearObject& object) const noexcept
 }
 
 /// Of objects whose surface may be at the tool: what is farther changes no force in this frame.
-void Tool::look_at_motion(std::span<const NearObject> objects) noexcept
+Tool::Motion Tool::motion_of(std::span<const NearObject> objects) const noexcept
 {
-    motion_ = {};
+    Motion motion;
     const Ball reach = reach_ball();
     for (const NearObject& object : objects)
     {
@@ -163,11 +163,12 @@ void Tool::look_at_motion(std::span<const NearObject> objects) noexcept
             continue;
         }
         const double way_m = way_in_ball_m(*object.before, *object.now, reach.center, reach.radius);
-        motion_.object_way_m = std::max(motion_.object_way_m, way_m);
-        motion_.object_turn_rad =
-            std::max(motion_.object_turn_rad,
+        motion.object_way_m = std::max(motion.object_way_m, way_m);
+        motion.object_turn_rad =
+            std::max(motion.object_turn_rad,
                      rotation_between(object.before->rotation, object.now->rotation).norm());
     }
+    return motion;
 }
 
 void Tool::forget(const PlacedSurface& gone) noexcept

@@ -106,6 +106,14 @@ public:
 
 private:
     using Body = std::variant<Follower, Proxy, RigidProxy>;
+    /// How objects move and carry it in this frame, as ToolOutput tells.
+    struct Motion
+    {
+        double object_way_m{0.0};
+        double object_turn_rad{0.0};
+        Vec3 carried_m{0.0, 0.0, 0.0};
+        Vec3 carried_rad{0.0, 0.0, 0.0};
+    };
     /// After so many equal outputs of equal inputs nothing within the body changes any more.
     static constexpr std::uint32_t kSettledOutputs = 4;
 
@@ -115,7 +123,7 @@ private:
     void stand(const auto& body) noexcept;
     [[nodiscard]] FrameFault take(const ToolState& sample) noexcept;
     [[nodiscard]] bool is_jump(const NearObject& object) const noexcept;
-    void look_at_motion(std::span<const NearObject> objects) noexcept;
+    [[nodiscard]] Motion motion_of(std::span<const NearObject> objects) const noexcept;
     /// Of its core, as the last frame left it.
     [[nodiscard]] Vec3 center_m() const noexcept
     {
@@ -131,14 +139,6 @@ private:
     Vec3 began_m_{0.0, 0.0, 0.0}; ///< Its core's middle, when this frame or the last one began.
     double way_left_m_{0.0};      ///< In this frame, by the speed limit.
     ToolOutput output_;           ///< The last frame's.
-    /// How objects move and carry it in this frame, as ToolOutput tells.
-    struct Motion
-    {
-        double object_way_m{0.0};
-        double object_turn_rad{0.0};
-        Vec3 carried_m{0.0, 0.0, 0.0};
-        Vec3 carried_rad{0.0, 0.0, 0.0};
-    };
     Motion motion_;
     bool is_still_{false};
     std::uint32_t equal_outputs_{0};
