@@ -50,6 +50,7 @@ BodyRoom::BodyRoom(std::span<const PlacedSurface> surfaces, double clear_m,
         free_m_ = std::min(free_m_, free_of(placed));
         is_clear_ = is_clear_ && placed.lower_m > 0.0;
         is_crossed_ = is_crossed_ || (is_exact && !(placed.lower_m > 0.0));
+        is_scarce_ = is_scarce_ || (is_exact && placed.lower_m < kScarce * radius_m);
     }
 }
 

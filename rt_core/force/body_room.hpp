@@ -59,6 +59,9 @@ public:
     [[nodiscard]] bool is_clear() const noexcept { return is_clear_; }
     /// The core is known to touch something.
     [[nodiscard]] bool is_crossed() const noexcept { return is_crossed_; }
+    /// The core is known to be so near to something that all but the last tenth of the radius is
+    /// used up.
+    [[nodiscard]] bool is_scarce() const noexcept { return is_scarce_; }
 
     /// The share of the way that is proven free, 0 .. 1.
     [[nodiscard]] double share_of(const BodyWay& way) const noexcept TACTUS_NONBLOCKING;
@@ -73,6 +76,7 @@ private:
     double free_m_;
     bool is_clear_;
     bool is_crossed_{false};
+    bool is_scarce_{false};
 };
 
 } // namespace tactus

@@ -20,6 +20,8 @@ constexpr double kDipShare = 0.1;
 constexpr double kWorthAList = 0.05;
 /// A proxy on its way along a surface feels what is this share of the radius below it.
 constexpr double kNearlyTouching = 0.1;
+/// A weaker push, of a stiffness of zero say, has no direction: the last contact's is kept.
+constexpr double kLeastPush_n = 1e-150;
 
 /// The planes of one step, and whose they are.
 struct StepPlanes
@@ -451,7 +453,10 @@ Proxy::Touch Proxy::feel_at(Vicinity& near, std::span<const PlacedSurface> surfa
         }
         hold.bump_m = along_all(hold.bump_m, touch.planes, held.held_by.view());
     }
-    normal_ = hold.push_n.normalized();
+    if (hold.push_n.squaredNorm() > kLeastPush_n * kLeastPush_n)
+    {
+        normal_ = hold.push_n.normalized();
+    }
     if (hold.rubs)
     {
         touch.kept = rub(hold, held.motion - touch.planes.way_out(kContactTolerance * radius_));

@@ -273,8 +273,9 @@ void RigidProxy::step(const ToolGoal& goal, std::span<const PlacedSurface> surfa
     {
         found = planes_->nearest(wanted - bumps.aside);
     }
-    is_squeezed_ = found.is_squeezed;
     is_crowded_ = is_crowded_ || planes_->is_crowded();
+    // Contacts that were left out would have to hold what uses up the last of the radius.
+    is_squeezed_ = found.is_squeezed || (is_crowded_ && room.is_scarce());
     sticks_ = found.sticks;
     slides_ = found.slides;
     output.in_contact = !found.pushes.empty();

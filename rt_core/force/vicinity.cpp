@@ -320,7 +320,7 @@ HalfSpace<3> Vicinity::half_space(std::uint32_t face, double radius_m) noexcept
 std::optional<std::uint32_t> Vicinity::find_entered(const Vec3& motion, double radius_m,
                                                     std::span<const std::uint32_t> passed) noexcept
 {
-    TACTUS_ASSERT(radius_m > 0.0);
+    TACTUS_ASSERT(parts_.empty() || radius_m > 0.0); // A point has no skin where no surface is.
     const Vec3 place = place_ + motion;
     double deepest = radius_m * (1.0 - kContactTolerance);
     std::optional<std::uint32_t> entered;
@@ -442,7 +442,11 @@ double Vicinity::share_before(std::uint32_t face, const Vec3& motion, double rad
         {
             return 1.0;
         }
-        const double step = std::max(0.0, gap) / closing;
+        if (!(gap > 0.0))
+        {
+            break; // It touches here: it may even go along the face, which nothing divides.
+        }
+        const double step = gap / closing; // Below 1 - share.
         share += step;
         if (step <= least_step)
         {

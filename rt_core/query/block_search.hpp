@@ -74,10 +74,11 @@ struct Findings
     const double open = std::min(found.open_m, found.dropped_m);
     // Less than `open`, where what is not exact may begin.
     answer.certified_radius_m = open > 0.0 ? std::min(reach_m, open * (1.0 - 0x1p-52)) : -1.0;
-    answer.kind = answer.lower_m > reach_m    ? AnswerKind::decided
-                  : is_nearest_proven(found)  ? AnswerKind::exact
-                  : answer.lower_m == reach_m ? AnswerKind::decided
-                                              : AnswerKind::bracket;
+    const bool is_beyond = answer.lower_m > 0.0 && answer.lower_m == reach_m;
+    answer.kind = answer.lower_m > reach_m   ? AnswerKind::decided
+                  : is_nearest_proven(found) ? AnswerKind::exact
+                  : is_beyond                ? AnswerKind::decided
+                                             : AnswerKind::bracket;
     TACTUS_ASSERT(!(answer.lower_m > answer.upper_m)); // U may be no number: then L is 0.
     return answer;
 }

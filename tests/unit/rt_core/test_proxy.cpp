@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -523,6 +524,70 @@ TEST(Proxy, a_tool_without_a_radius_stays_a_skin_away)
     }
     const ToolOutput output = rig.settle(Vec3(0.0, 0.0, 0.049));
     ASSERT_TRUE(output.in_contact);
+}
+
+TEST(Proxy, a_point_with_no_surface_near_goes_as_far_as_everything_is_clear)
+{
+    ToolSpec point = ball_tool();
+    point.radius_m = 0.0;
+    ProxyRig rig(std::vector<Solid>{}, Vec3(0.0, 0.0, 0.0), point);
+    rig.clear = 3.0;
+    const ToolOutput output = rig.step(Vec3(6.0, 0.0, 0.0));
+    EXPECT_NEAR(rig.sut.position_m().x(), 3.0, 1e-9);
+    EXPECT_FALSE(output.in_contact);
+    EXPECT_EQ(output.force_n, Vec3(0.0, 0.0, 0.0));
+}
+
+/// Both sides of a gap that is narrower than the ball, or of a plate that is thinner than that.
+TEST(Proxy, without_room_rests_and_moves_exactly_along_the_walls_with_friction_and_without)
+{
+    constexpr std::array<double, 4> kRoom_m{-1e-4, 0.0, 1e-4, 1.1 * kRadius};
+    for (const double room_m : kRoom_m)
+    {
+        for (const double friction : {0.0, 0.3})
+        {
+            TriangleList walls = plane();
+            for (const auto& face : plane())
+            {
+                walls.push_back(face);
+                for (Vec3f& corner : walls.back())
+                {
+                    corner[2] = static_cast<float>(room_m);
+                }
+            }
+            ProxyRig rig(walls, Vec3(0.1, 0.0, 0.5 * room_m));
+            rig.material() = {kStiffness, friction, friction, 0.0};
+            Vec3 hand(0.1, 0.0, 0.5 * room_m);
+            for (const double step_m : {0.0, 1e-6, 1e-12, 1e-3, -1e-200})
+            {
+                for (int frame = 0; frame < 20; ++frame)
+                {
+                    hand.x() += step_m;
+                    const ToolOutput output = rig.step(hand);
+                    ASSERT_EQ(output.squeezed, room_m != 0.0)
+                        << room_m << ", " << friction << ", " << step_m;
+                    ASSERT_TRUE(output.force_n.allFinite());
+                    ASSERT_TRUE(rig.sut.position_m().allFinite());
+                }
+            }
+        }
+    }
+}
+
+/// A server may say of an object that it has no stiffness to speak of.
+TEST(Proxy, a_push_too_weak_for_a_direction_leaves_the_last_one)
+{
+    ProxyRig rig(plane(), Vec3(0.1, 0.0, 0.02));
+    rig.settle(Vec3(0.1, 0.0, 0.005), 20);
+    rig.material().stiffness_n_per_m = 1e-200;
+    rig.settle(Vec3(0.1, 0.0, 0.004), 20);
+    const Vec3 across(0.1, 0.0, 0.5);
+    for (int frame = 0; frame < 20; ++frame)
+    {
+        const ToolOutput output = rig.step(across);
+        ASSERT_TRUE(output.force_n.allFinite());
+    }
+    EXPECT_NEAR((rig.sut.position_m() - across).norm(), 0.0, 1e-6);
 }
 
 TEST(Proxy, friction_rounds_a_ball_as_well)

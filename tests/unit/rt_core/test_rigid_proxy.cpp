@@ -212,7 +212,8 @@ TEST(RigidProxy, is_not_run_over_by_an_object_that_turns_and_leaps)
         for (int i = 0; i < 200; ++i)
         {
             ObjectPose& pose = rig.objects[0].pose;
-            pose.rotation = turn(random.in_cube(1.0), random.between(0.0, 0.05)) * pose.rotation;
+            const Vec3 axis = random.in_cube(1.0);
+            pose.rotation = turn(axis, random.between(0.0, 0.05)) * pose.rotation;
             pose.translation_m += random.in_cube(0.004);
             const ToolOutput output = rig.step(to_world(pose, over), pose.rotation);
             ASSERT_FALSE(output.frozen) << i;
@@ -273,7 +274,7 @@ public:
         touches.is_truncated = is_truncated;
         const Material material;
         ProxyMemory memory;
-        PlacedSurface placed{&pose_, surface_.get(), &material, 0.0, 0.0, kBodyRadius, &touches};
+        PlacedSurface placed{&pose_, surface_.get(), &material, 0.0, 0.0, lower_m, &touches};
         placed.memory = &memory;
         sut.see(hand_at(goal));
         return sut.respond(hand_at(goal), {&placed, 1}, kInfinity);
@@ -294,6 +295,7 @@ private:
 public:
     RigidProxy sut{tool_of(Segment{{0, 0, -0.01}, {0, 0, 0.01}}), planes_};
     bool is_truncated{false};
+    double lower_m{kBodyRadius}; ///< Of everything, as it is told.
 };
 
 /// The i-th of `count` directions on a cone, none of which lies between others.
@@ -349,6 +351,24 @@ TEST(RigidProxy, that_is_not_told_of_all_touches_says_so)
     ball.is_truncated = true;
     static_cast<void>(ball.step({}, Vec3(0, 0, 0)));
     EXPECT_TRUE(ball.sut.is_crowded());
+}
+
+TEST(RigidProxy, that_is_not_told_of_all_touches_fades_where_its_radius_is_all_but_used_up)
+{
+    for (const bool is_truncated : {false, true})
+    {
+        for (const double left : {0.2, 0.05})
+        {
+            ToldBall ball;
+            static_cast<void>(ball.step({}, Vec3(0, 0, 0)));
+            ball.is_truncated = is_truncated;
+            ball.lower_m = left * kBodyRadius;
+            const ToolOutput output =
+                ball.step({ball.contact(Vec3(0, 0, 1), kBodyRadius)}, Vec3(0, 0, -0.1));
+            EXPECT_TRUE(output.in_contact);
+            EXPECT_EQ(output.squeezed, is_truncated && left < 0.1) << left;
+        }
+    }
 }
 
 TEST(RigidProxy, without_a_radius_keeps_a_skin)

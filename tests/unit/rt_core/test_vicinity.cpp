@@ -462,4 +462,28 @@ TEST(Vicinity, of_every_set_of_kernels_finds_the_same)
     }
 }
 
+TEST(Vicinity, a_ball_in_a_face_goes_no_way_along_it_or_deeper)
+{
+    const ObjectPose pose;
+    const Material material;
+    const auto surface = surface_of(plane(), Vec3(0, 0, 0.1), 10.0);
+    const PlacedSurface placed{&pose, surface.get(), &material, 1e-6};
+    Vicinity sut({&placed, 1}, Vec3(0, 0, 0.1), 10.0);
+    sut.stand_at(Vec3(0, 0, 0), Vec3(0, 0, 1));
+    for (const Vec3& motion : {Vec3(0, 0, 0), Vec3(0.2, 0, 0), Vec3(1e-200, 0, 0),
+                               Vec3(0, 0, -0.05), Vec3(0.1, 0, -1e-300)})
+    {
+        EXPECT_EQ(sut.share_before(0, motion, 0.2), 0.0) << motion.transpose();
+    }
+    EXPECT_EQ(sut.share_before(0, Vec3(0, 0, 0.5), 0.2), 1.0) << "out of it all of the way is free";
+    EXPECT_EQ(sut.share_before(0, Vec3(0, 0, 0), 0.05), 1.0);
+    EXPECT_NEAR(sut.share_before(0, Vec3(0, 0, -0.1), 0.05), 0.5, 1e-6);
+}
+
+TEST(Vicinity, of_nothing_lets_a_point_without_a_skin_go)
+{
+    Vicinity sut({}, Vec3(0, 0, 0), 1.0);
+    EXPECT_FALSE(sut.find_entered(Vec3(1, 2, 3), 0.0).has_value());
+}
+
 } // namespace tactus::test
