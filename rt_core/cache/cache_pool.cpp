@@ -39,7 +39,7 @@ void CachePool::adopt_arrivals(std::uint32_t budget, std::uint32_t frame,
     wish_room_ = static_cast<std::uint32_t>(door.wanted.capacity() - door.wanted.size());
     wish_room_at_start_ = wish_room_;
     refused_class_ = kUrgencyClasses;
-    taken_count_ = 0;
+    forget_taken();
     const std::uint32_t arrivals_end =
         std::min(budget - std::min(budget, work.pages_adopted), kMaxArrivalsPerFrame);
     std::uint32_t arrivals = 0;

@@ -40,6 +40,8 @@ public:
     /// kMaxLinkUpdatesPerFrame. Wishes that waited for too long are forgotten.
     void adopt_arrivals(std::uint32_t budget, std::uint32_t frame,
                         WorkCounters& work) noexcept TACTUS_NONBLOCKING;
+    /// The frame begins: it has taken nothing yet.
+    void forget_taken() noexcept { taken_count_ = 0; }
     /// What the last one took. With the frame's arguments this is all that decides what the frame
     /// does. Valid until the next one.
     [[nodiscard]] DoorTake taken() const noexcept

@@ -150,6 +150,7 @@ FrameOutput Frame::run(const FrameInput& input, StageMark mark) noexcept
     budgets_ = budgets;
     rules_.now_ns = input.now_ns;
     rules_.frame = frame_;
+    pools_.cache.forget_taken();
     change_scene(input.changes);
     begin(input.tools);
     if (try_rest(input))
