@@ -6,26 +6,39 @@
 #include "host_tools/simplify/simplify.hpp"
 #include "rt_core/base/static_vector.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <nanoflann.hpp>
+#include <numeric>
 #include <span>
+#include <vector>
 
 namespace tactus
 {
 
-/// Nearest neighbours among some vertices of a mesh.
+/// Nearest neighbours among some vertices of a mesh. Vertices at one position, as thousands of
+/// faces round one edge have them, are one place of the search tree: a tree of equal points looks
+/// at all of them each time.
 class VertexSearch
 {
 public:
-    /// `vertices` must outlive the search.
+    /// `vertices` ascend.
     VertexSearch(const QuantisedMesh& mesh, std::span<const std::uint32_t> vertices)
-        : points_{mesh, vertices}, tree_(3, points_)
+        : points_(mesh, vertices), tree_(3, points_)
     {
     }
 
-    /// The 12 nearest to a vertex of the mesh, nearest first; fewer when there aren't as many.
+    /// Distinct positions of the vertices.
+    [[nodiscard]] std::size_t place_count() const noexcept
+    {
+        return points_.kdtree_get_point_count();
+    }
+
+    /// The 12 nearest to a vertex of the mesh, nearest first; fewer when there aren't as many. Of
+    /// those at one position the next above the vertex come first, so that each of a crowd gets
+    /// others.
     [[nodiscard]] StaticVector<std::uint32_t, 12> nearest(std::uint32_t vertex) const
     {
         std::array<std::uint32_t, 12> places{};
@@ -36,7 +49,16 @@ public:
         StaticVector<std::uint32_t, 12> found;
         for (std::size_t i = 0; i < count; ++i)
         {
-            found.push_back(points_.vertices[places[i]]);
+            const std::span<const std::uint32_t> crowd = points_.vertices_at(places[i]);
+            const auto next = std::ranges::upper_bound(crowd, vertex) - crowd.begin();
+            for (std::size_t k = 0; k < crowd.size(); ++k)
+            {
+                if (!found.try_push_back(
+                        crowd[(static_cast<std::size_t>(next) + k) % crowd.size()]))
+                {
+                    return found;
+                }
+            }
         }
         return found;
     }
@@ -45,13 +67,46 @@ private:
     struct Points
     {
         const QuantisedMesh& mesh;
-        std::span<const std::uint32_t> vertices;
+        std::vector<std::uint32_t> vertices; ///< By place.
+        std::vector<std::size_t> begins;     ///< Of each place's vertices, and their end.
+
+        /// Places are in the order of their first vertices.
+        Points(const QuantisedMesh& of, std::span<const std::uint32_t> given) : mesh(of)
+        {
+            const auto position = [&](std::size_t i) { return mesh.positions[given[i]]; };
+            std::vector<std::size_t> order(given.size());
+            std::iota(order.begin(), order.end(), std::size_t{0});
+            std::ranges::stable_sort(order, {}, position);
+            std::vector<std::size_t> first_of(
+                given.size()); // Of each vertex its place's first one.
+            for (std::size_t i = 0; i < order.size(); ++i)
+            {
+                const bool is_new = i == 0 || position(order[i]) != position(order[i - 1]);
+                first_of[order[i]] = is_new ? order[i] : first_of[order[i - 1]];
+            }
+            std::iota(order.begin(), order.end(), std::size_t{0});
+            std::ranges::stable_sort(order, {}, [&](std::size_t i) { return first_of[i]; });
+            for (std::size_t i = 0; i < order.size(); ++i)
+            {
+                if (first_of[order[i]] == order[i])
+                {
+                    begins.push_back(i);
+                }
+                vertices.push_back(given[order[i]]);
+            }
+            begins.push_back(order.size());
+        }
+
+        [[nodiscard]] std::span<const std::uint32_t> vertices_at(std::size_t place) const
+        {
+            return std::span(vertices).subspan(begins[place], begins[place + 1] - begins[place]);
+        }
 
         // What nanoflann asks for.
-        [[nodiscard]] std::size_t kdtree_get_point_count() const { return vertices.size(); }
+        [[nodiscard]] std::size_t kdtree_get_point_count() const { return begins.size() - 1; }
         [[nodiscard]] double kdtree_get_pt(std::size_t place, std::size_t axis) const
         {
-            return mesh.positions[vertices[place]][axis];
+            return mesh.positions[vertices[begins[place]]][axis];
         }
         template <typename Box>
         [[nodiscard]] bool kdtree_get_bbox(Box& /*box*/) const

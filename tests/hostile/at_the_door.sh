@@ -9,8 +9,8 @@ source "$(dirname "$0")/../integration/hrtc/common.sh"
 readonly attack=$4
 readonly port=$((20000 + $$ % 20000))
 
-drive() { # drive: a driver of its own; its id is in $driving.
-    python3 "$docs/examples/udp_driver.py" "$port" 0.02 >driver.log 2>&1 &
+drive() { # drive [DRIVER]: a driver of its own; its id is in $driving.
+    python3 "${1:-$docs/examples/udp_driver.py}" "$port" 0.02 >driver.log 2>&1 &
     driving=$!
     started+=("$driving")
 }
@@ -48,6 +48,35 @@ case $attack in
         # The true one's instance alone, however often it stumbled: no force for the other.
         check report.json tools.0.traffic.samples '>' 100
         ;;
+    udp_first_liar)
+        # First and better: a driver that says to make 1,000 N. While the true one describes itself,
+        # too, none is taken; when the liar is gone the true one is, with its own limits. Later a
+        # liar that comes in its place ends the run.
+        model bumpy-sphere-20000 bumpy.spm
+        sed 's/0\.002, 8, 20000/0.002, 1000, 20000/' "$docs/examples/udp_driver.py" >liar.py
+        cmp -s liar.py "$docs/examples/udp_driver.py" && fail 'the driver tells its force otherwise'
+        drive "$PWD/liar.py"
+        liar=$driving
+        drive
+        start_hrtc --transport file --model bumpy.spm --device "udp:$port" \
+            --device-frame 0,0,0.06 --duration 600 --wait "$patience_s" --report report.json
+        wait_for_more "$liar" 400
+        wait_for_more "$driving" 100
+        ! grep -q 'touch: ' hrtc.log || fault 'one of two that say to be the device was taken'
+        stop KILL "$liar"
+        wait_for_line hrtc.log 'touch: '
+        wait_for_more "$driving" 400
+        true_one=$driving
+        drive "$PWD/liar.py"
+        wait_for_more "$driving" 200
+        stop KILL "$true_one"
+        end_hrtc 2
+        grep -q 'another one describes itself at its port; a run keeps the limits' hrtc.log \
+            || fault 'hrtc does not say why it ended'
+        check report.json frames '>' 300 force.max_n '<=' 8 tools.0.traffic.refused.foreign '>=' 3 \
+            tools.0.traffic.refused.other_device '>=' 5 tools.0.traffic.sessions == 1
+        check_clean report.json
+        ;;
     udp_flooded)
         touch_by_udp
         python3 "$flood" "$port" 0 >flood.log || fault "the flood: $(cat flood.log)"
@@ -55,23 +84,22 @@ case $attack in
         check report.json tools.0.traffic.samples '>' 100
         ;;
     edge_faces)
-        # 3,000 faces round one edge.
+        # 8,000 faces round one edge: as many pieces at one place, which vanish into one another.
         awk 'BEGIN {
             print "v 0 0 0\nv 0 0 1"
-            for (i = 0; i < 3000; ++i) {
-                a = 6.283185307 * i / 3000
+            for (i = 0; i < 8000; ++i) {
+                a = 6.283185307 * i / 8000
                 printf "v %.9f %.9f 0.5\n", cos(a), sin(a)
                 printf "f 1 2 %d\n", i + 3
             }
         }' >fan.obj
-        # What is left can't vanish in the rounds that are left. It may tell how far it is before.
-        # Ten minutes of a processor are for what hangs.
+        # Half of them in each round. Ten minutes of a processor are for what hangs.
         code=0
         (ulimit -t 600 && "$build" fan.obj --unit m -o fan.spm) >build.log 2>&1 || code=$?
-        { ((code == 2)) && tail -n 1 build.log | grep -Eq \
-            "not written: the mesh can't be simplified below 2[0-9]{3} faces"; } \
-            || fault "spm_build ended with $code: $(cat build.log)"
-        [[ ! -e fan.spm ]] || fault 'it wrote a model'
+        ((code == 0)) || fail "spm_build ended with $code: $(cat build.log)"
+        grep -Eq '^fan.spm: 8000 faces, .* records in ([1-9]|[12][0-9]) rounds ' build.log \
+            || fault "so many rounds: $(cat build.log)"
+        "$inspect" fan.spm >said.txt 2>&1 || fault "spm_inspect ended with $?: $(cat said.txt)"
         ;;
     *) fail "there is no attack $attack" ;;
 esac

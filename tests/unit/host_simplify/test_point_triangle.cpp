@@ -30,13 +30,22 @@ void expect_oracle(const std::array<Vec3, 3>& t, const PointColumns& points)
     }
 }
 
+/// Arguments would be drawn in an order of the compiler's choice.
+Vec3 any_vector(auto& draw, std::mt19937& random)
+{
+    const double x = draw(random);
+    const double y = draw(random);
+    const double z = draw(random);
+    return {x, y, z};
+}
+
 PointColumns random_points(std::mt19937& random, int extent, const std::array<Vec3, 3>& t)
 {
     std::uniform_int_distribution<int> draw(0, extent);
     PointColumns points;
     for (int i = 0; i < 8; ++i)
     {
-        const Vec3 p(draw(random), draw(random), draw(random));
+        const Vec3 p = any_vector(draw, random);
         points.push_back(p);
         points.push_back((t[0] + t[1] + t[2]) / 3 + 1e-4 * p);
     }
@@ -56,7 +65,7 @@ TEST(DistanceTriangle, agrees_with_extended_precision_on_random_triangles)
             std::array<Vec3, 3> t;
             for (auto& corner : t)
             {
-                corner = Vec3(draw(random), draw(random), draw(random));
+                corner = any_vector(draw, random);
             }
             expect_oracle(t, random_points(random, extent, t));
         }
@@ -70,9 +79,9 @@ TEST(DistanceTriangle, agrees_with_extended_precision_on_needles)
     std::uniform_int_distribution<int> near(-2, 2);
     for (int run = 0; run < 1000; ++run)
     {
-        const Vec3 a(draw(random), draw(random), draw(random));
-        const Vec3 b(draw(random), draw(random), draw(random));
-        const Vec3 nudge(near(random), near(random), near(random));
+        const Vec3 a = any_vector(draw, random);
+        const Vec3 b = any_vector(draw, random);
+        const Vec3 nudge = any_vector(near, random);
         const Vec3 middle = 0.5 * (a + b);
         const Vec3 rounded(std::round(middle.x()), std::round(middle.y()), std::round(middle.z()));
         const std::array<Vec3, 3> needle{a, b, a + nudge};

@@ -49,10 +49,10 @@ TEST(TriangleCut, parts_cover_the_part_up_to_the_stated_rounding)
         std::vector<Part> parts{whole_part(points)};
         for (int plane = 0; plane < 4; ++plane)
         {
-            const Vec3 start =
-                kFrame.origin + share(random) * kFrame.side_x + share(random) * kFrame.side_y;
-            const CutPlane half{start, Vec3(draw(random), draw(random), draw(random)),
-                                Vec3(draw(random), draw(random), draw(random))};
+            Vec3 start = kFrame.origin + share(random) * kFrame.side_x;
+            start += share(random) * kFrame.side_y;
+            const CutPlane half{start, Vec3{draw(random), draw(random), draw(random)},
+                                Vec3{draw(random), draw(random), draw(random)}};
             std::vector<Part> next;
             for (const Part& part : parts)
             {
