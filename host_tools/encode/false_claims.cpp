@@ -42,6 +42,17 @@ bool holds(const QuantumBox& box, const QuantumBox& inner)
     return does;
 }
 
+/// The writer's margin about each bound, and no more.
+QuantumBox grown(QuantumBox box)
+{
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        --box.low[axis];
+        ++box.high[axis];
+    }
+    return box;
+}
+
 std::string text_of(const QuantumBox& box)
 {
     return fmt::format("({}) to ({})", fmt::join(box.low, ", "), fmt::join(box.high, ", "));
@@ -358,7 +369,8 @@ private:
         }
     }
 
-    /// Of all index pages and chunks the first that leaves out what it should hold.
+    /// Of all index pages and chunks the first whose box leaves out a part of what it should hold,
+    /// or reaches beyond it: such a chunk is fetched where nobody needs it.
     void check_boxes()
     {
         std::vector<std::byte> coded;
@@ -374,20 +386,43 @@ private:
                 return;
             }
             const QuantumBox stated = model_.header().index_entry({i}).box;
+            QuantumBox all = kEmptyBox;
+            for (std::uint32_t at = 0; at < page.chunks; ++at)
+            {
+                join(all, needed_by({(i << kChunksPerIndexPageLog2) + at}));
+            }
+            if (!holds(grown(all), stated))
+            {
+                tell("index page {}: its box in the header is {}; its records matter in {} quanta",
+                     i, text_of(stated), text_of(all));
+                return;
+            }
             for (std::uint32_t at = 0; at < page.chunks; ++at)
             {
                 const std::uint32_t chunk = (i << kChunksPerIndexPageLog2) + at;
                 const QuantumBox needed = needed_by({chunk});
                 const QuantumBox box = in_quanta(stated, page.box(at));
-                if (!holds(stated, needed) || !holds(box, needed))
+                const bool is_in_page = holds(stated, needed);
+                if (!is_in_page || !holds(box, needed) || !holds(largest(stated, needed), box))
                 {
                     tell("chunk {}: its influence box {}is {}; its records matter in {} quanta",
-                         chunk, holds(box, needed) ? "in the header " : "",
-                         text_of(holds(box, needed) ? stated : box), text_of(needed));
+                         chunk, is_in_page ? "" : "in the header ",
+                         text_of(is_in_page ? box : stated), text_of(needed));
                     return;
                 }
             }
         }
+    }
+    /// What the format makes of a box and its margin, in a page that holds the box.
+    [[nodiscard]] static QuantumBox largest(const QuantumBox& page, const QuantumBox& needed)
+    {
+        QuantumBox box = grown(needed);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            box.low[axis] = std::max(box.low[axis], page.low[axis]);
+            box.high[axis] = std::min(box.high[axis], page.high[axis]);
+        }
+        return in_quanta(page, relative_to(page, box));
     }
     [[nodiscard]] QuantumBox needed_by(ChunkId chunk) const
     {

@@ -14,6 +14,7 @@
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <span>
 #include <string>
@@ -59,15 +60,49 @@ void put_in_base_faces(const HeaderFields& fields, File& file, std::uint32_t fro
     }
 }
 
-/// All chunks' boxes are the low corner of their page's.
-void shrink_boxes(HeaderFields& fields, File& file)
+/// Of each chunk's box both corners, in steps of its page's box.
+void put_in_chunk_boxes(const HeaderFields& fields, File& file, int low_byte, int high_byte)
 {
     const ModelCounts counts{fields.base_vertices, fields.base_faces, fields.records};
     for (std::uint32_t chunk = 0; chunk < counts.chunks(); ++chunk)
     {
-        std::memset(file.data() + fields.index_offset + 1'928 * (chunk / 64) + 4 +
-                        30 * (chunk % 64),
-                    0, 12);
+        char* const box =
+            file.data() + fields.index_offset + 1'928 * (chunk / 64) + 4 + 30 * (chunk % 64);
+        std::memset(box, low_byte, 6);
+        std::memset(box + 6, high_byte, 6);
+    }
+}
+
+/// All chunks' boxes are the low corner of their page's.
+void shrink_boxes(HeaderFields& fields, File& file)
+{
+    put_in_chunk_boxes(fields, file, 0, 0);
+}
+
+/// All chunks' boxes are as large as the format has them.
+void spread_chunk_boxes(HeaderFields& fields, File& file)
+{
+    put_in_chunk_boxes(fields, file, 0, 0xFF);
+}
+
+void put_i32(char* at, std::int32_t value)
+{
+    std::memcpy(at, &value, sizeof(value));
+}
+
+/// All boxes are the largest that there are: every chunk is needed everywhere.
+void spread_boxes(HeaderFields& fields, File& file)
+{
+    spread_chunk_boxes(fields, file);
+    const ModelCounts counts{fields.base_vertices, fields.base_faces, fields.records};
+    for (std::uint32_t page = 0; page < counts.index_pages(); ++page)
+    {
+        char* const box = file.data() + kBoxesAt + page * sizeof(IndexPageEntry);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            put_i32(box + 4 * axis, std::numeric_limits<std::int32_t>::min());
+            put_i32(box + 12 + 4 * axis, std::numeric_limits<std::int32_t>::max());
+        }
     }
 }
 
@@ -91,6 +126,8 @@ const std::map<std::string, Lie>& lies()
              file[regions_at(f)] = 1;
          }},
         {"boxes", shrink_boxes},
+        {"chunk_boxes_all", spread_chunk_boxes},
+        {"box_all", spread_boxes},
         {"page_boxes", [](HeaderFields&, File& file)
          { std::memcpy(file.data() + kBoxesAt + 12, file.data() + kBoxesAt, 12); }},
         {"base_errors", [](HeaderFields& f, File& file) { put_in_base_faces(f, file, 8, 8, 1); }},

@@ -28,6 +28,8 @@ false_claim most_error 'header: the largest error bound in quanta is stated as 4
 false_claim regions 'region 0: is stated as occupied; it is empty'
 false_claim boxes 'chunk 0: its influence box is'
 false_claim page_boxes 'chunk 0: its influence box'
+false_claim chunk_boxes_all 'chunk 0: its influence box is'
+false_claim box_all 'index page 0: its box in the header is'
 false_claim buckets '.*bucket '
 lie base_errors
 code=0
@@ -44,7 +46,7 @@ expect 2 'quantisation.spm*holds a value outside its range' "$inspect" quantisat
 expect 2 'origin.spm*lies farther' "$publish" --domain "$domain" origin.spm
 expect 2 'origin.spm*lies farther' "$hrtc" --allow-no-rt --transport file --model origin.spm
 
-for lie in boxes base_errors no_error regions; do
+for lie in boxes box_all base_errors no_error regions; do
     "$hrtc" --virtual-time --model "$lie.spm" --no-static --device sim:touch --duration 2 \
         --report report.json >hrtc.log 2>&1 || fault "hrtc with $lie ended with $?: $(cat hrtc.log)"
     check report.json frames == 2000 force.max_n '<=' 3.3 force.max_step_n '<' 0.45
