@@ -21,8 +21,10 @@ namespace tactus
 /// By default a word may be as long as a model's name.
 [[nodiscard]] std::string printable(std::string_view text, std::size_t longest = 63);
 
-/// A whole line of output: control characters, those beyond ASCII (C1, in UTF-8) as well, become
-/// '?'. Other bytes above ASCII stay, since users give their files names in UTF-8.
+/// A whole line of output: every byte that is neither ASCII nor part of a UTF-8 character becomes
+/// '?', and so does every character that steers a terminal instead of being seen: controls (C0, C1,
+/// U+007F), line and paragraph separators, and those that turn the direction of the text. Other
+/// characters stay, since users give their files names in UTF-8.
 [[nodiscard]] std::string printable_line(std::string_view text);
 
 } // namespace tactus

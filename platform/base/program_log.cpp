@@ -4,7 +4,6 @@
 
 #include "platform/base/printable.hpp"
 
-#include <algorithm>
 #include <cstdio>
 #include <ctime>
 
@@ -16,39 +15,14 @@ namespace
 
 LogStyle style_of_all;
 
-/// How many bytes the character has that begins the text; 0: it is no UTF-8 (RFC 3629).
-std::size_t character_bytes(std::string_view text) noexcept
-{
-    const auto byte = [text](std::size_t i)
-    { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
-    const unsigned first = byte(0);
-    const std::size_t count = first < 0x80                     ? 1
-                              : first >= 0xC2 && first < 0xE0  ? 2
-                              : first >= 0xE0 && first < 0xF0  ? 3
-                              : first >= 0xF0 && first <= 0xF4 ? 4
-                                                               : 0;
-    for (std::size_t i = 1; i < count; ++i)
-    {
-        // The second one also says whether fewer bytes would have done, and what is none.
-        const unsigned least = i > 1 ? 0x80 : first == 0xE0 ? 0xA0 : first == 0xF0 ? 0x90 : 0x80;
-        const unsigned most = i > 1 ? 0xBF : first == 0xED ? 0x9F : first == 0xF4 ? 0x8F : 0xBF;
-        if (byte(i) < least || byte(i) > most)
-        {
-            return 0;
-        }
-    }
-    return count;
-}
-
+/// Of a printable line: it is UTF-8 without control characters.
 std::string json_text(std::string_view text)
 {
     std::string json = "\"";
-    while (!text.empty())
+    for (const char c : text)
     {
-        const std::size_t bytes = character_bytes(text);
-        json += text[0] == '"' || text[0] == '\\' ? "\\" : "";
-        json += bytes == 0 ? "?" : text.substr(0, bytes);
-        text.remove_prefix(std::max<std::size_t>(bytes, 1));
+        json += c == '"' || c == '\\' ? "\\" : "";
+        json += c;
     }
     return json + '"';
 }

@@ -37,7 +37,7 @@ void set_log_style(const LogStyle& style) noexcept;
 
 /// A line as the style has it, without its end: errors and warnings behind the program's name, what
 /// is info as it is; or an object with the keys `time` (UTC), `level`, `program` and `text`.
-/// Control characters are shown as '?', and in JSON what is no UTF-8.
+/// The line is shown as printable_line() shows it.
 [[nodiscard]] std::string log_text(const LogStyle& style, LogLevel level, std::string_view program,
                                    std::string_view text,
                                    std::chrono::system_clock::time_point now);

@@ -35,18 +35,29 @@ TEST(Printable, cuts_a_word_that_is_too_long_and_says_so)
     EXPECT_EQ(printable(name + "b"), name + "...");
 }
 
-TEST(Printable, shows_the_control_characters_of_a_line_as_question_marks_and_keeps_the_rest)
+TEST(Printable, keeps_the_utf_8_of_a_line_and_shows_what_steers_a_terminal_as_question_marks)
 {
     for (int code = 0; code < 256; ++code)
     {
         const char c = static_cast<char>(code);
-        const bool stays = code >= 0x20 && code != 0x7F;
+        const bool stays = code >= 0x20 && code < 0x7F; // Above it is a part of a character.
         EXPECT_EQ(printable_line(std::string(1, c)), std::string(1, stays ? c : '?')) << code;
     }
     const std::string long_line(1'000, 'a');
     EXPECT_EQ(printable_line("\xc2\x9b" // A terminal takes it for ESC [.
                              "2J\xc2\xa0\xc3\x9f\xc2"),
-              "?2J\xc2\xa0\xc3\x9f\xc2");
+              "?2J\xc2\xa0\xc3\x9f?");
+    EXPECT_EQ(printable_line("\x9b\x32J"), "?2J") << "ESC [ of a terminal with 8 bits";
+    for (const char* steering : {"\u0080", "\u0085", "\u009F", "\u061C", "\u200E", "\u200F",
+                                 "\u2028", "\u2029", "\u202A", "\u202E", "\u2066", "\u2069"})
+    {
+        EXPECT_EQ(printable_line(std::string("a") + steering + "b"), "a?b") << steering;
+    }
+    for (const char* seen : {"\u00A0", "\u00FF", "\u061B", "\u200D", "\u2010", "\u2030", "\u2065",
+                             "\u206A", "\u65E5", "\U0001F600", "\U0010FFFF"})
+    {
+        EXPECT_EQ(printable_line(seen), seen);
+    }
     EXPECT_EQ(printable_line(long_line + "\n\xc3\xbc.stl"), long_line + "?\xc3\xbc.stl");
 }
 
