@@ -36,7 +36,7 @@ Progress::~Progress()
 {
     if (has_line_ && is_terminal_)
     {
-        fmt::print(stderr, "\r\x1b[K");
+        std::fputs("\r\x1b[K", stderr);
         std::fflush(stderr);
     }
 }
@@ -61,7 +61,7 @@ void Progress::update(std::size_t done, std::size_t total)
         log_message(LogLevel::info, program_, line);
         return;
     }
-    fmt::print(stderr, "\r{}\x1b[K", line);
+    std::fputs(fmt::format("\r{}\x1b[K", line).c_str(), stderr);
     std::fflush(stderr);
 }
 

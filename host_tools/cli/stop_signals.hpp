@@ -6,10 +6,12 @@
 namespace tactus
 {
 
-/// From now on SIGINT and SIGTERM ask the program to end instead of ending it. Any thread.
+/// From now on SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU, SIGALRM and the two user signals ask the
+/// program to end instead of ending it. SIGPIPE and SIGXFSZ do nothing: the write that caused them
+/// fails. A SIGHUP that is ignored, as by nohup, stays ignored. Any thread.
 void stop_on_signals() noexcept;
 
-/// Whether one has come since the program began. Any thread, and any signal handler.
+/// Whether a signal to end has come since the program began. Any thread, and any signal handler.
 [[nodiscard]] bool is_stop_requested() noexcept;
 
 } // namespace tactus

@@ -2,9 +2,10 @@
 // Copyright the Tactus authors.
 #include "host_tools/spm_publish/serving_report.hpp"
 
+#include "host_tools/cli/print_out.hpp"
+
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <unistd.h>
 
 namespace tactus
@@ -38,9 +39,8 @@ void ServingReport::print_line(const std::string& line, LogLevel level)
     clear_line();
     // What goes wrong in serving is no failure of the program: it has no name before it.
     const LogLevel shown = log_style().is_json ? level : LogLevel::info;
-    fmt::print("{}\n",
-               log_text(log_style(), shown, "spm_publish", line, std::chrono::system_clock::now()));
-    std::fflush(stdout); // Read by scripts as it comes.
+    print_out(log_text(log_style(), shown, "spm_publish", line, std::chrono::system_clock::now()) +
+              '\n');
 }
 
 void ServingReport::update(const dds::DdsHost& host)
@@ -59,8 +59,7 @@ void ServingReport::update(const dds::DdsHost& host)
     if (is_terminal_)
     {
         clear_line();
-        fmt::print("{}", line);
-        std::fflush(stdout);
+        print_out(line);
         line_length_ = line.size();
     }
     else if (has_sent)
@@ -83,8 +82,7 @@ void ServingReport::clear_line()
 {
     if (line_length_ > 0)
     {
-        fmt::print("\r{:{}}\r", "", line_length_);
-        std::fflush(stdout);
+        print_out(fmt::format("\r{:{}}\r", "", line_length_));
         line_length_ = 0;
     }
 }

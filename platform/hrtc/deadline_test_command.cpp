@@ -3,6 +3,8 @@
 #include "platform/hrtc/deadline_test_command.hpp"
 
 #include "host_tools/cli/command_line.hpp"
+#include "host_tools/cli/print_out.hpp"
+#include "host_tools/cli/stop_signals.hpp"
 #include "platform/base/atomic_file.hpp"
 #include "platform/base/refusal.hpp"
 #include "platform/hrtc/assertion_brake.hpp"
@@ -13,7 +15,6 @@
 #include "platform/hrtc/report_page.hpp"
 #include "platform/hrtc/self_check.hpp"
 #include "platform/hrtc/session.hpp"
-#include "platform/hrtc/signals.hpp"
 
 #include <fmt/format.h>
 
@@ -95,7 +96,7 @@ Result<FinishedRun, Refusal> run_beside(Session& session, const std::string& nam
         return failure("--load: " + load.error());
     }
     auto run = session.run(name);
-    if (was_interrupted()) // The load may have ended by the same signal.
+    if (is_stop_requested()) // The load may have ended by the same signal.
     {
         return interruption();
     }
@@ -218,7 +219,7 @@ std::string check_report(const std::vector<std::string>& paths)
 
 int run_test(const Options& options, const std::vector<LoadKind>& loads)
 {
-    install_signal_handlers();
+    stop_on_signals();
     install_assertion_brake();
     const bool has_files = !options.report_paths.empty();
     const ReportFiles files =
@@ -248,14 +249,14 @@ int run_test(const Options& options, const std::vector<LoadKind>& loads)
         phases.push_back(std::move(phase).value());
     }
     const DeadlineSetting setting{options.thread.priority, options.period()};
-    fmt::print("{}", make_deadline_summary(check.value(), phases, setting));
+    print_out(make_deadline_summary(check.value(), phases, setting));
     if (has_files)
     {
         if (const auto error = write_files(files, check.value(), phases, setting))
         {
             return leave_with(failure("--report: " + error->text));
         }
-        fmt::print("report      {}, {}, {}\n", files.json, files.text, files.page);
+        print_out(fmt::format("report      {}, {}, {}\n", files.json, files.text, files.page));
     }
     return is_passed(check.value(), phases) ? kExitDone : kExitCriterionNotMet;
 }

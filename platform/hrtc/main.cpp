@@ -5,7 +5,9 @@
 /// real-time thread, and reports.
 
 #include "host_tools/cli/command_line.hpp"
+#include "host_tools/cli/print_out.hpp"
 #include "host_tools/cli/run_program.hpp"
+#include "host_tools/cli/stop_signals.hpp"
 #include "platform/hrtc/assertion_brake.hpp"
 #include "platform/hrtc/histogram_files.hpp"
 #include "platform/hrtc/options.hpp"
@@ -13,7 +15,6 @@
 #include "platform/hrtc/report.hpp"
 #include "platform/hrtc/report_page.hpp"
 #include "platform/hrtc/session.hpp"
-#include "platform/hrtc/signals.hpp"
 #include "platform/hrtc/start_lines.hpp"
 #include "platform/hrtc/subcommands.hpp"
 #include "platform/hrtc/verdict.hpp"
@@ -21,7 +22,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <cstdio>
 #include <string_view>
 #include <variant>
 
@@ -32,7 +32,7 @@ namespace
 
 int touch(const Options& options)
 {
-    install_signal_handlers();
+    stop_on_signals();
     install_assertion_brake();
     if (!options.replay_path.empty())
     {
@@ -43,8 +43,7 @@ int touch(const Options& options)
     {
         return leave_with(session.error());
     }
-    fmt::print("{}", start_lines(options, session.value()->controller()));
-    std::fflush(stdout);
+    print_out(start_lines(options, session.value()->controller()));
     const auto done = session.value()->run("touch");
     if (!done)
     {
@@ -52,7 +51,7 @@ int touch(const Options& options)
     }
     const nlohmann::ordered_json report =
         make_report(options, session.value()->controller(), done.value());
-    fmt::print("{}", make_summary(report));
+    print_out(make_summary(report));
     for (const std::string& path : options.report_paths)
     {
         const auto error = is_page_name(path)
@@ -64,7 +63,7 @@ int touch(const Options& options)
         {
             return leave_with(failure("--report: " + error->text));
         }
-        fmt::print("report      {}\n", path);
+        print_out(fmt::format("report      {}\n", path));
     }
     if (!options.histograms_folder.empty())
     {
@@ -72,7 +71,7 @@ int touch(const Options& options)
         {
             return leave_with(failure("--histograms: " + error->text));
         }
-        fmt::print("histograms  {}\n", options.histograms_folder);
+        print_out(fmt::format("histograms  {}\n", options.histograms_folder));
     }
     if (done.value().recording_error || done.value().trace_error)
     {

@@ -12,7 +12,7 @@ namespace tactus::hrtc
 /// A refusal that happened at run time.
 [[nodiscard]] Refusal failure(std::string text);
 
-/// Why a run that SIGINT or SIGTERM ended can't be judged.
+/// Why a run that a signal ended can't be judged.
 [[nodiscard]] Refusal interruption();
 
 /// Logs it as an error; returns the code to leave with.

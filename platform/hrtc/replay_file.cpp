@@ -3,6 +3,7 @@
 #include "platform/hrtc/replay_file.hpp"
 
 #include "host_tools/cli/command_line.hpp"
+#include "host_tools/cli/print_out.hpp"
 #include "platform/base/printable.hpp"
 #include "platform/export/frame_export.hpp"
 #include "platform/recording/replay.hpp"
@@ -57,7 +58,7 @@ public:
             {
                 return Refusal{"--export: " + written.error().text};
             }
-            fmt::print("export      {}\n", printable_line(path));
+            print_out(fmt::format("export      {}\n", printable_line(path)));
         }
         return std::nullopt;
     }
@@ -85,6 +86,13 @@ int replay_file(const std::string& path, const Kernels* kernels,
         return kExitFailed;
     }
     ReplayWatch watch;
+    watch.begins = [&](std::uint64_t number)
+    {
+        if (recording.value().has_failed() && number + 1 == recording.value().frame_count())
+        {
+            log(fmt::format("{}: frame {} failed in the run and runs now", path, number));
+        }
+    };
     watch.ends = [&](std::uint64_t number, const RecordedFrame& given, const FrameOutput& returned)
     { files.add(number, given, returned); };
     const auto replayed = replay(recording.value(), kernels, watch);
@@ -99,7 +107,7 @@ int replay_file(const std::string& path, const Kernels* kernels,
         log(path + ": " + line);
         return kExitCriterionNotMet;
     }
-    fmt::print("{}: {}\n", printable(path), line);
+    print_out(fmt::format("{}: {}\n", printable(path), line));
     if (const auto error = files.commit())
     {
         log(error->text);

@@ -2,10 +2,10 @@
 // Copyright the Tactus authors.
 #include "platform/hrtc/self_check.hpp"
 
+#include "host_tools/cli/stop_signals.hpp"
 #include "platform/allocation_counter.hpp"
 #include "platform/hrtc/frame_repeater.hpp"
 #include "platform/hrtc/session.hpp"
-#include "platform/hrtc/signals.hpp"
 #include "platform/thread_usage.hpp"
 #include "platform/wrapped_device.hpp"
 
@@ -171,7 +171,7 @@ Result<SelfCheck, Refusal> run_self_check(Options options)
     {
         return run.error();
     }
-    if (was_interrupted())
+    if (is_stop_requested())
     {
         return interruption();
     }

@@ -2,13 +2,13 @@
 // Copyright the Tactus authors.
 #include "platform/hrtc/session.hpp"
 
+#include "host_tools/cli/stop_signals.hpp"
 #include "platform/base/atomic_file.hpp"
 #include "platform/hrtc/histogram_files.hpp"
 #include "platform/hrtc/recorder.hpp"
 #include "platform/hrtc/report.hpp"
 #include "platform/hrtc/scene_choice.hpp"
 #include "platform/hrtc/session_run.hpp"
-#include "platform/hrtc/signals.hpp"
 #include "platform/hrtc/trace_file.hpp"
 #include "platform/posix/linux_extras.hpp"
 #include "transport/store/store_link.hpp"
@@ -56,7 +56,7 @@ Result<std::vector<ServedModel>, Refusal> find_published(const Options& options,
     {
         selectors.push_back(parse_selector(text).value());
     }
-    auto models = client.find_headers(selectors, wait, [] { return !was_interrupted(); });
+    auto models = client.find_headers(selectors, wait, [] { return !is_stop_requested(); });
     if (!models)
     {
         return failure(models.error().text);
@@ -216,7 +216,8 @@ std::optional<Refusal> Session::take_scene()
     {
         return take_scene_file(options_);
     }
-    auto shown = take_shown_scene(options_, *client_, *reader_, [] { return !was_interrupted(); });
+    auto shown =
+        take_shown_scene(options_, *client_, *reader_, [] { return !is_stop_requested(); });
     if (!shown)
     {
         return shown.error();
@@ -234,7 +235,7 @@ std::optional<Refusal> Session::assemble()
         return models.error();
     }
     auto controller = Controller::create(options_, std::move(models).value(), log_line,
-                                         [] { return !was_interrupted(); });
+                                         [] { return !is_stop_requested(); });
     if (!controller)
     {
         return failure(controller.error().text);

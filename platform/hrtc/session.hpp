@@ -31,7 +31,7 @@ public:
     [[nodiscard]] const Controller& controller() const noexcept { return *controller_; }
 
     /// Runs the loop on its real-time thread with the supervisor, the transport and the recorder
-    /// beside it, and waits for its end; SIGINT and SIGTERM end it early, forces fading. Once.
+    /// beside it, and waits for its end; a signal to end ends it early, forces fading. Once.
     /// `what` names it for the progress line. When an assertion fails in the run, the devices are
     /// braked and the process ends here with exit code 2 (assertion_brake.hpp).
     [[nodiscard]] Result<FinishedRun, Refusal> run(const std::string& what);

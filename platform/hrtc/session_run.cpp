@@ -3,9 +3,9 @@
 #include "platform/hrtc/session_run.hpp"
 
 #include "host_tools/cli/progress.hpp"
+#include "host_tools/cli/stop_signals.hpp"
 #include "platform/allocation_counter.hpp"
 #include "platform/hrtc/machine.hpp"
-#include "platform/hrtc/signals.hpp"
 #include "platform/posix/service_notify.hpp"
 #include "platform/system_call_trap.hpp"
 #include "platform/udp/udp_device.hpp"
@@ -237,7 +237,7 @@ void SessionRun::watch(const std::string& what)
     std::uint64_t seen = 0;
     while (!loop_.is_done() && !loop_.has_failed())
     {
-        if (was_interrupted())
+        if (is_stop_requested())
         {
             loop_.stop();
         }
