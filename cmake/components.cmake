@@ -128,10 +128,8 @@ tactus_component(core
         rt_core/base/model_id.hpp
         rt_core/base/realtime.hpp
         rt_core/base/result.hpp
-        rt_core/force/force_conditioner.hpp
-        rt_core/force/gravity_compensation.hpp
+        rt_core/force/force_pipeline.hpp
         rt_core/force/own_force.hpp
-        rt_core/force/safe_state.hpp
         rt_core/frame/frame.hpp
         rt_core/frame/frame_setup.hpp
         rt_core/frame/model.hpp
@@ -144,9 +142,9 @@ tactus_component(core
         rt_core/math/rotation.hpp
         rt_core/math/similarity.hpp
         rt_core/math/vec3.hpp
-        rt_core/records/conditioned_force.hpp
         rt_core/records/contact.hpp
         rt_core/records/device_limits.hpp
+        rt_core/records/device_record.hpp
         rt_core/records/frame_input.hpp
         rt_core/records/frame_output.hpp
         rt_core/records/local_surface.hpp
@@ -156,7 +154,9 @@ tactus_component(core
         rt_core/records/prediction.hpp
         rt_core/records/safety.hpp
         rt_core/records/scene_change.hpp
+        rt_core/records/tool_force.hpp
         rt_core/records/tool_load.hpp
+        rt_core/records/tool_period.hpp
         rt_core/records/work_counters.hpp
         rt_core/spm/base_mesh.hpp
         rt_core/spm/error_code.hpp

@@ -267,6 +267,14 @@ inline constexpr double kCalmSpeedShare = 0.5;
 inline constexpr double kTurningMax_rad_per_s = 60.0;
 /// Most damping while a force fades or comes back, as a share of the device's largest force.
 inline constexpr double kDampingForceShare = 0.25;
+/// How fast a force may change beside what hand and objects make, as a share of the device's
+/// largest force in a millisecond, unless an option says otherwise: 0.08 N of 8 N. A strike so
+/// rises in 100 ms, about as fast as a hand gives way. No less than the least, or none would come
+/// in.
+inline constexpr double kSlewShare_per_ms = 0.01;
+inline constexpr double kSlewShareMin_per_ms = 1e-4;
+/// A force that wants to change faster for longer is told as ForceOff::growth, in seconds.
+inline constexpr double kChangeTold_s = 0.02;
 /// Share of a device's own damping that may be added by computing it. A sampled damper of b on a
 /// device with damping B stays passive while b + k T / 2 < B (Colgate and Schenkel 1997), k being
 /// the wall's stiffness and T the period; half leaves the other half to the wall.

@@ -418,21 +418,13 @@ std::optional<Refusal> Controller::simulate_device(const Options& options, std::
 void Controller::limit_force(const Options& options, ToolSetup& tool) const
 {
     const DeviceInfo& info = tool.device->info();
-    ConditionerSetup& conditioner = tool.conditioner;
-    conditioner.device = info.limits;
-    conditioner.period_s = 1.0 / static_cast<double>(options.rate_hz);
-    const double cap_n_per_m = stiffness_cap(info.limits, conditioner.period_s);
-    tool.limits = {options.speed_limit_m_per_s.value_or(info.speed_max_m_per_s),
-                   info.limits.force_max_n, std::min(tool.spec.stiffness_n_per_m, cap_n_per_m),
-                   kDampingShare * info.limits.damping_n_s_per_m, info.limits.turn.torque_max_nm};
-    if (info.limits.turn.torque_max_nm > 0.0)
-    {
-        const DeviceLimits turning = turning_of(info.limits);
-        tool.limits.stiffness_nm_per_rad = std::min(angular_stiffness_nm_per_rad(tool.spec),
-                                                    stiffness_cap(turning, conditioner.period_s));
-        tool.limits.damping_nm_s_per_rad = kDampingShare * turning.damping_n_s_per_m;
-    }
-    tool.limits.turning_max_rad_per_s = kTurningMax_rad_per_s;
+    const PipelineSetup setup =
+        pipeline_setup(tool.spec, info.limits, 1.0 / static_cast<double>(options.rate_hz),
+                       options.speed_limit_m_per_s.value_or(info.speed_max_m_per_s));
+    tool.conditioner = setup.conditioner;
+    tool.limits = setup.limits;
+    tool.change.slew_share_per_ms = options.slew_share_per_ms;
+    tool.change.object_speed_max_m_per_s = options.object_speed_m_per_s;
     tool.clutch_button = options.clutch_button;
 }
 

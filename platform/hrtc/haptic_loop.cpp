@@ -277,14 +277,11 @@ void HapticLoop::make_safe(const FrameOutput& output) noexcept
         context.causes |= meets_what_outruns(i) ? ForceOff::jump : ForceOff::none;
         context.causes |= starves(i, output) ? ForceOff::starved : ForceOff::none;
         context.surface_damping_n_s_per_m = damping_touched(i, output);
-        const SafetyOutput safe = ports_[i].make_safe(output.tools[i], context);
-        forces_[i] = ports_[i].force();
-        forces_[i].state = safe.state;
-        forces_[i].causes = safe.causes;
+        forces_[i] = ports_[i].make_safe(output.tools[i], context);
         devices_[i] = ports_[i].record();
-        if (safe.has_changed)
+        if (forces_[i].has_changed)
         {
-            note(i, safe.state, safe.causes);
+            note(i, forces_[i].state, forces_[i].causes);
         }
     }
     if (parts_.pose_door != nullptr) // For the poses that the next frame begins with.

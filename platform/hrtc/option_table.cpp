@@ -186,6 +186,11 @@ void declare_force(CommandLine& line, Options& options)
                     "surface, which is within an eighth of it of the mesh; edges of more than "
                     "25 degrees stay [each facet is felt]")
         .number_between(kSmoothWidthMin_m, kSmoothWidthMax_m);
+    line.add_option("--slew", options.slew_share_per_ms,
+                    "How fast a force may change beside what hand and objects make, as a share of "
+                    "the device's largest force in a millisecond")
+        .number_between(kSlewShareMin_per_ms, 1.0)
+        .show_default();
     line.add_option("--clutch", options.clutch_button,
                     "Button of each device, from 0, that parts hand and tool while it is held: the "
                     "tool stays, without a force, and goes on from there [none]")

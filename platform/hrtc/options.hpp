@@ -99,6 +99,7 @@ struct Options
     std::optional<std::uint32_t> supervisor_periods;
     /// None: one diagonal of the first model a second.
     std::optional<double> follow_speed_m_per_s;
+    double slew_share_per_ms{kSlewShare_per_ms}; ///< ChangeRule's.
     bool trap_system_calls{false};
     bool virtual_time{false}; ///< See LoopTime; with files and hands that the program moves alone.
     bool strict{false};       ///< What is lost in a run, or comes to nothing, is a failure.

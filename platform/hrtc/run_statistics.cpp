@@ -30,7 +30,7 @@ int badness(AnswerKind kind) noexcept
 
 bool is_felt(const ToolOutput& output, const ToolForce& force) noexcept
 {
-    return output.in_contact && force.sent_n.squaredNorm() > 0.0;
+    return output.in_contact && force.push.force_n.squaredNorm() > 0.0;
 }
 
 } // namespace
@@ -59,15 +59,15 @@ void ForceCounts::add(const ToolOutput& output, const ToolForce& force) noexcept
     guide_max_n = std::max(guide_max_n, force.own_n);
     load_max_n = std::max(load_max_n, force.load_n.norm());
     load_max_nm = std::max(load_max_nm, force.load_nm.norm());
-    if (has_action(force.conditioned.actions, ForceAction::stiffness_capped))
+    if (has_action(force.push.actions, ForceAction::stiffness_capped))
     {
-        softest_wall_n_per_m = std::min(softest_wall_n_per_m, force.conditioned.stiffness_n_per_m);
+        softest_wall_n_per_m = std::min(softest_wall_n_per_m, force.push.stiffness_n_per_m);
     }
-    surplus_max_j = std::max({surplus_max_j, force.conditioned.surplus_j, force.turned.surplus_j});
+    surplus_max_j = std::max({surplus_max_j, force.push.surplus_j, force.turn.surplus_j});
     for (std::size_t bit = 0; bit < kForceActions; ++bit)
     {
         const auto action = static_cast<ForceAction>(1U << bit);
-        const ForceAction actions = force.conditioned.actions | force.turned.actions;
+        const ForceAction actions = force.push.actions | force.turn.actions;
         conditioned[bit] += has_action(actions, action) ? 1U : 0U;
     }
 }
@@ -77,13 +77,13 @@ void ForceCounts::add_sent(const ToolForce& force) noexcept
 {
     if (!has_cause(force.causes, ForceOff::software))
     {
-        max_n = std::max(max_n, force.sent_n.norm());
-        max_step_n = std::max(max_step_n, (force.sent_n - last_n_).norm());
-        torque_max_nm = std::max(torque_max_nm, force.sent_nm.norm());
-        torque_max_step_nm = std::max(torque_max_step_nm, (force.sent_nm - last_nm_).norm());
+        max_n = std::max(max_n, force.push.force_n.norm());
+        max_step_n = std::max(max_step_n, (force.push.force_n - last_n_).norm());
+        torque_max_nm = std::max(torque_max_nm, force.turn.force_n.norm());
+        torque_max_step_nm = std::max(torque_max_step_nm, (force.turn.force_n - last_nm_).norm());
     }
-    last_n_ = force.sent_n;
-    last_nm_ = force.sent_nm;
+    last_n_ = force.push.force_n;
+    last_nm_ = force.turn.force_n;
 }
 
 void BudgetRange::add(std::uint32_t budget, bool is_first) noexcept
@@ -162,7 +162,7 @@ void RunStatistics::add_point(const CycleMeasures& measures, std::span<const Too
     SeriesPoint point;
     for (const ToolForce& force : forces)
     {
-        point.force_n = std::max(point.force_n, static_cast<float>(force.sent_n.norm()));
+        point.force_n = std::max(point.force_n, static_cast<float>(force.push.force_n.norm()));
     }
     point.width_m = static_cast<float>(width_m);
     point.frame_us = static_cast<float>(to_us(measures.frame));

@@ -7,9 +7,9 @@
 #include "platform/hrtc/run_series.hpp"
 #include "platform/latency_histogram.hpp"
 #include "rt_core/math/infinity.hpp"
-#include "rt_core/records/conditioned_force.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_output.hpp"
+#include "rt_core/records/tool_force.hpp"
 
 #include <array>
 #include <cstdint>
@@ -58,7 +58,7 @@ struct ForceCounts
     double lag_max_m{0.0}; ///< ToolOutput::lag_m.
     /// Of the walls that were softened to what the device may have; infinite when none was.
     double softest_wall_n_per_m{kInfinity};
-    double surplus_max_j{0.0}; ///< ConditionedForce::surplus_j, of force or torque.
+    double surplus_max_j{0.0}; ///< SpringForce::surplus_j, of force or torque.
     std::array<std::uint64_t, kForceActions> conditioned{}; ///< Frames with each ForceAction.
 
     void add(const ToolOutput& output, const ToolForce& force) noexcept;

@@ -4,11 +4,7 @@
 
 #include "platform/haptic_device.hpp"
 #include "platform/hrtc/clutch.hpp"
-#include "platform/hrtc/cycle_measures.hpp"
-#include "rt_core/force/force_conditioner.hpp"
-#include "rt_core/force/gravity_compensation.hpp"
-#include "rt_core/force/own_force.hpp"
-#include "rt_core/force/safe_state.hpp"
+#include "rt_core/force/force_pipeline.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_output.hpp"
 
@@ -22,8 +18,7 @@
 namespace tactus::hrtc
 {
 
-/// What a program adds to what surfaces do to one tool. It goes through cap, clamp, passivity and
-/// SafeState as theirs does.
+/// What a program adds to what surfaces do to one tool. It goes through all stages as theirs does.
 class OwnForceSource
 {
 public:
@@ -52,18 +47,11 @@ struct ToolSetup
     std::optional<std::uint32_t> clutch_button;
     OwnForceSource* own_force{nullptr}; ///< Lent; may be none.
     ToolLoad load;                      ///< Its weight no more than the device's largest force.
+    ChangeRule change;
 };
 
-/// What the loop knows about the present period and a port cannot see.
-struct PeriodContext
-{
-    double elapsed_s{0.0}; ///< True time since the last frame.
-    ForceOff causes{ForceOff::none};
-    double surface_damping_n_s_per_m{0.0}; ///< ForceWish's.
-};
-
-/// One tool on the haptic thread: its device, and everything between the frame's force and that
-/// device. The loop calls the methods of one period in this order:
+/// One tool on the haptic thread: its device, and the ForcePipeline between the frame and that. The
+/// loop calls the methods of one period in this order:
 ///
 ///     read -> (frame) -> make_safe -> write
 ///
@@ -79,27 +67,18 @@ public:
 
     /// Decides which force goes out. Releases the device's brake if somebody has braked it, unless
     /// brake() was called on this port.
-    [[nodiscard]] SafetyOutput make_safe(const ToolOutput& output,
-                                         const PeriodContext& context) noexcept;
+    /// `context.force_left` is found here.
+    const ToolForce& make_safe(const ToolOutput& output, PeriodContext context) noexcept;
 
-    void write() noexcept
-    {
-        send({force_.sent_n, force_.sent_nm, force_.load_n, force_.load_nm}, force_.sent_gripper_n);
-    }
-
-    /// The force that write() sends, and how it came about.
-    [[nodiscard]] const ToolForce& force() const noexcept { return force_; }
+    /// Sends the force that make_safe() has returned.
+    void write() noexcept { send(pipeline_.force()); }
 
     /// What passed between it and the device in this period, beside the ToolState.
-    [[nodiscard]] DeviceRecord record() const noexcept;
+    [[nodiscard]] const DeviceRecord& record() const noexcept { return record_; }
 
     /// Sends the last force, faded by this much more time. It uses nothing but that force and the
     /// device's write, so it can be called in the middle of a frame that a bug has interrupted.
-    void fade(double elapsed_s, ForceOff cause) noexcept
-    {
-        const SafetyOutput safe = safe_state_.fade(elapsed_s, cause);
-        send(carry(safe, elapsed_s, 1.0), safe_state_.gain() * gripper_n_);
-    }
+    void fade(double elapsed_s, ForceOff cause) noexcept { send(pipeline_.fade(elapsed_s, cause)); }
 
     /// The run is over: no force.
     void rest() noexcept { device_.write({}); }
@@ -108,34 +87,20 @@ public:
     void brake() noexcept;
 
 private:
-    [[nodiscard]] WrenchWish wish_of(const ToolOutput& output,
-                                     double surface_damping_n_s_per_m) const noexcept;
-    [[nodiscard]] SafetyInput safety_input(const ToolOutput& output,
-                                           const PeriodContext& context) noexcept;
-    [[nodiscard]] Vec3 twist_of(const ToolOutput& output) const noexcept;
-    void turn_hand(const Mat3& rotation) noexcept;
+    void look() noexcept;
     [[nodiscard]] OwnForce own_force(const ToolOutput& output) noexcept;
-    [[nodiscard]] ForceOff own_causes() const noexcept;
     [[nodiscard]] double take_back() noexcept;
     void release_brake() noexcept;
-    [[nodiscard]] LoadedWrench carry(const SafetyOutput& safe, double elapsed_s,
-                                     double force_left) noexcept;
-    void send(const LoadedWrench& wrench, double gripper_n) noexcept;
+    void send(const ToolForce& force) noexcept;
 
     HapticDevice& device_;
     Clutch clutch_;
-    WrenchConditioner conditioner_;
-    SafeState safe_state_;
-    GravityCompensation gravity_;
+    ForcePipeline pipeline_;
     OwnForceSource* own_source_;
-    double gripper_n_{0.0}; ///< Wanted by the last frame in which nothing was wrong.
     DeviceSample sample_;
-    HandPlace hand_;                 ///< Of the last sample.
-    Vec3 turned_rad_{0.0, 0.0, 0.0}; ///< By the hand, about the world's axes, summed up.
-    /// Of a touched object's stiffness: the spring that turns is softened with the one that pushes.
-    double angular_share_m2_;
+    HandPlace hand_; ///< Of the last sample.
     ToolState state_;
-    ToolForce force_;
+    DeviceRecord record_;
     std::atomic<bool> is_braked_for_good_{false};
 };
 

@@ -3,8 +3,10 @@
 #include "rt_core/force/force_conditioner.hpp"
 
 #include "rt_core/base/assert.hpp"
+#include "rt_core/force/force_limiter.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
 #include "rt_core/math/direction.hpp"
+#include "rt_core/math/infinity.hpp"
 #include "rt_core/math/rounding.hpp"
 
 #include <algorithm>
@@ -55,59 +57,55 @@ ForceConditioner::ForceConditioner(const ConditionerSetup& setup) noexcept
     TACTUS_ASSERT(setup.period_s > 0.0);
 }
 
-ConditionedForce ForceConditioner::condition(const ForceWish& wish) noexcept
+double ForceConditioner::begin(SpringForce& force, const DeviceStep& device) noexcept
 {
-    return finish(begin(wish));
-}
-
-double ForceConditioner::begin(const ForceWish& wish) noexcept
-{
-    wish_ = wish;
-    output_ = {};
-    cap_for(wish);
-    const bool is_observed = observe(wish);
+    cap_for(force, device.surface_damping_n_s_per_m);
+    const bool is_observed = observe(device);
+    gain_ = limit(force);
     if (!is_observed || !sent_.knows_delay())
     {
-        output_.actions |= ForceAction::blind;
+        force.actions |= ForceAction::blind;
     }
-    gain_ = limit(wish, output_);
     return gain_;
 }
 
-ConditionedForce ForceConditioner::finish(double gain) noexcept
+void ForceConditioner::finish(SpringForce& force, double gain) noexcept
 {
     TACTUS_ASSERT(gain >= 0.0);
-    const Vec3 wished_n = gain < gain_ ? Vec3(wished_n_ * (gain / gain_)) : wished_n_;
-    const double step_n = setup_.device.slew_max_n_per_s * setup_.period_s;
-    wall_n_ = limit_growth(wall_n_, wished_n, step_n);
-    output_.actions |= wall_n_ != wished_n ? ForceAction::slew_limited : ForceAction::none;
-    hold(wish_, wall_n_, output_.stiffness_n_per_m);
-    output_.force_n = setup_.controls_passivity ? damp(wall_n_, output_) : wall_n_;
-    TACTUS_ASSERT(output_.force_n.norm() <= setup_.device.force_max_n * kRoundedUp);
-    output_.work_j = observer_.work_j();
-    output_.surplus_j = observer_.surplus_j();
-    sent_.send(output_.force_n);
-    return output_;
+    force.force_n = gain < gain_ ? Vec3(force.force_n * (gain / gain_)) : force.force_n;
+    hold(force, false);
+    if (setup_.controls_passivity)
+    {
+        damp(force);
+    }
+    TACTUS_ASSERT(force.force_n.norm() <= setup_.device.force_max_n * kRoundedUp);
+    force.work_j = observer_.work_j();
+    force.surplus_j = observer_.surplus_j();
+    sent_.send(force.force_n);
 }
 
-void ForceConditioner::follow(const Vec3& sent_n) noexcept
+void ForceConditioner::follow(const SpringForce& sent, bool is_ramp) noexcept
 {
-    sent_.replace_newest(sent_n);
-    observer_.forgive();
-    wall_n_ = sent_n;
+    sent_.replace_newest(sent.force_n);
+    if (is_ramp)
+    {
+        observer_.forgive();
+        return;
+    }
+    hold(sent, true);
 }
 
 /// The energy since the last frame. False when the position is of no use for that; then the next
 /// one is a first one.
-bool ForceConditioner::observe(const ForceWish& wish) noexcept
+bool ForceConditioner::observe(const DeviceStep& device) noexcept
 {
-    const std::uint32_t periods = std::max<std::uint32_t>(wish.elapsed_periods, 1);
+    const std::uint32_t periods = std::max<std::uint32_t>(device.elapsed_periods, 1);
     const double elapsed_s = setup_.period_s * periods;
     const Vec3 force_n = sent_.mean_since(periods);
-    const Vec3 way = wish.position_m - position_m_;
+    const Vec3 way = device.position_m - position_m_;
     const double farthest = setup_.speed_max_m_per_s * elapsed_s;
     const bool is_usable =
-        wish.position_m.allFinite() && (!knows_position_ || way.norm() <= farthest);
+        device.position_m.allFinite() && (!knows_position_ || way.norm() <= farthest);
     if (!is_usable)
     {
         velocity_.clear();
@@ -115,83 +113,88 @@ bool ForceConditioner::observe(const ForceWish& wish) noexcept
     }
     else if (knows_position_)
     {
-        observer_.observe(force_n, way, elapsed_s);
+        observer_.observe(force_n, way, elapsed_s, device.carried_m);
     }
-    knows_position_ = wish.position_m.allFinite();
+    knows_position_ = device.position_m.allFinite();
     if (knows_position_)
     {
-        velocity_.add(wish.position_m, elapsed_s);
-        position_m_ = wish.position_m;
+        velocity_.add(device.position_m, elapsed_s);
+        position_m_ = device.position_m;
     }
     return is_usable;
 }
 
-/// Most frames touch what the last one touched. Where a surface damps less than before, the wall
-/// that its damping had forbidden comes back step by step; in free air it may at once.
-void ForceConditioner::cap_for(const ForceWish& wish) noexcept
+/// Most frames touch what the last one touched. Under a force the wall goes step by step where a
+/// surface damps more or less than before; in free air at once.
+void ForceConditioner::cap_for(const SpringForce& force, double surface_damping_n_s_per_m) noexcept
 {
-    if (wish.surface_damping_n_s_per_m != surface_damping_n_s_per_m_)
+    if (surface_damping_n_s_per_m != surface_damping_n_s_per_m_)
     {
-        surface_damping_n_s_per_m_ = wish.surface_damping_n_s_per_m;
+        surface_damping_n_s_per_m_ = surface_damping_n_s_per_m;
         allowed_n_per_m_ =
             stiffness_cap(setup_.device, setup_.period_s, surface_damping_n_s_per_m_);
     }
     if (cap_n_per_m_ != allowed_n_per_m_)
     {
-        const bool is_touching = wish.force_n != Vec3(0.0, 0.0, 0.0);
-        cap_n_per_m_ = is_touching ? std::min(allowed_n_per_m_, cap_n_per_m_ + cap_step_n_per_m_)
-                                   : allowed_n_per_m_;
+        const bool is_touching = force.force_n != Vec3(0.0, 0.0, 0.0);
+        const double step = is_touching ? cap_step_n_per_m_ : kInfinity;
+        cap_n_per_m_ = std::clamp(allowed_n_per_m_, cap_n_per_m_ - step, cap_n_per_m_ + step);
     }
 }
 
-/// How much of the wish is within the device's limits, and what acted, in `output`.
-double ForceConditioner::limit(const ForceWish& wish, ConditionedForce& output) noexcept
+/// Brings it within the device's limits. Returns how much of it is left.
+double ForceConditioner::limit(SpringForce& force) const noexcept
 {
-    wished_n_ = Vec3(0.0, 0.0, 0.0);
-    if (!wish.force_n.allFinite() || !is_stiffness(wish.stiffness_n_per_m))
+    force.actions = ForceAction::none;
+    force.damping_n_s_per_m = 0.0;
+    if (!force.force_n.allFinite() || !is_stiffness(force.stiffness_n_per_m))
     {
-        output.actions |= ForceAction::refused;
+        force.force_n.setZero();
+        force.stiffness_n_per_m = 0.0;
+        force.actions = ForceAction::refused;
         return 0.0;
     }
-    const bool is_too_stiff = wish.stiffness_n_per_m > cap_n_per_m_;
-    const double scale = is_too_stiff ? cap_n_per_m_ / wish.stiffness_n_per_m : 1.0;
-    const Vec3 capped_n = wish.force_n * scale;
-    wished_n_ = clamp_norm(capped_n, setup_.device.force_max_n);
-    const bool is_clamped = wished_n_ != capped_n;
-    output.stiffness_n_per_m = wish.stiffness_n_per_m * scale;
-    output.actions |= is_too_stiff ? ForceAction::stiffness_capped : ForceAction::none;
-    output.actions |= is_clamped ? ForceAction::clamped : ForceAction::none;
+    const bool is_too_stiff = force.stiffness_n_per_m > cap_n_per_m_;
+    const double scale = is_too_stiff ? cap_n_per_m_ / force.stiffness_n_per_m : 1.0;
+    const Vec3 capped_n = force.force_n * scale;
+    force.force_n = clamp_norm(capped_n, setup_.device.force_max_n);
+    const bool is_clamped = force.force_n != capped_n;
+    force.stiffness_n_per_m *= scale;
+    force.actions |= is_too_stiff ? ForceAction::stiffness_capped : ForceAction::none;
+    force.actions |= is_clamped ? ForceAction::clamped : ForceAction::none;
     // By the largest coordinate: the square of what is huge is infinite.
     const double share =
         is_clamped && has_direction(capped_n)
-            ? largest_coordinate({&wished_n_, 1}) / largest_coordinate({&capped_n, 1})
+            ? largest_coordinate({&force.force_n, 1}) / largest_coordinate({&capped_n, 1})
             : 1.0;
     return scale * share;
 }
 
-void ForceConditioner::hold(const ForceWish& wish, const Vec3& wall_n,
-                            double stiffness_n_per_m) noexcept
+/// What the spring of this force holds from now on, or in place of what was just said.
+void ForceConditioner::hold(const SpringForce& force, bool is_again) noexcept
 {
-    const double force_n = wall_n.norm();
-    const bool is_wall = wish.stiffness_n_per_m > 0.0 || force_n == 0.0;
-    if (!is_wall)
+    const double force_n = force.force_n.norm();
+    const bool is_stretched = force_n > 0.0 && force.stiffness_n_per_m > 0.0;
+    if (force_n > 0.0 && !is_stretched)
     {
         observer_.hold_nothing();
         return;
     }
-    const bool is_stretched = force_n > 0.0 && stiffness_n_per_m > 0.0;
-    const double stretch_m = std::isfinite(wish.stretch_m) ? wish.stretch_m : 0.0;
-    observer_.hold(is_stretched ? spring_energy_j(force_n, stiffness_n_per_m, stretch_m) : 0.0);
+    const double stretch_m = std::isfinite(force.stretch_m) ? force.stretch_m : 0.0;
+    const double energy_j =
+        is_stretched ? spring_energy_j(force_n, force.stiffness_n_per_m, stretch_m) : 0.0;
+    is_again ? observer_.hold_instead(energy_j) : observer_.hold(energy_j);
 }
 
 /// The wall's force and the damping against the velocity; never a pull.
-Vec3 ForceConditioner::damp(const Vec3& wall_n, ConditionedForce& output) const noexcept
+void ForceConditioner::damp(SpringForce& force) const noexcept
 {
     const Vec3 velocity = velocity_.velocity_m_per_s();
     const double damping = observer_.damping_for(velocity.norm());
+    const Vec3 wall_n = force.force_n;
     if (!(damping * velocity.norm() > kLeastDamping_n) || !(wall_n.norm() > 0.0))
     {
-        return wall_n;
+        return;
     }
     Vec3 total = wall_n - velocity * damping;
     const double along = total.dot(wall_n);
@@ -199,51 +202,51 @@ Vec3 ForceConditioner::damp(const Vec3& wall_n, ConditionedForce& output) const 
     {
         total -= wall_n * (along / wall_n.squaredNorm());
     }
-    output.actions |= ForceAction::damped;
-    output.damping_n_s_per_m = damping;
-    return clamp_norm(total, setup_.device.force_max_n);
+    force.actions |= ForceAction::damped;
+    force.damping_n_s_per_m = damping;
+    force.force_n = clamp_norm(total, setup_.device.force_max_n);
 }
 
 WrenchConditioner::WrenchConditioner(const ConditionerSetup& setup) noexcept
-    : force_(setup)
-    , torque_(setup.device.turn.torque_max_nm > 0.0 ? in_angles(setup) : setup)
+    : push_(setup)
+    , turn_(setup.device.turn.torque_max_nm > 0.0 ? in_angles(setup) : setup)
     , has_torque_(setup.device.turn.torque_max_nm > 0.0)
     , lever_max_m_(setup.lever_max_m)
     , turning_damping_max_nm_s_per_rad_(kDampingShare * turning_of(setup.device).damping_n_s_per_m)
 {
 }
 
-ConditionedWrench WrenchConditioner::condition(const WrenchWish& wish) noexcept
+void WrenchConditioner::condition(ToolForce& force, const ToolPeriod& period) noexcept
 {
-    ConditionedWrench output;
-    double gain = force_.begin(wish.force);
+    const double damping = period.surface_damping_n_s_per_m;
+    double gain =
+        push_.begin(force.push, {period.hand_m, period.elapsed_periods, damping, period.carried_m});
     if (has_torque_)
     {
-        ForceWish turn = wish.torque;
-        turn.surface_damping_n_s_per_m =
-            std::min(wish.force.surface_damping_n_s_per_m * lever_max_m_ * lever_max_m_,
-                     turning_damping_max_nm_s_per_rad_);
-        gain = std::min(gain, torque_.begin(turn));
+        const double turning_damping =
+            std::min(damping * lever_max_m_ * lever_max_m_, turning_damping_max_nm_s_per_rad_);
+        gain = std::min(gain, turn_.begin(force.turn, {period.turned_rad, period.elapsed_periods,
+                                                       turning_damping, period.carried_rad}));
+        turn_.finish(force.turn, gain);
     }
-    output.force = force_.finish(gain);
-    if (has_torque_)
+    else
     {
-        output.torque = torque_.finish(gain);
+        force.turn = {};
     }
-    last_n_ = output.force.force_n;
-    last_nm_ = output.torque.force_n;
-    return output;
+    push_.finish(force.push, gain);
+    last_n_ = force.push.force_n;
+    last_nm_ = force.turn.force_n;
 }
 
-void WrenchConditioner::follow(const Vec3& sent_n, const Vec3& sent_nm) noexcept
+void WrenchConditioner::follow(const ToolForce& sent, bool is_ramp) noexcept
 {
-    if (sent_n != last_n_)
+    if (sent.push.force_n != last_n_)
     {
-        force_.follow(sent_n);
+        push_.follow(sent.push, is_ramp);
     }
-    if (has_torque_ && sent_nm != last_nm_)
+    if (has_torque_ && sent.turn.force_n != last_nm_)
     {
-        torque_.follow(sent_nm);
+        turn_.follow(sent.turn, is_ramp);
     }
 }
 

@@ -23,21 +23,21 @@ Vec3 clamp_norm(const Vec3& force_n, double norm_max_n) noexcept
     return is_inside ? force_n : Vec3(unit_of(force_n) * norm_max_n);
 }
 
-Vec3 limit_growth(const Vec3& before_n, const Vec3& wished_n, double step_max_n) noexcept
+Vec3 limit_change(const Vec3& before_n, const Vec3& wished_n, double step_max_n) noexcept
 {
     TACTUS_ASSERT(step_max_n >= 0.0);
     const Vec3 change = wished_n - before_n;
-    if (change.norm() <= step_max_n)
-    {
-        return wished_n;
-    }
-    Vec3 next = before_n + change * (step_max_n / change.norm());
-    const double along = next.dot(wished_n);
-    if (along < 0.0)
-    {
-        next -= wished_n * (along / wished_n.squaredNorm());
-    }
-    return clamp_norm(next, wished_n.norm());
+    const double norm = change.norm();
+    return norm <= step_max_n ? wished_n : Vec3(before_n + change * (step_max_n / norm));
+}
+
+Vec3 nearest_between(const Vec3& from, const Vec3& to, const Vec3& point) noexcept
+{
+    const Vec3 way = to - from;
+    const double length_sq = way.squaredNorm();
+    const double share =
+        length_sq > 0.0 ? std::clamp((point - from).dot(way) / length_sq, 0.0, 1.0) : 0.0;
+    return from + share * way;
 }
 
 } // namespace tactus

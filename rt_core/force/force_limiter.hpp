@@ -12,16 +12,13 @@ namespace tactus
 /// Zero when a coordinate is no finite number.
 [[nodiscard]] Vec3 clamp_norm(const Vec3& force_n, double norm_max_n) noexcept TACTUS_NONBLOCKING;
 
-/// The next force on the way from `before_n` to `wished_n` when it may grow by `step_max_n`:
-///
-///     wished ^            straight towards the wish by one step, then without what points against
-///            |  . next    the wish, then no longer than the wish
-///            | /
-///            o-----> before
-///
-/// So it grows by at most `step_max_n` in norm, never is longer than the wish and never points
-/// against it. It shrinks as fast as the wish does: a wall that the tool has left must not push on.
-[[nodiscard]] Vec3 limit_growth(const Vec3& before_n, const Vec3& wished_n,
+/// The next force on the way from `before_n` to `wished_n` when it may change by `step_max_n` >= 0:
+/// the wish, or on the straight line there as far as that. Never longer than the longer one.
+[[nodiscard]] Vec3 limit_change(const Vec3& before_n, const Vec3& wished_n,
                                 double step_max_n) noexcept TACTUS_NONBLOCKING;
+
+/// The point between two that is nearest to a third one.
+[[nodiscard]] Vec3 nearest_between(const Vec3& from, const Vec3& to,
+                                   const Vec3& point) noexcept TACTUS_NONBLOCKING;
 
 } // namespace tactus

@@ -18,7 +18,7 @@ namespace
 /// Of the scene and of time, not of the device.
 constexpr ForceOff kOfTheScene = ForceOff::host | ForceOff::stall | ForceOff::jump |
                                  ForceOff::frozen | ForceOff::squeezed | ForceOff::clutch |
-                                 ForceOff::starved;
+                                 ForceOff::starved | ForceOff::growth;
 
 /// The largest share of `wall` that with `load` is no longer than `most`: where the line from
 /// `load` along `wall` leaves the ball.
@@ -44,32 +44,44 @@ GravityCompensation::GravityCompensation(const ToolLoad& load, const WrenchLimit
     TACTUS_ASSERT(limits.torque_max_nm <= 0.0 || load.torque_max_nm() <= limits.torque_max_nm);
 }
 
-LoadedWrench GravityCompensation::carry(const Input& input) noexcept
+void GravityCompensation::carry(ToolForce& force, const ToolPeriod& period) noexcept
 {
-    LoadedWrench sent{input.force_n, input.torque_nm, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
     if (!(load_.mass_kg > 0.0))
     {
-        return sent;
+        return;
     }
-    const bool is_trusted = input.has_sample && (input.causes | kOfTheScene) == kOfTheScene;
+    const bool has_sample = force.state != SafetyState::reset;
+    const bool is_trusted = has_sample && (force.causes | kOfTheScene) == kOfTheScene;
     if (is_trusted)
     {
-        turn_lever(input.rotation, input.elapsed_s);
+        turn_lever(period.hand_rotation, period.elapsed_s);
     }
-    const double left = input.force_left < 1.0 ? gain_ * input.force_left : 1.0;
-    gain_ = is_trusted ? std::min(gain_ + input.elapsed_s / kRiseTime_s, 1.0)
-                       : std::max(gain_ - input.elapsed_s / kFadeTime_s, 0.0);
-    gain_ = input.has_sample ? std::min(gain_, left) : 0.0;
-    sent.load_n = -gain_ * load_.weight_n() * load_.down_world;
-    double share = share_beside(sent.force_n, sent.load_n, limits_.force_max_n);
+    const double left = period.force_left < 1.0 ? gain_ * period.force_left : 1.0;
+    gain_ = is_trusted ? std::min(gain_ + period.elapsed_s / kRiseTime_s, 1.0)
+                       : std::max(gain_ - period.elapsed_s / kFadeTime_s, 0.0);
+    gain_ = has_sample ? std::min(gain_, left) : 0.0;
+    force.load_n = -gain_ * load_.weight_n() * load_.down_world;
     if (limits_.torque_max_nm > 0.0)
     {
-        sent.load_nm = lever_m_.cross(sent.load_n);
-        share = std::min(share, share_beside(sent.torque_nm, sent.load_nm, limits_.torque_max_nm));
+        force.load_nm = lever_m_.cross(force.load_n);
     }
-    sent.force_n *= share;
-    sent.torque_nm *= share;
-    return sent;
+    make_room(force);
+}
+
+void GravityCompensation::make_room(ToolForce& force) const noexcept
+{
+    double share = 1.0;
+    if (load_.mass_kg > 0.0)
+    {
+        share = share_beside(force.push.force_n, force.load_n, limits_.force_max_n);
+    }
+    if (load_.mass_kg > 0.0 && limits_.torque_max_nm > 0.0)
+    {
+        share =
+            std::min(share, share_beside(force.turn.force_n, force.load_nm, limits_.torque_max_nm));
+    }
+    force.push.force_n *= share;
+    force.turn.force_n *= share;
 }
 
 /// Where nothing is carried there is nothing to jump.

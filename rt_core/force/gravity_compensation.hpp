@@ -4,8 +4,9 @@
 
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/math/vec3.hpp"
-#include "rt_core/records/safety.hpp"
+#include "rt_core/records/tool_force.hpp"
 #include "rt_core/records/tool_load.hpp"
+#include "rt_core/records/tool_period.hpp"
 
 namespace tactus
 {
@@ -17,15 +18,6 @@ struct WrenchLimits
     double torque_max_nm{0.0};
 };
 
-/// What SafeState lets out, as it is sent beside the load.
-struct LoadedWrench
-{
-    Vec3 force_n{0.0, 0.0, 0.0};   ///< Of surfaces and program.
-    Vec3 torque_nm{0.0, 0.0, 0.0}; ///< Likewise.
-    Vec3 load_n{0.0, 0.0, 0.0};    ///< What carries the load, beside that.
-    Vec3 load_nm{0.0, 0.0, 0.0};   ///< Likewise.
-};
-
 /// Carries the weight of what hangs on a device, so that the hand feels none. It is the device's
 /// load and not the model's force: it goes round the conditioner, whose wall it isn't, and round
 /// the SafeState, whose fading would let it drop whenever data is late.
@@ -35,9 +27,9 @@ struct LoadedWrench
 /// The gain has a ramp of its own, down in kFadeTime_s and up in kRiseTime_s. It falls on every
 /// cause that says something of the device: gone, let go, cut off, garbage, stale, too fast, the
 /// run's end. What says something of the scene alone (frozen, squeezed, jump, host, stall, clutch,
-/// starved) leaves it. The lever follows the tool's rotation only while no such cause is there, and
-/// no faster than a hand may turn (kTurningMax_rad_per_s). So no sample makes a force of another
-/// length or direction, nor a torque above weight x lever, nor one that jumps.
+/// starved, growth) leaves it. The lever follows the tool's rotation only while no such cause is
+/// there, and no faster than a hand may turn (kTurningMax_rad_per_s). So no sample makes a force of
+/// another length or direction, nor a torque above weight x lever, nor one that jumps.
 ///
 /// The load goes out whole; where both are more than the device's largest force or torque, the
 /// other one is shortened, force and torque by one gain.
@@ -50,19 +42,12 @@ public:
     ///   such a device gets the force alone.
     GravityCompensation(const ToolLoad& load, const WrenchLimits& limits) noexcept;
 
-    /// What one frame knows.
-    struct Input
-    {
-        Vec3 force_n{0.0, 0.0, 0.0};   ///< The SafeState's.
-        Vec3 torque_nm{0.0, 0.0, 0.0}; ///< Likewise.
-        ForceOff causes{ForceOff::none};
-        Mat3 rotation{Mat3::Identity()}; ///< Of the device; used only while it is believed.
-        bool has_sample{false};          ///< Of this device, since it was connected.
-        double force_left{1.0};          ///< As SafetyInput's.
-        double elapsed_s{0.0};           ///< Since the last frame, not negative.
-    };
+    /// The load's part of `force`, which the SafeState has let out, and what is left of the rest
+    /// beside it. Of `period`: the device's rotation, used only while it is believed.
+    void carry(ToolForce& force, const ToolPeriod& period) noexcept TACTUS_NONBLOCKING;
 
-    [[nodiscard]] LoadedWrench carry(const Input& input) noexcept TACTUS_NONBLOCKING;
+    /// Only what is left of the rest, once more.
+    void make_room(ToolForce& force) const noexcept TACTUS_NONBLOCKING;
 
     /// Share of the load that is carried, 0 .. 1.
     [[nodiscard]] double gain() const noexcept { return gain_; }

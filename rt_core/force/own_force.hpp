@@ -4,7 +4,7 @@
 
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/force/force_limiter.hpp"
-#include "rt_core/records/conditioned_force.hpp"
+#include "rt_core/records/tool_force.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -37,39 +37,37 @@ struct OwnForce
 }
 
 /// Two springs that pull at one hand as the one that they are together: forces and stiffnesses
-/// add, and the stretch is that with which it holds what both hold. A wish without a force of its
-/// own changes no bit.
-[[nodiscard]] inline ForceWish with_spring(const ForceWish& wish, const Vec3& force_n,
-                                           double stiffness_n_per_m) noexcept
+/// add, and the stretch is that with which it holds what both hold. One without a force of its own
+/// changes no bit.
+inline void add_spring(SpringForce& wall, const Vec3& force_n, double stiffness_n_per_m) noexcept
 {
     if (force_n == Vec3(0.0, 0.0, 0.0))
     {
-        return wish;
+        return;
     }
     const auto energy_j = [](double force, double stiffness, double stretch_m)
     {
         const double least_m = stiffness > 0.0 ? force / stiffness : 0.0;
         return stiffness > 0.0 ? force * (std::max(stretch_m, least_m) - 0.5 * least_m) : 0.0;
     };
-    const double wall_n = wish.force_n.norm();
-    ForceWish both = wish;
-    both.force_n += force_n;
-    both.stiffness_n_per_m = stiffness_n_per_m + (wall_n > 0.0 ? wish.stiffness_n_per_m : 0.0);
-    const double sum_n = both.force_n.norm();
-    if (sum_n > 0.0 && both.stiffness_n_per_m > 0.0)
+    const double wall_n = wall.force_n.norm();
+    const double held_j = energy_j(wall_n, wall.stiffness_n_per_m, wall.stretch_m) +
+                          energy_j(force_n.norm(), stiffness_n_per_m, 0.0);
+    wall.force_n += force_n;
+    wall.stiffness_n_per_m = stiffness_n_per_m + (wall_n > 0.0 ? wall.stiffness_n_per_m : 0.0);
+    const double sum_n = wall.force_n.norm();
+    if (sum_n > 0.0 && wall.stiffness_n_per_m > 0.0)
     {
-        const double held_j = energy_j(wall_n, wish.stiffness_n_per_m, wish.stretch_m) +
-                              energy_j(force_n.norm(), stiffness_n_per_m, 0.0);
-        both.stretch_m = held_j / sum_n + 0.5 * sum_n / both.stiffness_n_per_m;
+        wall.stretch_m = held_j / sum_n + 0.5 * sum_n / wall.stiffness_n_per_m;
     }
-    return both;
 }
 
 /// What surfaces want and what the program wants, for the WrenchConditioner.
-[[nodiscard]] inline WrenchWish with_own(const WrenchWish& wish, const OwnForce& own) noexcept
+inline void add_own(ToolForce& force, const OwnForce& own) noexcept
 {
-    return {with_spring(wish.force, own.force_n, own.stiffness_n_per_m),
-            with_spring(wish.torque, own.torque_nm, own.stiffness_nm_per_rad)};
+    add_spring(force.push, own.force_n, own.stiffness_n_per_m);
+    add_spring(force.turn, own.torque_nm, own.stiffness_nm_per_rad);
+    force.own_n = own.force_n.norm();
 }
 
 } // namespace tactus

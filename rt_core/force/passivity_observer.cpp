@@ -51,21 +51,28 @@ PassivityObserver::PassivityObserver(const DeviceLimits& device, double period_s
 {
 }
 
-void PassivityObserver::observe(const Vec3& force_n, const Vec3& displacement_m,
-                                double elapsed_s) noexcept
+void PassivityObserver::observe(const Vec3& force_n, const Vec3& displacement_m, double elapsed_s,
+                                const Vec3& carried_m) noexcept
 {
     TACTUS_ASSERT(elapsed_s > 0.0);
     const double work = force_n.dot(displacement_m);
     // By Cauchy's inequality b v^2 over the time is no less than this, whatever the motion.
     const double viscous_loss = damping_n_s_per_m_ * displacement_m.squaredNorm() / elapsed_s;
     work_j_ += work;
-    surplus_j_ += work - viscous_loss - friction_n_ * displacement_m.norm();
+    surplus_j_ +=
+        work - force_n.dot(carried_m) - viscous_loss - friction_n_ * displacement_m.norm();
 }
 
 void PassivityObserver::hold(double energy_j) noexcept
 {
+    unheld_j_ = surplus_j_ - held_j_;
+    hold_instead(energy_j);
+}
+
+void PassivityObserver::hold_instead(double energy_j) noexcept
+{
     TACTUS_ASSERT(!(energy_j < 0.0));
-    surplus_j_ = std::max(0.0, surplus_j_ + energy_j - held_j_);
+    surplus_j_ = std::max(0.0, unheld_j_ + energy_j);
     held_j_ = energy_j;
 }
 
@@ -73,6 +80,7 @@ void PassivityObserver::hold_nothing() noexcept
 {
     held_j_ = 0.0;
     surplus_j_ = 0.0;
+    unheld_j_ = 0.0;
 }
 
 double PassivityObserver::damping_for(double speed_m_per_s) const noexcept

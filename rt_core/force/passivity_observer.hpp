@@ -50,6 +50,8 @@ private:
 ///
 ///     surplus[k] = surplus[k-1] + work + (held[k] - held[k-1]) - b dx^2 / dt - f |dx|, at least 0
 ///
+/// Of a wall that is moved the work is F . (dx - its own way): the rest is of those who move it.
+///
 /// Each sampled wall makes some of it: K (v T)^2 / 2 when it is entered between two samples, and
 /// K dx^2 / 2 in each period, which a wall within stiffness_cap() loses in b again. What it grows
 /// beyond, the controller takes out. At least 0, so that energy lost long ago hides nothing;
@@ -63,12 +65,15 @@ class PassivityObserver
 public:
     PassivityObserver(const DeviceLimits& device, double period_s) noexcept;
 
-    /// What the device did under `force_n`, the mean of the forces that it held meanwhile.
+    /// What the device did under `force_n`, the mean of the forces that it held meanwhile. Along
+    /// `carried_m`, the way that the wall was moved, it is no work of the wall.
     /// - `elapsed_s` > 0.
-    void observe(const Vec3& force_n, const Vec3& displacement_m,
-                 double elapsed_s) noexcept TACTUS_NONBLOCKING;
+    void observe(const Vec3& force_n, const Vec3& displacement_m, double elapsed_s,
+                 const Vec3& carried_m = Vec3(0.0, 0.0, 0.0)) noexcept TACTUS_NONBLOCKING;
     /// What the spring holds from now on; called after observe().
     void hold(double energy_j) noexcept TACTUS_NONBLOCKING;
+    /// It is this much, in place of what hold() was just told.
+    void hold_instead(double energy_j) noexcept TACTUS_NONBLOCKING;
     /// What the spring holds now came from elsewhere: there is no surplus.
     void forgive() noexcept { surplus_j_ = 0.0; }
     /// The force comes from no wall: there is no surplus.
@@ -91,6 +96,7 @@ private:
     double work_j_{0.0};
     double held_j_{0.0};
     double surplus_j_{0.0};
+    double unheld_j_{0.0}; ///< Surplus before the last hold(), less what was held then.
 };
 
 } // namespace tactus

@@ -26,9 +26,9 @@ bool is_trusted(ForceOff causes) noexcept
     return (causes | kHeldProxy) == kHeldProxy;
 }
 
-bool is_good(const SafetyInput& input) noexcept
+bool is_good(const ToolPeriod& period) noexcept
 {
-    return (input.faults & kSampleFaults) == FrameFault::none;
+    return (period.faults & kSampleFaults) == FrameFault::none;
 }
 
 bool is_finite(const Vec3& v) noexcept
@@ -57,31 +57,40 @@ SafeState::SafeState(const SafetyLimits& limits) noexcept : limits_(limits)
     TACTUS_ASSERT(limits.turning_max_rad_per_s >= 0.0);
 }
 
-SafetyOutput SafeState::step(const SafetyInput& input) noexcept
+void SafeState::step(ToolForce& force, const ToolPeriod& period) noexcept
 {
-    TACTUS_ASSERT(input.elapsed_s >= 0.0);
-    observe_speed(input);
-    const ForceOff causes = find_causes(input);
+    TACTUS_ASSERT(period.elapsed_s >= 0.0);
+    observe_speed(period);
+    const ForceOff causes = find_causes(force, period);
     const bool was_off = gain_ <= 0.0;
-    move_gain(input, causes);
+    move_gain(period, causes);
     if (is_trusted(causes))
     {
-        follow(input, was_off);
+        catch_up(force, period.elapsed_s, was_off);
     }
-    return output(causes);
+    let_out(force, causes);
 }
 
-SafetyOutput SafeState::fade(double elapsed_s, ForceOff cause) noexcept
+void SafeState::fade(ToolForce& force, double elapsed_s, ForceOff cause) noexcept
 {
     TACTUS_ASSERT(cause != ForceOff::none);
     gain_ = std::max(gain_ - elapsed_s / kFadeTime_s, 0.0);
     is_following_ = false;
     velocity_m_per_s_ = Vec3(0.0, 0.0, 0.0);
     turning_rad_per_s_ = Vec3(0.0, 0.0, 0.0);
-    return output(cause);
+    let_out(force, cause);
 }
 
-SafetyOutput SafeState::output(ForceOff causes) noexcept
+void SafeState::follow(const ToolForce& sent) noexcept
+{
+    if (gain_ > 0.0)
+    {
+        base_n_ = sent.push.force_n / gain_;
+        base_nm_ = sent.turn.force_n / gain_;
+    }
+}
+
+void SafeState::let_out(ToolForce& force, ForceOff causes) noexcept
 {
     const bool feels_nothing = base_n_.squaredNorm() <= 0.0 && base_nm_.squaredNorm() <= 0.0;
     // On the way back in free air there is nothing to soften.
@@ -91,50 +100,48 @@ SafetyOutput SafeState::output(ForceOff causes) noexcept
                                      kDampingForceShare * limits_.force_max_n);
     const Vec3 damping_nm = shortened(-share * limits_.damping_nm_s_per_rad * turning_rad_per_s_,
                                       kDampingForceShare * limits_.torque_max_nm);
-    const SafetyState state = next_state(causes);
-    const bool has_changed = state != state_ || causes != causes_;
-    state_ = state;
-    causes_ = causes;
-    return {shortened(gain_ * base_n_ + damping_n, limits_.force_max_n),
-            shortened(gain_ * base_nm_ + damping_nm, limits_.torque_max_nm), state, causes,
-            has_changed};
+    state_ = next_state(causes);
+    force.push.force_n = shortened(gain_ * base_n_ + damping_n, limits_.force_max_n);
+    force.turn.force_n = shortened(gain_ * base_nm_ + damping_nm, limits_.torque_max_nm);
+    force.state = state_;
+    force.causes = causes;
 }
 
 /// From the device, or from the ways and turns between new samples over the true times between
 /// them.
-void SafeState::observe_speed(const SafetyInput& input) noexcept
+void SafeState::observe_speed(const ToolPeriod& period) noexcept
 {
-    since_sample_s_ += input.elapsed_s;
-    if (!is_good(input) || has_cause(input.causes, ForceOff::disconnect))
+    since_sample_s_ += period.elapsed_s;
+    if (!is_good(period) || has_cause(period.causes, ForceOff::disconnect))
     {
         velocity_m_per_s_ = Vec3(0.0, 0.0, 0.0);
         turning_rad_per_s_ = Vec3(0.0, 0.0, 0.0);
         return;
     }
-    const bool is_new = input.sample_time_ns == 0 || input.sample_time_ns != sample_time_ns_;
+    const bool is_new = period.sample_time_ns == 0 || period.sample_time_ns != sample_time_ns_;
     if (!is_new && has_sample_)
     {
         return;
     }
-    if (input.has_velocity && is_finite(input.velocity_m_per_s))
+    if (period.has_velocity && is_finite(period.velocity_m_per_s))
     {
-        velocity_m_per_s_ = input.velocity_m_per_s;
+        velocity_m_per_s_ = period.velocity_m_per_s;
     }
     else if (has_sample_ && since_sample_s_ > 0.0)
     {
-        velocity_m_per_s_ = (input.position_m - position_m_) / since_sample_s_;
+        velocity_m_per_s_ = (period.hand_m - position_m_) / since_sample_s_;
     }
-    if (input.has_turning && is_finite(input.turning_rad_per_s))
+    if (period.has_turning && is_finite(period.turning_rad_per_s))
     {
-        turning_rad_per_s_ = input.turning_rad_per_s;
+        turning_rad_per_s_ = period.turning_rad_per_s;
     }
     else if (has_sample_ && since_sample_s_ > 0.0)
     {
-        turning_rad_per_s_ = (input.turned_rad - turned_rad_) / since_sample_s_;
+        turning_rad_per_s_ = (period.turned_rad - turned_rad_) / since_sample_s_;
     }
-    position_m_ = input.position_m;
-    turned_rad_ = input.turned_rad;
-    sample_time_ns_ = input.sample_time_ns;
+    position_m_ = period.hand_m;
+    turned_rad_ = period.turned_rad;
+    sample_time_ns_ = period.sample_time_ns;
     since_sample_s_ = 0.0;
     has_sample_ = true;
     is_too_fast_ = is_too_fast();
@@ -148,22 +155,22 @@ bool SafeState::is_too_fast() const noexcept
             turning_rad_per_s_.norm() > share * limits_.turning_max_rad_per_s);
 }
 
-ForceOff SafeState::find_causes(const SafetyInput& input) const noexcept
+ForceOff SafeState::find_causes(const ToolForce& force, const ToolPeriod& period) const noexcept
 {
     const auto when = [](bool is_so, ForceOff cause) { return is_so ? cause : ForceOff::none; };
-    return input.causes | when(is_too_fast_, ForceOff::velocity) |
-           when(input.force_left < 1.0, ForceOff::watchdog) |
-           when(has_fault(input.faults, FrameFault::tool_stuck), ForceOff::stale) |
-           when(has_fault(input.faults, FrameFault::tool_invalid | FrameFault::tool_jumped) ||
-                    !is_finite(input.force_n) || !is_finite(input.torque_nm),
+    return period.causes | when(is_too_fast_, ForceOff::velocity) |
+           when(period.force_left < 1.0, ForceOff::watchdog) |
+           when(has_fault(period.faults, FrameFault::tool_stuck), ForceOff::stale) |
+           when(has_fault(period.faults, FrameFault::tool_invalid | FrameFault::tool_jumped) ||
+                    !is_finite(force.push.force_n) || !is_finite(force.turn.force_n),
                 ForceOff::garbage) |
-           when(has_fault(input.faults, FrameFault::object_lost), ForceOff::jump) |
-           when(has_fault(input.faults, FrameFault::proxy_frozen), ForceOff::frozen) |
-           when(has_fault(input.faults, FrameFault::proxy_squeezed), ForceOff::squeezed) |
-           when(input.elapsed_periods > 1, ForceOff::stall);
+           when(has_fault(period.faults, FrameFault::object_lost), ForceOff::jump) |
+           when(has_fault(period.faults, FrameFault::proxy_frozen), ForceOff::frozen) |
+           when(has_fault(period.faults, FrameFault::proxy_squeezed), ForceOff::squeezed) |
+           when(period.elapsed_periods > 1, ForceOff::stall);
 }
 
-void SafeState::move_gain(const SafetyInput& input, ForceOff causes) noexcept
+void SafeState::move_gain(const ToolPeriod& period, ForceOff causes) noexcept
 {
     if (!has_sample_)
     {
@@ -171,12 +178,12 @@ void SafeState::move_gain(const SafetyInput& input, ForceOff causes) noexcept
     }
     else if (causes != ForceOff::none)
     {
-        const double left = gain_ * input.force_left;
-        gain_ = std::max(std::min(gain_ - input.elapsed_s / kFadeTime_s, left), 0.0);
+        const double left = gain_ * period.force_left;
+        gain_ = std::max(std::min(gain_ - period.elapsed_s / kFadeTime_s, left), 0.0);
     }
-    else if (gain_ > 0.0 || may_begin(input))
+    else if (gain_ > 0.0 || may_begin(period))
     {
-        gain_ = std::min(gain_ + input.elapsed_s / kRiseTime_s, 1.0);
+        gain_ = std::min(gain_ + period.elapsed_s / kRiseTime_s, 1.0);
     }
     // Another device, or the same one after it was moved: what it says first counts anew.
     has_sample_ = has_sample_ && (gain_ > 0.0 || !has_cause(causes, ForceOff::disconnect));
@@ -184,23 +191,23 @@ void SafeState::move_gain(const SafetyInput& input, ForceOff causes) noexcept
 }
 
 /// A hand so deep in a wall that the device couldn't make the spring's force has to come out first.
-bool SafeState::may_begin(const SafetyInput& input) const noexcept
+bool SafeState::may_begin(const ToolPeriod& period) const noexcept
 {
-    const double spring_n = limits_.stiffness_n_per_m * (input.proxy_m - input.position_m).norm();
-    const double spring_nm = limits_.stiffness_nm_per_rad * input.twist_rad;
+    const double spring_n = limits_.stiffness_n_per_m * period.stretch_m;
+    const double spring_nm = limits_.stiffness_nm_per_rad * period.twist_rad;
     return spring_n <= limits_.force_max_n &&
            (limits_.torque_max_nm <= 0.0 || spring_nm <= limits_.torque_max_nm);
 }
 
 /// At its full gain the frame's force goes out as it is, once it has been caught up with. Where
 /// nothing was felt there is no way to go.
-void SafeState::follow(const SafetyInput& input, bool was_off) noexcept
+void SafeState::catch_up(const ToolForce& force, double elapsed_s, bool was_off) noexcept
 {
-    const Vec3 target_n = shortened(input.force_n, limits_.force_max_n);
-    const Vec3 target_nm = shortened(input.torque_nm, limits_.torque_max_nm);
+    const Vec3 target_n = shortened(force.push.force_n, limits_.force_max_n);
+    const Vec3 target_nm = shortened(force.turn.force_n, limits_.torque_max_nm);
     const Vec3 way_n = target_n - base_n_;
     const Vec3 way_nm = target_nm - base_nm_;
-    const double share = input.elapsed_s / kRiseTime_s;
+    const double share = elapsed_s / kRiseTime_s;
     const double step_n = limits_.force_max_n * share;
     const double step_nm = limits_.torque_max_nm * share;
     const bool has_arrived =

@@ -5,7 +5,8 @@
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/math/vec3.hpp"
 #include "rt_core/records/safety.hpp"
-#include "rt_core/records/work_counters.hpp"
+#include "rt_core/records/tool_force.hpp"
+#include "rt_core/records/tool_period.hpp"
 
 #include <cstdint>
 
@@ -24,38 +25,6 @@ struct SafetyLimits
     double stiffness_nm_per_rad{0.0};  ///< Of the virtual wall against turning.
     double damping_nm_s_per_rad{0.0};  ///< As damping_n_s_per_m.
     double turning_max_rad_per_s{0.0}; ///< Hands that turn faster get none; 0: there is no limit.
-};
-
-/// What one frame knows about one tool. World frame, SI.
-struct SafetyInput
-{
-    Vec3 position_m{0.0, 0.0, 0.0}; ///< Of the sample; used only while it has no fault.
-    Vec3 velocity_m_per_s{0.0, 0.0, 0.0};
-    bool has_velocity{false};         ///< False: from the positions.
-    std::int64_t sample_time_ns{0};   ///< 0: the device has none, every sample is new.
-    double elapsed_s{0.0};            ///< Since the last frame, the true one after a stall.
-    std::uint32_t elapsed_periods{1}; ///< The same in whole periods.
-    Vec3 force_n{0.0, 0.0, 0.0};      ///< The frame's.
-    Vec3 torque_nm{0.0, 0.0, 0.0};    ///< The frame's.
-    Vec3 proxy_m{0.0, 0.0, 0.0};      ///< The frame's.
-    double twist_rad{0.0};            ///< Angle between the frame's proxy and the hand, 0 .. pi.
-    Vec3 turned_rad{0.0, 0.0, 0.0};   ///< By the hand about the world's axes, summed up.
-    Vec3 turning_rad_per_s{0.0, 0.0, 0.0};
-    bool has_turning{false};             ///< False: from turned_rad.
-    FrameFault faults{FrameFault::none}; ///< The frame's of this tool: faults_of().
-    ForceOff causes{ForceOff::none};     ///< What the caller knows of by itself.
-    double force_left{1.0};              ///< Of the last force, 0 to 1: less than all after a
-                                         ///< brake or the device's own watchdog.
-};
-
-/// What goes to the device.
-struct SafetyOutput
-{
-    Vec3 force_n{0.0, 0.0, 0.0};
-    Vec3 torque_nm{0.0, 0.0, 0.0};
-    SafetyState state{SafetyState::reset};
-    ForceOff causes{ForceOff::none};
-    bool has_changed{false}; ///< State or causes are others than in the frame before.
 };
 
 /// Stands between the frame and one tool's device and decides how much of force and torque goes
@@ -94,31 +63,37 @@ public:
     SafeState() noexcept = default;
     explicit SafeState(const SafetyLimits& limits) noexcept;
 
-    /// Once a frame, after the force is computed and before it is written.
-    /// - `input.elapsed_s` >= 0 (asserted).
-    [[nodiscard]] SafetyOutput step(const SafetyInput& input) noexcept TACTUS_NONBLOCKING;
+    /// Once a frame, after the force is computed and before it is written: force and torque become
+    /// what goes out, with state and causes.
+    /// - `period.elapsed_s` >= 0 (asserted).
+    void step(ToolForce& force, const ToolPeriod& period) noexcept TACTUS_NONBLOCKING;
 
     /// Instead of step() where there is no frame to go by: the last force fades on.
     /// - `elapsed_s` >= 0; `cause` is not none (asserted).
-    [[nodiscard]] SafetyOutput fade(double elapsed_s, ForceOff cause) noexcept TACTUS_NONBLOCKING;
+    void fade(ToolForce& force, double elapsed_s, ForceOff cause) noexcept TACTUS_NONBLOCKING;
+
+    /// This went out in place of what step() has just let out: it is what fades.
+    void follow(const ToolForce& sent) noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] SafetyState state() const noexcept { return state_; }
+    /// What goes out is the frame's, and no gain holds any of it back.
+    [[nodiscard]] bool is_whole() const noexcept { return is_following_ && gain_ >= 1.0; }
     /// Share of the force that goes out, 0 .. 1.
     [[nodiscard]] double gain() const noexcept { return gain_; }
 
 private:
-    [[nodiscard]] ForceOff find_causes(const SafetyInput& input) const noexcept;
-    void observe_speed(const SafetyInput& input) noexcept;
+    [[nodiscard]] ForceOff find_causes(const ToolForce& force,
+                                       const ToolPeriod& period) const noexcept;
+    void observe_speed(const ToolPeriod& period) noexcept;
     [[nodiscard]] bool is_too_fast() const noexcept;
-    void move_gain(const SafetyInput& input, ForceOff causes) noexcept;
-    void follow(const SafetyInput& input, bool was_off) noexcept;
-    [[nodiscard]] bool may_begin(const SafetyInput& input) const noexcept;
-    [[nodiscard]] SafetyOutput output(ForceOff causes) noexcept;
+    void move_gain(const ToolPeriod& period, ForceOff causes) noexcept;
+    void catch_up(const ToolForce& force, double elapsed_s, bool was_off) noexcept;
+    [[nodiscard]] bool may_begin(const ToolPeriod& period) const noexcept;
+    void let_out(ToolForce& force, ForceOff causes) noexcept;
     [[nodiscard]] SafetyState next_state(ForceOff causes) const noexcept;
 
     SafetyLimits limits_;
     SafetyState state_{SafetyState::reset};
-    ForceOff causes_{ForceOff::none};
     double gain_{0.0};
     Vec3 base_n_{0.0, 0.0, 0.0}; ///< What the gain scales.
     Vec3 base_nm_{0.0, 0.0, 0.0};

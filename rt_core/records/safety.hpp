@@ -42,7 +42,7 @@ enum class ForceOff : std::uint32_t
     squeezed = 1U << 12U,  ///< Objects leave the tool no room.
     clutch = 1U << 13U,    ///< A button has parted hand and tool.
     starved = 1U << 14U,   ///< The proxy waits for a piece that hasn't come for a second.
-    growth = 1U << 15U,    ///< It would have grown faster than hand and objects moved.
+    growth = 1U << 15U,    ///< It wants to change faster than hand and objects move.
 };
 inline constexpr std::size_t kForceOffs = 16;
 static_assert(static_cast<std::uint32_t>(ForceOff::growth) == 1U << (kForceOffs - 1));

@@ -20,20 +20,22 @@ public:
 
     [[nodiscard]] Vec3 step(const ToolOutput& output, const Vec3& position_m)
     {
-        return both(output, position_m).force_n;
+        return both(output, position_m).push.force_n;
     }
 
     /// And the torque.
-    [[nodiscard]] SafetyOutput both(const ToolOutput& output, const Vec3& position_m)
+    [[nodiscard]] ToolForce both(const ToolOutput& output, const Vec3& position_m)
     {
-        SafetyInput input;
-        input.position_m = position_m;
-        input.elapsed_s = period_s_;
-        input.force_n = output.force_n;
-        input.torque_nm = output.torque_nm;
-        input.proxy_m = output.proxy_m;
-        input.faults = faults_of(output);
-        return safe_.step(input);
+        ToolForce force;
+        force.push.force_n = output.force_n;
+        force.turn.force_n = output.torque_nm;
+        ToolPeriod period;
+        period.hand_m = position_m;
+        period.elapsed_s = period_s_;
+        period.stretch_m = (output.proxy_m - position_m).norm();
+        period.faults = faults_of(output);
+        safe_.step(force, period);
+        return force;
     }
 
     [[nodiscard]] double gain() const { return safe_.gain(); }

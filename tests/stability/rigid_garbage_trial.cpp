@@ -125,21 +125,21 @@ private:
     {
         ++figures_.trials;
         const ToolOutput& tool = output.tools[0];
-        const SafetyOutput safe = safe_.both(tool, position_m);
+        const ToolForce safe = safe_.both(tool, position_m);
         for (const auto& [norm, most] : {std::pair(tool.force_n.norm(), kBodyForceMax_n),
                                          std::pair(tool.torque_nm.norm(), kBodyTorqueMax_nm),
-                                         std::pair(safe.force_n.norm(), kBodyForceMax_n),
-                                         std::pair(safe.torque_nm.norm(), kBodyTorqueMax_nm)})
+                                         std::pair(safe.push.force_n.norm(), kBodyForceMax_n),
+                                         std::pair(safe.turn.force_n.norm(), kBodyTorqueMax_nm)})
         {
             figures_.observe(std::isfinite(norm) ? norm / most : kInfinity);
             expect(norm <= most * (1.0 + kBodyRounding), std::to_string(norm) + " N or N m");
         }
         if (safe_.gain() < 1.0 && !tool.frozen && !tool.squeezed)
         {
-            expect((safe.force_n - sent_.force_n).norm() <=
+            expect((safe.push.force_n - sent_.push.force_n).norm() <=
                        kMostOfRange * kBodyForceMax_n + kBodyRounding,
                    "the force jumps");
-            expect((safe.torque_nm - sent_.torque_nm).norm() <=
+            expect((safe.turn.force_n - sent_.turn.force_n).norm() <=
                        kMostOfRange * kBodyTorqueMax_nm + kBodyRounding,
                    "the torque jumps");
         }
@@ -149,9 +149,9 @@ private:
         expect(frame_ == 0 || crossings_on_way(box_, place_, now, center_, model_, 2) == 0,
                "the box goes through");
         place_ = now;
-        expect(!episodes_.is_recovered() || (tool.in_contact && sent_.force_n.norm() > 0.5),
+        expect(!episodes_.is_recovered() || (tool.in_contact && sent_.push.force_n.norm() > 0.5),
                "nothing is felt again");
-        episodes_.check(output, sent_.force_n.norm() > 0.0 || sent_.torque_nm.norm() > 0.0);
+        episodes_.check(output, sent_.push.force_n.norm() > 0.0 || sent_.turn.force_n.norm() > 0.0);
     }
 
     void expect(bool holds, const std::string& otherwise) { episodes_.expect(holds, otherwise); }
@@ -161,7 +161,7 @@ private:
     FrameRig rig_;
     SafeForce safe_;
     TrialFigures figures_;
-    SafetyOutput sent_;
+    ToolForce sent_;
     Similarity place_;
     Vec3 center_{0, 0, 0};
     Vec3 low_{1e9, 1e9, 1e9};

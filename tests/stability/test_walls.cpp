@@ -10,6 +10,7 @@
 #include "rt_core/force/force_conditioner.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
 #include "rt_core/math/infinity.hpp"
+#include "tests/shared/force_wish.hpp"
 #include "tests/shared/random.hpp"
 #include "tests/stability/wall_trial.hpp"
 
@@ -345,10 +346,11 @@ TEST(ForceConditioner, leaves_the_heap_alone)
         wish.force_n = random.in_cube(5.0);
         wish.position_m = random.in_cube(1e-3);
         wish.stiffness_n_per_m = 1'000.0;
-        static_cast<void>(sut.condition(wish));
+        static_cast<void>(condition(sut, wish));
         if (i % 100 == 99)
         {
-            sut.follow(random.in_cube(5.0));
+            wish.force_n = random.in_cube(5.0);
+            sut.follow(wish.spring(), i % 200 == 99);
         }
     }
     const std::uint64_t after = allocation_counter::of_this_thread().allocations;
@@ -430,13 +432,13 @@ TurningFigures turn_into_wall(const TurningTrial& trial)
         const double angle = turned.dot(axis) + 0.1; // It starts so far in front of the wall.
         std::shift_right(late_nm.begin(), late_nm.end(), 1);
         late_nm[0] = angle < 0.0 ? -trial.stiffness_nm_per_rad * angle : 0.0;
-        const ConditionedWrench out = conditioner.condition(
-            {{}, {late_nm.back() * axis, turned, trial.stiffness_nm_per_rad, 0.0, 1}});
-        figures.observer_error_j = std::max(
-            figures.observer_error_j, std::abs(out.torque.work_j - sim.energy().force_work_j));
-        figures.off_axis_nm = std::max(figures.off_axis_nm, out.torque.force_n.cross(axis).norm());
+        const ToolForce out = condition(
+            conditioner, {{}, {late_nm.back() * axis, turned, trial.stiffness_nm_per_rad, 0.0, 1}});
+        figures.observer_error_j = std::max(figures.observer_error_j,
+                                            std::abs(out.turn.work_j - sim.energy().force_work_j));
+        figures.off_axis_nm = std::max(figures.off_axis_nm, out.turn.force_n.cross(axis).norm());
         const double target = wanted_rad(i * 1e-3) - 0.1;
-        sim.step(out.torque.force_n, Eigen::AngleAxisd(target, axis).toRotationMatrix());
+        sim.step(out.turn.force_n, Eigen::AngleAxisd(target, axis).toRotationMatrix());
         figures.largest_work_j = std::max(figures.largest_work_j, sim.energy().force_work_j);
         if (i >= steps - 500)
         {
@@ -490,10 +492,10 @@ TEST(TurningWalls, that_are_too_stiff_are_scaled_down_with_their_force)
 {
     WrenchConditioner sut({.device = kDeskClass});
     const double cap = stiffness_cap(turning_of(kDeskClass), 1e-3);
-    const ConditionedWrench out = sut.condition(
-        {{Vec3(0.0, 0.0, 4.0), {}, 100.0, 0.0, 1}, {Vec3(0.1, 0.0, 0.0), {}, 2.0 * cap, 0.0, 1}});
-    EXPECT_NEAR(out.torque.force_n.x(), 0.05, 1e-12);
-    EXPECT_NEAR(out.force.force_n.z(), 2.0, 1e-12);
+    const ToolForce out = condition(sut, {{Vec3(0.0, 0.0, 4.0), {}, 100.0, 0.0, 1},
+                                          {Vec3(0.1, 0.0, 0.0), {}, 2.0 * cap, 0.0, 1}});
+    EXPECT_NEAR(out.turn.force_n.x(), 0.05, 1e-12);
+    EXPECT_NEAR(out.push.force_n.z(), 2.0, 1e-12);
 }
 
 } // namespace tactus::test

@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "tests/stability/wall_trial.hpp"
 
+#include "tests/shared/force_wish.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -95,7 +97,8 @@ private:
             return wished;
         }
         const double claimed = trial_.claimed_stiffness_n_per_m;
-        const ConditionedForce out = conditioner_.condition(
+        const SpringForce out = condition(
+            conditioner_,
             {wished, measured, claimed > 0.0 ? claimed : trial_.stiffness_n_per_m,
              std::max(0.0, -measured.x()), 1, std::abs(trial_.surface_damping_n_s_per_m)});
         const double true_work_j = sim_.energy().force_work_j;

@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <optional>
 #include <tactus/rt_core/base/arena.hpp>
-#include <tactus/rt_core/force/safe_state.hpp>
+#include <tactus/rt_core/force/force_pipeline.hpp>
 #include <tactus/rt_core/frame/frame.hpp>
 #include <tactus/version.hpp>
 
@@ -16,16 +16,18 @@ using namespace tactus;
 
 int main()
 {
-    SafeState safe({1.0, 8.0, 500.0});
+    ForcePipeline pipeline(pipeline_setup({}, {}, 1e-3, 1.0));
     for (int i = 0; i < 100; ++i)
     {
-        SafetyInput input;
-        input.elapsed_s = 1e-3;
-        input.force_n = Vec3(0.3, 0.1, 1.0 + 0.01 * i);
-        input.causes = i < 60 ? ForceOff::none : ForceOff::garbage;
-        const SafetyOutput output = safe.step(input);
+        ToolOutput output;
+        output.in_contact = true;
+        output.force_n = Vec3(0.3, 0.1, 1.0 + 0.01 * i);
+        output.stiffness_n_per_m = 500.0;
+        const ForceOff causes = i < 60 ? ForceOff::none : ForceOff::garbage;
+        const ToolForce& force =
+            pipeline.step({}, output, {}, {}, {.elapsed_s = 1e-3, .causes = causes});
         std::printf("%016llx\n", static_cast<unsigned long long>(
-                                     std::bit_cast<std::uint64_t>(output.force_n.z())));
+                                     std::bit_cast<std::uint64_t>(force.push.force_n.z())));
     }
     Arena none({});
     std::optional<Frame> frame;

@@ -20,9 +20,8 @@
 #include <tactus/platform/recording/recording.hpp>
 #include <tactus/platform/recording/recording_writer.hpp>
 #include <tactus/platform/recording/replay.hpp>
-#include <tactus/rt_core/force/force_conditioner.hpp>
+#include <tactus/rt_core/force/force_pipeline.hpp>
 #include <tactus/rt_core/force/own_force.hpp>
-#include <tactus/rt_core/force/safe_state.hpp>
 #include <tactus/rt_core/frame/frame.hpp>
 #include <tactus/rt_core/geometry/convex.hpp>
 #include <tactus/transport/courier.hpp>
@@ -226,15 +225,12 @@ int main(int argc, char** argv)
     { return Vec3(poses[kObjects - 1 - 5 * tool].translation_m + top); };
 
     const double period_s = 1e-9 * static_cast<double>(setup.period_ns);
-    ConditionerSetup limits; // Of a device that is no weaker than most.
-    limits.period_s = period_s;
-    WrenchConditioner conditioner(limits);
     const Vec3 middle_m = above(0);
-    std::vector<SafeState> safe;
+    const DeviceLimits limits; // Of a device that is no weaker than most, and makes no torque.
+    std::vector<ForcePipeline> pipelines;
     for (const ToolSpec& tool : tools)
     {
-        safe.emplace_back(
-            SafetyLimits{1.0, tool.force_max_n, tool.stiffness_n_per_m, 0.0, tool.torque_max_nm});
+        pipelines.emplace_back(pipeline_setup(tool, limits, period_s, 1.0));
     }
     Vec3 pushed_n(0.0, 0.0, 0.0);
     Digest digest;
@@ -301,40 +297,24 @@ int main(int argc, char** argv)
             writer.add_frame(coded); // Another thread's, or the same one's as here.
         }
 
-        const ToolState& state = states[0];
-        const ToolOutput& of_pen = output.tools[0];
-        WrenchWish wish;
-        wish.force = {of_pen.force_n, state.position_m, of_pen.stiffness_n_per_m,
-                      (of_pen.proxy_m - state.position_m).norm()};
-        // A spring of 50 N/m guides the pen towards a point, with 1 N at most.
-        const OwnForce guide = spring_to(middle_m, state.position_m, 50.0, 1.0);
-        const ConditionedWrench wrench = conditioner.condition(with_own(wish, guide));
         for (std::size_t tool = 0; tool < states.size(); ++tool)
         {
+            const ToolState& state = states[tool];
             const ToolOutput& of_frame = output.tools[tool];
-            SafetyInput to_check;
-            to_check.position_m = states[tool].position_m;
-            to_check.elapsed_s = period_s;
-            to_check.force_n = of_frame.force_n;
-            to_check.torque_nm = of_frame.torque_nm;
-            to_check.proxy_m = of_frame.proxy_m;
-            to_check.faults = faults_of(of_frame);
+            // A spring of 50 N/m guides the pen towards a point, with 1 N at most.
+            const OwnForce guide = spring_to(middle_m, state.position_m, 50.0, 1.0);
+            const OwnForce own = tool == 0 ? guide : OwnForce{};
+            const ToolForce& force =
+                pipelines[tool].step(state, of_frame, {}, own, {.elapsed_s = period_s});
+            const Vec3 sent_n = force.push.force_n;
             if (tool == 0)
             {
-                to_check.force_n = wrench.force.force_n;
-                to_check.torque_nm = Vec3(0.0, 0.0, 0.0); // Who holds the pen feels none.
-            }
-            const SafetyOutput out = safe[tool].step(to_check);
-            if (tool == 0)
-            {
-                conditioner.follow(out.force_n, out.torque_nm);
-                pushed_n = out.force_n;
+                pushed_n = sent_n;
                 touched += of_frame.in_contact ? 1 : 0;
             }
-            digest.add(out.force_n);
-            digest.add(out.torque_nm);
+            digest.add(sent_n);
             digest.add(of_frame.proxy_m);
-            felt[tool] += out.force_n.norm() > 0.0 ? 1 : 0;
+            felt[tool] += sent_n.norm() > 0.0 ? 1 : 0;
         }
         for (const PairOutput& pair : output.pairs)
         {

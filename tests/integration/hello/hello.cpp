@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "platform/base/print_assertions.hpp"
-#include "rt_core/force/safe_state.hpp"
+#include "rt_core/force/force_pipeline.hpp"
 #include "rt_core/frame/frame.hpp"
 #include "transport/courier.hpp"
 #include "transport/store/store_link.hpp"
@@ -66,28 +66,24 @@ int main(int argc, char** argv)
         to_vec3(*std::max_element(vertices.begin(), vertices.end(),
                                   [](const Vec3f& a, const Vec3f& b) { return a[2] < b[2]; }));
     std::array<ToolState, 1> states{};
-    SafeState safe({1.0, 8.0, 500.0}); // Fades the force where the frame says that it must.
+    const double period_s = 1e-9 * static_cast<double>(setup.period_ns);
+    // What a device allows, and how a force fades where the frame says that it must.
+    ForcePipeline pipeline(pipeline_setup(tools[0], DeviceLimits{}, period_s, 1.0));
     FrameOutput output;
-    SafetyOutput to_device;
+    Vec3 to_device_n(0.0, 0.0, 0.0);
     for (int i = 0; i <= 500; ++i)
     {
         const double height_m = 3.0 * radius_m - (3.0 * radius_m + 0.0005) * i / 500.0;
         states[0].position_m = top + Vec3(0.0, 0.0, height_m);
         courier.step(i * setup.period_ns);
         output = frame->run({.tools = states, .changes = {}, .budgets = {}, .now_ns = 0});
-        SafetyInput input;
-        input.position_m = states[0].position_m;
-        input.elapsed_s = 1e-9 * static_cast<double>(setup.period_ns);
-        input.force_n = output.tools[0].force_n;
-        input.proxy_m = output.tools[0].proxy_m;
-        input.faults = faults_of(output.tools[0]);
-        to_device = safe.step(input);
+        to_device_n =
+            pipeline.step(states[0], output.tools[0], {}, {}, {.elapsed_s = period_s}).push.force_n;
     }
 
     const PairOutput& pair = output.pairs[0];
     std::printf("%s, distance %.3f to %.3f mm, force %.3f %.3f %.3f N\n",
                 pair.kind == AnswerKind::exact ? "exact" : "not exact", pair.lower_m * 1e3,
-                pair.upper_m * 1e3, to_device.force_n.x(), to_device.force_n.y(),
-                to_device.force_n.z());
+                pair.upper_m * 1e3, to_device_n.x(), to_device_n.y(), to_device_n.z());
     return output.tools[0].in_contact ? 0 : 1;
 }

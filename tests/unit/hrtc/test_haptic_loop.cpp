@@ -476,7 +476,7 @@ TEST(HapticLoop, a_wall_that_the_device_may_have_goes_through_as_it_is)
     EXPECT_GT(rig.written_n(kSettled).norm(), 1.0);
     for (const ForceAction action :
          {ForceAction::refused, ForceAction::stiffness_capped, ForceAction::clamped,
-          ForceAction::slew_limited, ForceAction::blind})
+          ForceAction::change_limited, ForceAction::blind})
     {
         EXPECT_EQ(rig.frames_with(action), 0U) << static_cast<int>(action);
     }

@@ -41,7 +41,7 @@ public:
     void touch(bool in_contact, double force_n, ForceOff causes = ForceOff::none)
     {
         tools_[0].in_contact = in_contact;
-        forces_[0].sent_n = Vec3(force_n, 0.0, 0.0);
+        forces_[0].push.force_n = Vec3(force_n, 0.0, 0.0);
         forces_[0].causes = causes;
         frame([](FrameOutput&, CycleMeasures&) {});
     }

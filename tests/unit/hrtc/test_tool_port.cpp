@@ -104,12 +104,13 @@ protected:
         pushed_.proxy_m = Vec3(0.0, 0.0, 0.004);
         pushed_.in_contact = true;
     }
-    SafetyOutput step(const ToolOutput& output)
+    const ToolForce& step(const ToolOutput& output)
     {
         static_cast<void>(sut_->read(1));
-        const SafetyOutput safe = sut_->make_safe(output, {kPeriod_s, ForceOff::none});
+        const ToolForce& force = sut_->make_safe(output, {kPeriod_s, ForceOff::none});
         sut_->write();
-        return safe;
+        last_ = force;
+        return last_;
     }
     void steps(const ToolOutput& output, int count)
     {
@@ -131,6 +132,7 @@ protected:
     ToolSetup setup_;
     std::unique_ptr<ToolPort> sut_;
     ToolOutput pushed_;
+    ToolForce last_; ///< That step() has sent.
 };
 
 TEST_F(ToolPortTest, what_the_frame_says_of_the_tool_becomes_a_cause)
@@ -191,7 +193,7 @@ TEST_F(ToolPortTest, a_torque_goes_out_with_the_force_and_fades_with_it)
     pushed_.proxy_rotation = to_rotation({0.0, 0.1, 0.0, 1.0});
     warm_up();
     EXPECT_LT((device().written_nm - pushed_.torque_nm).norm(), 1e-9);
-    EXPECT_NEAR(sut_->force().twist_rad, 2.0 * std::atan(0.1), 1e-9);
+    EXPECT_NEAR(last_.twist_rad, 2.0 * std::atan(0.1), 1e-9);
     EXPECT_EQ(sut_->record().sent_nm, device().written_nm);
     ToolOutput stuck = pushed_;
     stuck.sample_fault = FrameFault::tool_stuck;
@@ -241,10 +243,10 @@ TEST_F(ToolPortTest, a_force_of_the_programs_own_is_within_the_devices_limits)
     restart();
     steps({}, 200);
     EXPECT_NEAR(device().written_n.norm(), 8.0, 1e-9);
-    EXPECT_TRUE(has_action(sut_->force().conditioned.actions, ForceAction::clamped));
+    EXPECT_TRUE(has_action(last_.push.actions, ForceAction::clamped));
     own.said.stiffness_n_per_m = 4'000.0; // A spring twice as stiff as the device carries.
     static_cast<void>(step(ToolOutput{}));
-    EXPECT_TRUE(has_action(sut_->force().conditioned.actions, ForceAction::stiffness_capped));
+    EXPECT_TRUE(has_action(last_.push.actions, ForceAction::stiffness_capped));
 }
 
 TEST_F(ToolPortTest, a_force_of_the_programs_own_that_is_no_number_is_garbage)
@@ -317,11 +319,11 @@ TEST_F(ToolPortTest, a_load_is_carried_beside_the_force_and_while_the_proxy_is_f
         static_cast<StillDevice&>(*bare.device).hand = device().hand;
         static_cast<void>(step(pushed_));
         static_cast<void>(without.read(1));
-        static_cast<void>(without.make_safe(pushed_, {kPeriod_s, ForceOff::none}));
-        ASSERT_EQ(sut_->force().sent_n, without.force().sent_n) << i;
-        ASSERT_EQ(sut_->force().conditioned.work_j, without.force().conditioned.work_j) << i;
+        const ToolForce& bare_force = without.make_safe(pushed_, {kPeriod_s, ForceOff::none});
+        ASSERT_EQ(last_.push.force_n, bare_force.push.force_n) << i;
+        ASSERT_EQ(last_.push.work_j, bare_force.push.work_j) << i;
     }
-    EXPECT_EQ(sut_->force().sent_n, Vec3(0.0, 0.0, 0.0)) << "frozen";
+    EXPECT_EQ(last_.push.force_n, Vec3(0.0, 0.0, 0.0)) << "frozen";
     EXPECT_NEAR(device().written_n.z(), setup_.load.weight_n(), 1e-12);
     sut_->fade(0.025, ForceOff::assertion);
     EXPECT_NEAR(device().written_n.z(), 0.5 * setup_.load.weight_n(), 1e-12);

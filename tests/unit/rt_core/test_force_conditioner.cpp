@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "rt_core/force/force_conditioner.hpp"
+#include "rt_core/force/force_limiter.hpp"
 #include "rt_core/force/own_force.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
+#include "tests/shared/force_wish.hpp"
 #include "tests/shared/period.hpp"
 #include "tests/shared/random.hpp"
 
@@ -24,16 +26,25 @@ constexpr double kRounding = 1e-12;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-/// A slew of 1 N a frame, 10 N at most.
+/// 10 N at most.
 ConditionerSetup plain_setup()
 {
     ConditionerSetup setup;
     setup.device.force_max_n = 10.0;
-    setup.device.slew_max_n_per_s = 1'000.0;
     setup.device.damping_n_s_per_m = 2.0;
     setup.device.stiffness_max_n_per_m = 5'000.0;
     setup.period_s = kPeriod_s;
     return setup;
+}
+
+/// A wall's and a program's force together, as one tool's.
+ToolForce with_own(const ForceWish& wish, const OwnForce& own)
+{
+    ToolForce both;
+    both.push = wish.spring();
+    both.turn = wish.spring();
+    add_own(both, own);
+    return both;
 }
 
 ForceWish force(double x)
@@ -84,14 +95,14 @@ TEST(OwnForce, without_one_the_wish_is_as_it_was_and_in_the_air_its_spring_is_al
     ForceWish wish = force(0.0);
     wish.stiffness_n_per_m = 500.0;
     wish.stretch_m = 0.25;
-    const ForceWish same = with_own({wish, wish}, {}).force;
+    const SpringForce same = with_own(wish, {}).push;
     EXPECT_EQ(same.stiffness_n_per_m, 500.0);
     EXPECT_EQ(same.stretch_m, 0.25);
     EXPECT_EQ(same.force_n, wish.force_n);
     OwnForce own;
     own.torque_nm = Vec3(0, 0.2, 0);
     own.stiffness_nm_per_rad = 2.0;
-    const ForceWish torque = with_own({wish, wish}, own).torque;
+    const SpringForce torque = with_own(wish, own).turn;
     EXPECT_EQ(torque.stiffness_n_per_m, 2.0);
     EXPECT_NEAR(torque.stretch_m, 0.1, kRounding);
 }
@@ -110,7 +121,7 @@ TEST(OwnForce, that_is_a_spring_is_not_damped_and_one_that_makes_energy_is)
             ForceWish wish;
             wish.position_m = place(i);
             const ForceAction actions =
-                sut.condition(with_spring(wish, own.force_n, own.stiffness_n_per_m)).actions;
+                condition(sut, with_spring(wish, own.force_n, own.stiffness_n_per_m)).actions;
             damped += has_action(actions, ForceAction::damped) ? 1U : 0U;
         }
         EXPECT_EQ(damped > 0, late > 0) << damped;
@@ -128,48 +139,37 @@ TEST(ForceLimiter, clamps_the_norm_and_keeps_the_direction)
     }
 }
 
-TEST(ForceLimiter, grows_by_a_step_and_shrinks_at_once)
-{
-    EXPECT_EQ(limit_growth(Vec3(0, 0, 0), Vec3(5, 0, 0), 1.0), Vec3(1, 0, 0));
-    EXPECT_EQ(limit_growth(Vec3(4.5, 0, 0), Vec3(5, 0, 0), 1.0), Vec3(5, 0, 0));
-    EXPECT_EQ(limit_growth(Vec3(5, 0, 0), Vec3(0, 0, 0), 1.0), Vec3(0, 0, 0));
-    EXPECT_EQ(limit_growth(Vec3(5, 0, 0), Vec3(2, 0, 0), 1.0), Vec3(2, 0, 0));
-    EXPECT_LT(limit_growth(Vec3(5, 0, 0), Vec3(-5, 0, 0), 1.0).norm(), kRounding);
-}
-
-TEST(ForceLimiter, never_lengthens_nor_reverses_a_wish_and_reaches_it)
+TEST(ForceLimiter, changes_by_a_step_at_most_straight_to_the_wish_and_reaches_it)
 {
     Random random(2);
     for (int trial = 0; trial < 2'000; ++trial)
     {
         Vec3 now = random.in_cube(5.0);
         const Vec3 wish = random.in_cube(5.0);
+        const double longest = std::max(now.norm(), wish.norm());
         const double step = random.between(0.01, 2.0);
         for (int i = 0; i < 2'000 && now != wish; ++i)
         {
-            const Vec3 next = limit_growth(now, wish, step);
-            ASSERT_LE(next.norm(), wish.norm() * (1.0 + kRounding)) << "trial " << trial;
-            ASSERT_LE(next.norm(), now.norm() + step * (1.0 + kRounding)) << "trial " << trial;
-            ASSERT_GE(next.dot(wish), -kRounding) << "trial " << trial;
+            const Vec3 next = limit_change(now, wish, step);
+            ASSERT_LE((next - now).norm(), step * (1.0 + kRounding)) << "trial " << trial;
+            ASSERT_LE(next.norm(), longest * (1.0 + kRounding)) << "trial " << trial;
+            ASSERT_LE((next - now).cross(wish - now).norm(), kRounding) << "trial " << trial;
+            ASSERT_LT((wish - next).norm(), (wish - now).norm()) << "trial " << trial;
             now = next;
         }
         EXPECT_EQ(now, wish) << "trial " << trial;
     }
+    EXPECT_EQ(limit_change(Vec3(1, 0, 0), Vec3(5, 0, 0), 0.0), Vec3(1, 0, 0));
 }
 
-TEST(ForceLimiter, gives_more_where_more_is_wished)
+TEST(ForceLimiter, finds_the_point_between_two_that_is_nearest_to_a_third)
 {
-    Random random(3);
-    for (int trial = 0; trial < 2'000; ++trial)
-    {
-        const double before = random.between(-5.0, 5.0);
-        const double less = random.between(0.0, 5.0);
-        const double more = random.between(less, 5.0);
-        const double step = random.between(0.01, 2.0);
-        EXPECT_LE(limit_growth(Vec3(before, 0, 0), Vec3(less, 0, 0), step).x(),
-                  limit_growth(Vec3(before, 0, 0), Vec3(more, 0, 0), step).x() + kRounding)
-            << before << " " << less << " " << more << " " << step;
-    }
+    const Vec3 from(0, 0, 0);
+    const Vec3 to(4, 0, 0);
+    EXPECT_EQ(nearest_between(from, to, Vec3(1, 3, 0)), Vec3(1, 0, 0));
+    EXPECT_EQ(nearest_between(from, to, Vec3(-1, 3, 0)), from);
+    EXPECT_EQ(nearest_between(from, to, Vec3(9, 0, 1)), to);
+    EXPECT_EQ(nearest_between(to, to, Vec3(9, 0, 1)), to);
 }
 
 TEST(ForceConditioner, lets_a_small_steady_force_through_unchanged)
@@ -177,7 +177,7 @@ TEST(ForceConditioner, lets_a_small_steady_force_through_unchanged)
     ForceConditioner sut(plain_setup());
     for (int i = 0; i < 5; ++i)
     {
-        const ConditionedForce out = sut.condition(force(0.5));
+        const SpringForce out = condition(sut, force(0.5));
         EXPECT_EQ(out.force_n, Vec3(0.5, 0, 0));
         EXPECT_EQ(out.actions, ForceAction::none);
         EXPECT_EQ(out.work_j, 0.0);
@@ -189,37 +189,36 @@ TEST(ForceConditioner, gives_no_force_for_what_is_no_number_and_recovers)
     for (const double bad : {kNan, kInfinite, -kInfinite})
     {
         ForceConditioner sut(plain_setup());
-        static_cast<void>(sut.condition(force(1.0)));
+        static_cast<void>(condition(sut, force(1.0)));
         ForceWish wish = force(bad);
-        EXPECT_EQ(sut.condition(wish).force_n, Vec3(0, 0, 0));
-        EXPECT_TRUE(has_action(sut.condition(wish).actions, ForceAction::refused));
+        EXPECT_EQ(condition(sut, wish).force_n, Vec3(0, 0, 0));
+        EXPECT_TRUE(has_action(condition(sut, wish).actions, ForceAction::refused));
         wish = force(1.0);
         wish.stiffness_n_per_m = bad;
-        EXPECT_EQ(sut.condition(wish).force_n, Vec3(0, 0, 0));
+        EXPECT_EQ(condition(sut, wish).force_n, Vec3(0, 0, 0));
         wish = force(1.0);
         wish.position_m.y() = bad;
-        const ConditionedForce blind = sut.condition(wish);
+        const SpringForce blind = condition(sut, wish);
         EXPECT_EQ(blind.force_n, Vec3(1, 0, 0));
         EXPECT_TRUE(has_action(blind.actions, ForceAction::blind));
         wish = force(1.0);
         wish.stretch_m = bad;
         wish.stiffness_n_per_m = 100.0;
-        const ConditionedForce last = sut.condition(wish);
+        const SpringForce last = condition(sut, wish);
         EXPECT_EQ(last.actions, ForceAction::none);
         EXPECT_TRUE(std::isfinite(last.work_j) && std::isfinite(last.surplus_j));
     }
     ForceConditioner sut(plain_setup());
     ForceWish pulling = force(1.0);
     pulling.stiffness_n_per_m = -1.0;
-    EXPECT_EQ(sut.condition(pulling).force_n, Vec3(0, 0, 0));
+    EXPECT_EQ(condition(sut, pulling).force_n, Vec3(0, 0, 0));
 }
 
 TEST(ForceConditioner, clamps_to_the_device_and_says_so)
 {
     ConditionerSetup setup = plain_setup();
-    setup.device.slew_max_n_per_s = 1e9;
     ForceConditioner sut(setup);
-    const ConditionedForce out = sut.condition(force(25.0));
+    const SpringForce out = condition(sut, force(25.0));
     EXPECT_NEAR(out.force_n.x(), 10.0, kRounding);
     EXPECT_EQ(out.actions, ForceAction::clamped);
 }
@@ -230,69 +229,85 @@ TEST(ForceConditioner, scales_a_wall_down_to_the_stiffness_that_the_rule_allows)
     EXPECT_DOUBLE_EQ(sut.stiffness_cap_n_per_m(), 3'600.0);
     ForceWish wish = force(0.72);
     wish.stiffness_n_per_m = 7'200.0;
-    const ConditionedForce out = sut.condition(wish);
+    const SpringForce out = condition(sut, wish);
     EXPECT_NEAR(out.force_n.x(), 0.36, kRounding);
     EXPECT_EQ(out.actions, ForceAction::stiffness_capped);
     EXPECT_DOUBLE_EQ(out.stiffness_n_per_m, 3'600.0);
 }
 
-TEST(ForceConditioner, goes_on_from_what_went_out_in_its_place)
+TEST(ForceConditioner, counts_the_work_of_what_went_out_in_its_place)
 {
     ForceConditioner sut(plain_setup());
     ForceWish wish = force(8.0);
     wish.stiffness_n_per_m = 1'000.0;
     for (int i = 0; i < 20; ++i)
     {
-        static_cast<void>(sut.condition(wish));
+        static_cast<void>(condition(sut, wish));
     }
-    sut.follow(Vec3(2.0, 0, 0));
+    ForceWish sent = wish;
+    sent.force_n = Vec3(2.0, 0, 0);
+    sut.follow(sent.spring(), true);
     wish.position_m = Vec3(0.001, 0, 0);
-    const ConditionedForce out = sut.condition(wish);
-    EXPECT_NEAR(out.force_n.x(), 3.0, kRounding);
-    EXPECT_NEAR(out.work_j, 0.002, kRounding);
+    EXPECT_NEAR(condition(sut, wish).work_j, 0.002, kRounding);
 }
 
-TEST(ForceConditioner, a_force_that_is_let_in_slowly_comes_from_somewhere)
+TEST(ForceConditioner, a_force_that_a_gain_lets_in_slowly_comes_from_somewhere)
 {
-    ConditionerSetup setup = plain_setup();
-    setup.device.slew_max_n_per_s = 1e6;
-    ForceConditioner sut(setup);
-    ForceWish wish = force(4.0);
-    wish.stiffness_n_per_m = 1'000.0;
-    for (int i = 0; i < 20; ++i)
+    for (const bool is_ramp : {true, false})
     {
-        static_cast<void>(sut.condition(wish));
-        sut.follow(Vec3(0.2 * i, 0, 0));
+        ForceConditioner sut(plain_setup());
+        ForceWish wish = force(4.0);
+        wish.stiffness_n_per_m = 1'000.0;
+        for (int i = 0; i < 20; ++i)
+        {
+            static_cast<void>(condition(sut, wish));
+            ForceWish sent = wish;
+            sent.force_n = Vec3(0.2 * i, 0, 0);
+            sut.follow(sent.spring(), is_ramp);
+        }
+        const SpringForce out = condition(sut, wish);
+        EXPECT_EQ(out.force_n, wish.force_n);
+        // Without a ramp it is what the wall holds that nobody pressed.
+        EXPECT_NEAR(out.surplus_j, is_ramp ? 0.0 : 0.5 * 4.0 * 4.0 / 1'000.0, kRounding);
     }
-    const ConditionedForce out = sut.condition(wish);
-    EXPECT_EQ(out.force_n, wish.force_n);
-    EXPECT_EQ(out.surplus_j, 0.0);
 }
 
-TEST(ForceConditioner, lets_a_force_grow_by_one_step_after_a_stall)
+/// A wall that is moved does work on a hand that goes along; that is theirs who move it.
+TEST(ForceConditioner, takes_no_work_of_those_who_move_a_wall_for_the_walls)
 {
-    ForceConditioner sut(plain_setup());
-    static_cast<void>(sut.condition(force(0.0)));
-    ForceWish wish = force(8.0);
-    wish.elapsed_periods = 100;
-    const ConditionedForce out = sut.condition(wish);
-    EXPECT_NEAR(out.force_n.x(), 1.0, kRounding);
-    EXPECT_EQ(out.actions, ForceAction::slew_limited);
+    for (const bool is_carried : {true, false})
+    {
+        ForceConditioner sut(plain_setup());
+        double surplus_j = 0.0;
+        double work_j = 0.0;
+        for (int i = 0; i < 100; ++i)
+        {
+            ForceWish wish = force(2.0);
+            wish.stiffness_n_per_m = 1'000.0;
+            wish.position_m = Vec3(4.5e-4 * i, 0, 0);
+            wish.carried_m = is_carried ? Vec3(4.5e-4, 0, 0) : Vec3(0, 0, 0);
+            const SpringForce out = condition(sut, wish);
+            surplus_j = out.surplus_j;
+            work_j = out.work_j;
+        }
+        EXPECT_EQ(surplus_j > 0.0, !is_carried) << surplus_j;
+        EXPECT_GT(work_j, 0.03) << "it is told all the same";
+    }
 }
 
 TEST(ForceConditioner, counts_the_work_of_a_force_held_through_a_stall)
 {
     ForceConditioner sut(plain_setup());
-    static_cast<void>(sut.condition(force(1.0)));
+    static_cast<void>(condition(sut, force(1.0)));
     ForceWish wish = force(0.5);
     wish.position_m = Vec3(0.01, 0.02, 0);
     wish.elapsed_periods = 50;
-    EXPECT_NEAR(sut.condition(wish).work_j, 0.01, kRounding);
+    EXPECT_NEAR(condition(sut, wish).work_j, 0.01, kRounding);
     wish.position_m = Vec3(0.0, 0.02, 0);
-    EXPECT_NEAR(sut.condition(wish).work_j, 0.01 - 0.005, kRounding);
+    EXPECT_NEAR(condition(sut, wish).work_j, 0.01 - 0.005, kRounding);
     wish.elapsed_periods = 0; // Counts as one; 10 m/s is as fast as devices get.
     wish.position_m = Vec3(0.02, 0.02, 0);
-    EXPECT_EQ(sut.condition(wish).actions, ForceAction::blind);
+    EXPECT_EQ(condition(sut, wish).actions, ForceAction::blind);
 }
 
 TEST(ForceConditioner, sees_nothing_of_a_device_that_is_faster_than_any)
@@ -300,11 +315,11 @@ TEST(ForceConditioner, sees_nothing_of_a_device_that_is_faster_than_any)
     for (const double share : {0.999, 1.001})
     {
         ForceConditioner sut(plain_setup());
-        static_cast<void>(sut.condition(force(1.0)));
+        static_cast<void>(condition(sut, force(1.0)));
         ForceWish wish = force(1.0);
         wish.elapsed_periods = 3;
         wish.position_m.y() = share * kDeviceSpeedMax_m_per_s * 3 * kPeriod_s;
-        EXPECT_EQ(has_action(sut.condition(wish).actions, ForceAction::blind), share > 1.0);
+        EXPECT_EQ(has_action(condition(sut, wish).actions, ForceAction::blind), share > 1.0);
     }
 }
 
@@ -315,7 +330,7 @@ TEST(ForceConditioner, says_that_it_sees_wrongly_what_a_long_delay_hides)
         ConditionerSetup setup = plain_setup();
         setup.device.delay_s = periods * kPeriod_s;
         ForceConditioner sut(setup);
-        EXPECT_EQ(has_action(sut.condition(force(1.0)).actions, ForceAction::blind),
+        EXPECT_EQ(has_action(condition(sut, force(1.0)).actions, ForceAction::blind),
                   periods > kForcesUnderWay - 1);
     }
 }
@@ -331,9 +346,9 @@ TEST(ForceConditioner, adds_no_damping_that_makes_less_force_than_the_least)
         ForceConditioner sut(setup);
         ForceWish wish = force(0.1);
         wish.stiffness_n_per_m = 200.0;
-        static_cast<void>(sut.condition(wish));
+        static_cast<void>(condition(sut, wish));
         wish.position_m.x() = way_m;
-        const ConditionedForce out = sut.condition(wish);
+        const SpringForce out = condition(sut, wish);
         EXPECT_EQ(has_action(out.actions, ForceAction::damped), out.damping_n_s_per_m > 0.0);
         return 0.1 - out.force_n.x();
     };
@@ -346,7 +361,6 @@ TEST(ForceConditioner, damps_what_came_from_nowhere_and_never_pulls)
     Random random(4);
     ConditionerSetup setup = plain_setup();
     setup.device.damping_n_s_per_m = 0.5;
-    setup.device.slew_max_n_per_s = 1e6;
     setup.device.quantum_m = 1e-6;
     ForceConditioner sut(setup);
     std::uint32_t damped = 0;
@@ -361,7 +375,7 @@ TEST(ForceConditioner, damps_what_came_from_nowhere_and_never_pulls)
         ForceWish wish = force(std::max(0.0, -800.0 * places[2]));
         wish.position_m = Vec3(x, 0, 0);
         wish.stiffness_n_per_m = 800.0;
-        const ConditionedForce out = sut.condition(wish);
+        const SpringForce out = condition(sut, wish);
         const double added = (out.force_n - wish.force_n).norm();
         ASSERT_GE(out.force_n.x(), -kRounding) << "frame " << i;
         ASSERT_LE(out.force_n.norm(), 10.0 * (1.0 + kRounding)) << "frame " << i;
@@ -385,23 +399,22 @@ TEST(ForceConditioner, takes_the_same_bits_to_the_same_bits)
         wish.force_n = random.in_cube(12.0);
         wish.position_m = random.in_cube(1e-3);
         wish.stiffness_n_per_m = random.between(0.0, 6'000.0);
-        EXPECT_EQ(one.condition(wish).force_n, other.condition(wish).force_n);
+        EXPECT_EQ(condition(one, wish).force_n, condition(other, wish).force_n);
     }
 }
 
 namespace
 {
 
-/// Of 10 N and 0.5 N m, with caps of 3,600 N/m and 1.8 N m/rad, slews that limit nothing.
+/// Of 10 N and 0.5 N m, with caps of 3,600 N/m and 1.8 N m/rad, no more.
 ConditionerSetup turning_setup()
 {
     ConditionerSetup setup = plain_setup();
-    setup.device.slew_max_n_per_s = 1e6;
     setup.device.turn = {.is_measured = true,
                          .torque_max_nm = 0.5,
                          .inertia_kg_m2 = 1e-4,
                          .damping_nm_s_per_rad = 1e-3,
-                         .slew_max_nm_per_s = 1e6,
+                         .slew_max_nm_per_s = 1.0,
                          .stiffness_max_nm_per_rad = 3.0,
                          .added_damping_max_nm_s_per_rad = 5e-3};
     return setup;
@@ -418,11 +431,11 @@ WrenchWish wrench(const Vec3& force_n, const Vec3& torque_nm, double stiffness =
 void expect_gain(const WrenchWish& wish, double gain, ForceAction on_force, ForceAction on_torque)
 {
     WrenchConditioner sut(turning_setup());
-    const ConditionedWrench out = sut.condition(wish);
-    EXPECT_LT((out.force.force_n - gain * wish.force.force_n).norm(), kRounding);
-    EXPECT_LT((out.torque.force_n - gain * wish.torque.force_n).norm(), kRounding);
-    EXPECT_EQ(out.force.actions, on_force);
-    EXPECT_EQ(out.torque.actions, on_torque);
+    const ToolForce out = condition(sut, wish);
+    EXPECT_LT((out.push.force_n - gain * wish.force.force_n).norm(), kRounding);
+    EXPECT_LT((out.turn.force_n - gain * wish.torque.force_n).norm(), kRounding);
+    EXPECT_EQ(out.push.actions, on_force);
+    EXPECT_EQ(out.turn.actions, on_torque);
 }
 
 } // namespace
@@ -452,22 +465,25 @@ TEST(WrenchConditioner, caps_by_the_damping_of_what_is_touched_and_of_nothing_el
     {
         WrenchWish wish = wrench(Vec3(1, 0, 0), Vec3(0, 0, 0.1), 3'600.0, 0.1);
         wish.force.surface_damping_n_s_per_m = damping_n_s_per_m;
-        return sut.condition(wish).force.force_n.x();
+        return condition(sut, wish).push.force_n.x();
     };
     EXPECT_NEAR(force_of(0.0), 1.0, kRounding);
-    EXPECT_NEAR(force_of(1.5), 0.25, kRounding); // 0.9 x 2 (2 - 1.5) / T of 3,600 N/m.
-    EXPECT_EQ(force_of(2.0), 0.0);
-    // Back within the time that a material takes to change, step by step; in free air at once.
-    double before = 0.0;
-    for (int ms = 1; ms <= 50; ++ms)
+    // There and back within the time that a material takes to change, step by step; in free air at
+    // once.
+    double before = 1.0;
+    for (int ms = 1; ms <= 100; ++ms)
     {
-        const double force = force_of(0.0);
-        EXPECT_NEAR(force - before, 0.02, 1e-9) << ms;
+        const double force = force_of(ms <= 50 ? 2.0 : 0.0);
+        EXPECT_NEAR(force - before, ms <= 50 ? -0.02 : 0.02, 1e-9) << ms;
         before = force;
     }
-    EXPECT_EQ(force_of(0.0), before);
-    EXPECT_EQ(force_of(2.0), 0.0);
-    static_cast<void>(sut.condition(wrench(Vec3(0, 0, 0), Vec3(0, 0, 0))));
+    EXPECT_NEAR(force_of(0.0), 1.0, kRounding);
+    for (int ms = 1; ms <= 50; ++ms)
+    {
+        before = force_of(1.5);
+    }
+    EXPECT_NEAR(before, 0.25, kRounding); // 0.9 x 2 (2 - 1.5) / T of 3,600 N/m.
+    static_cast<void>(condition(sut, wrench(Vec3(0, 0, 0), Vec3(0, 0, 0))));
     EXPECT_NEAR(force_of(0.0), 1.0, kRounding);
 }
 
@@ -479,9 +495,12 @@ TEST(WrenchConditioner, takes_of_the_damping_what_its_lever_makes_of_it_and_half
     for (const auto& [damping, cap_nm_per_rad] : {std::pair(1.0, 1.08), std::pair(1.9, 0.9)})
     {
         WrenchConditioner sut(setup);
-        WrenchWish wish = wrench(Vec3(1, 0, 0), Vec3(0, 0, 0.1), 100.0, 1.8);
+        WrenchWish wish = wrench(Vec3(0, 0, 0), Vec3(0, 0, 0), 100.0, 1.8);
         wish.force.surface_damping_n_s_per_m = damping;
-        EXPECT_NEAR(sut.condition(wish).torque.force_n.z(), 0.1 * cap_nm_per_rad / 1.8, 1e-9);
+        static_cast<void>(condition(sut, wish)); // In free air.
+        wish.force.force_n = Vec3(1, 0, 0);
+        wish.torque.force_n = Vec3(0, 0, 0.1);
+        EXPECT_NEAR(condition(sut, wish).turn.force_n.z(), 0.1 * cap_nm_per_rad / 1.8, 1e-9);
     }
 }
 
@@ -494,10 +513,10 @@ TEST(WrenchConditioner, makes_nothing_of_garbage_in_either)
               wrench(Vec3(1, 0, 0), Vec3(0, 0, 0.1), 100.0, bad)})
         {
             WrenchConditioner sut(turning_setup());
-            const ConditionedWrench out = sut.condition(wish);
-            EXPECT_EQ(out.force.force_n, Vec3(0, 0, 0));
-            EXPECT_EQ(out.torque.force_n, Vec3(0, 0, 0));
-            EXPECT_TRUE(has_action(out.force.actions | out.torque.actions, ForceAction::refused));
+            const ToolForce out = condition(sut, wish);
+            EXPECT_EQ(out.push.force_n, Vec3(0, 0, 0));
+            EXPECT_EQ(out.turn.force_n, Vec3(0, 0, 0));
+            EXPECT_TRUE(has_action(out.push.actions | out.turn.actions, ForceAction::refused));
         }
     }
 }
@@ -511,9 +530,9 @@ TEST(WrenchConditioner, leaves_the_force_alone_of_a_device_without_a_torque)
     const WrenchWish wish = wrench(Vec3(3, 4, 0), Vec3(0, kNan, 1e9));
     for (int i = 0; i < 10; ++i)
     {
-        const ConditionedWrench out = sut.condition(wish);
-        EXPECT_EQ(out.force.force_n, point.condition(wish.force).force_n);
-        EXPECT_EQ(out.torque.force_n, Vec3(0, 0, 0));
+        const ToolForce out = condition(sut, wish);
+        EXPECT_EQ(out.push.force_n, condition(point, wish.force).force_n);
+        EXPECT_EQ(out.turn.force_n, Vec3(0, 0, 0));
     }
 }
 

@@ -23,19 +23,44 @@ namespace
 constexpr double kForceMax_n = 8.0;
 constexpr double kRounding_n = 1e-9;
 
+/// A period, and the frame's force and torque in it.
+struct GuardedPeriod : ToolPeriod
+{
+    Vec3 force_n{0.0, 0.0, 0.0};
+    Vec3 torque_nm{0.0, 0.0, 0.0};
+};
+
+/// What went out in it.
+struct LetOut
+{
+    Vec3 force_n{0.0, 0.0, 0.0};
+    Vec3 torque_nm{0.0, 0.0, 0.0};
+    SafetyState state{SafetyState::reset};
+    ForceOff causes{ForceOff::none};
+};
+
 /// One tool with a force on it, frame by frame.
 class GuardedTool
 {
 public:
     GuardedTool() { input.force_n = kForce_n; }
 
-    const SafetyOutput& step(std::uint32_t periods = 1)
+    const LetOut& step(std::uint32_t periods = 1)
     {
         input.elapsed_periods = periods;
         input.elapsed_s = kPeriod_s * periods;
         input.sample_time_ns += 1'000'000;
-        last = sut.step(input);
-        return last;
+        ToolForce force;
+        force.push.force_n = input.force_n;
+        force.turn.force_n = input.torque_nm;
+        sut.step(force, input);
+        return keep(force);
+    }
+    const LetOut& fade(ForceOff cause)
+    {
+        ToolForce force;
+        sut.fade(force, kPeriod_s, cause);
+        return keep(force);
     }
     /// Until the whole force goes out.
     void warm_up()
@@ -52,8 +77,15 @@ public:
     static inline const SafetyLimits kLimits{1.0, kForceMax_n, 500.0, 0.5,
                                              0.4, 0.0,         0.0,   kTurningMax_rad_per_s};
     SafeState sut{kLimits};
-    SafetyInput input;
-    SafetyOutput last;
+    GuardedPeriod input;
+    LetOut last;
+
+private:
+    const LetOut& keep(const ToolForce& force)
+    {
+        last = {force.push.force_n, force.turn.force_n, force.state, force.causes};
+        return last;
+    }
 };
 
 /// What goes wrong, how it is called, and how the input says so.
@@ -61,8 +93,8 @@ struct Cause
 {
     const char* name;
     ForceOff cause;
-    void (*begin)(SafetyInput& input);
-    void (*end)(SafetyInput& input);
+    void (*begin)(GuardedPeriod& input);
+    void (*end)(GuardedPeriod& input);
 };
 
 void PrintTo(const Cause& cause, std::ostream* out)
@@ -73,15 +105,15 @@ void PrintTo(const Cause& cause, std::ostream* out)
 template <ForceOff cause>
 constexpr Cause known(const char* name)
 {
-    return {name, cause, [](SafetyInput& input) { input.causes = cause; },
-            [](SafetyInput& input) { input.causes = ForceOff::none; }};
+    return {name, cause, [](GuardedPeriod& input) { input.causes = cause; },
+            [](GuardedPeriod& input) { input.causes = ForceOff::none; }};
 }
 
 template <FrameFault fault>
 constexpr Cause faulty(const char* name, ForceOff cause)
 {
-    return {name, cause, [](SafetyInput& input) { input.faults = fault; },
-            [](SafetyInput& input) { input.faults = FrameFault::none; }};
+    return {name, cause, [](GuardedPeriod& input) { input.faults = fault; },
+            [](GuardedPeriod& input) { input.faults = FrameFault::none; }};
 }
 
 /// Causes that last until they are ended; the lost force and the stall have tests of their own.
@@ -95,29 +127,29 @@ const Cause kCauses[] = {
     faulty<FrameFault::tool_invalid>("invalid", ForceOff::garbage),
     faulty<FrameFault::tool_jumped>("jumped", ForceOff::garbage),
     {"velocity", ForceOff::velocity,
-     [](SafetyInput& input)
+     [](GuardedPeriod& input)
      {
          input.has_velocity = true;
          input.velocity_m_per_s = Vec3(0.0, 1.5, 0.0);
      },
-     [](SafetyInput& input) { input.velocity_m_per_s = Vec3(0.0, 0.1, 0.0); }},
+     [](GuardedPeriod& input) { input.velocity_m_per_s = Vec3(0.0, 0.1, 0.0); }},
     {"turning", ForceOff::velocity,
-     [](SafetyInput& input)
+     [](GuardedPeriod& input)
      {
          input.has_turning = true;
          input.turning_rad_per_s = Vec3(0.0, 1.01 * kTurningMax_rad_per_s, 0.0);
      },
-     [](SafetyInput& input) { input.turning_rad_per_s = Vec3(0.0, 1.0, 0.0); }},
+     [](GuardedPeriod& input) { input.turning_rad_per_s = Vec3(0.0, 1.0, 0.0); }},
     {"no_number", ForceOff::garbage,
-     [](SafetyInput& input) { input.force_n.x() = std::numeric_limits<double>::quiet_NaN(); },
-     [](SafetyInput& input) { input.force_n = GuardedTool::kForce_n; }},
+     [](GuardedPeriod& input) { input.force_n.x() = std::numeric_limits<double>::quiet_NaN(); },
+     [](GuardedPeriod& input) { input.force_n = GuardedTool::kForce_n; }},
 };
 
 class SafeStateCause : public testing::TestWithParam<Cause>
 {
 protected:
     /// The most that the damping may make.
-    static double damping_max_n(const SafetyInput& input)
+    static double damping_max_n(const GuardedPeriod& input)
     {
         return std::min(GuardedTool::kLimits.damping_n_s_per_m * input.velocity_m_per_s.norm(),
                         kDampingForceShare * kForceMax_n);
@@ -137,10 +169,9 @@ TEST_P(SafeStateCause, fades_the_last_force_from_the_first_frame_and_names_itsel
     double elapsed_s = 0.0;
     while (elapsed_s < kFadeTime_s - 0.5 * kPeriod_s)
     {
-        const SafetyOutput out = tool.step();
+        const LetOut out = tool.step();
         elapsed_s += kPeriod_s;
         EXPECT_TRUE(has_cause(out.causes, GetParam().cause));
-        EXPECT_EQ(out.has_changed, elapsed_s < 1.5 * kPeriod_s || out.state != SafetyState::brake);
         const Vec3 ramp_n = GuardedTool::kForce_n * std::max(1.0 - elapsed_s / kFadeTime_s, 0.0);
         EXPECT_LE((out.force_n - ramp_n).norm(), damping_n + kRounding_n) << elapsed_s;
         EXPECT_LE(out.force_n.norm(), before_n + damping_n + kRounding_n);
@@ -306,13 +337,31 @@ TEST(SafeState, a_torque_goes_as_the_force_goes)
     EXPECT_EQ(tool.step().causes, ForceOff::garbage);
 }
 
+/// As the stages behind it do where they hold a force back.
+TEST(SafeState, what_went_out_in_its_place_is_what_fades)
+{
+    GuardedTool tool;
+    tool.warm_up();
+    ToolForce sent;
+    sent.push.force_n = 0.25 * GuardedTool::kForce_n;
+    tool.sut.follow(sent);
+    EXPECT_EQ(tool.step().force_n, GuardedTool::kForce_n) << "without a cause the frame's counts";
+    tool.sut.follow(sent);
+    tool.input.causes = ForceOff::stale;
+    for (int frame = 1; frame <= 50; ++frame)
+    {
+        const double gain = 1.0 - frame * kPeriod_s / kFadeTime_s;
+        EXPECT_LT((tool.step().force_n - gain * sent.push.force_n).norm(), kRounding_n) << frame;
+    }
+}
+
 TEST(SafeState, without_a_frame_the_last_force_fades_by_the_same_law)
 {
     GuardedTool tool;
     tool.warm_up();
     for (int frame = 1; frame <= 60; ++frame)
     {
-        const SafetyOutput out = tool.sut.fade(kPeriod_s, ForceOff::assertion);
+        const LetOut out = tool.fade(ForceOff::assertion);
         const double gain = std::max(0.0, 1.0 - frame * kPeriod_s / kFadeTime_s);
         EXPECT_NEAR((out.force_n - gain * GuardedTool::kForce_n).norm(), 0.0, kRounding_n);
         EXPECT_EQ(out.causes, ForceOff::assertion);
@@ -388,16 +437,16 @@ TEST(SafeState, a_force_that_the_device_has_dropped_starts_again_from_zero)
 TEST(SafeState, does_not_pull_a_hand_that_is_deeper_than_the_device_is_strong)
 {
     GuardedTool tool;
-    tool.input.proxy_m = Vec3(1.01 * kForceMax_n / 500.0, 0.0, 0.0);
+    tool.input.stretch_m = 1.01 * kForceMax_n / 500.0;
     for (int i = 0; i < 10; ++i)
     {
         EXPECT_EQ(tool.step().state, SafetyState::idle);
         EXPECT_EQ(tool.last.force_n.norm(), 0.0);
     }
-    tool.input.proxy_m = Vec3(0.99 * kForceMax_n / 500.0, 0.0, 0.0);
+    tool.input.stretch_m = 0.99 * kForceMax_n / 500.0;
     EXPECT_EQ(tool.step().state, SafetyState::force);
     tool.warm_up();
-    tool.input.proxy_m = Vec3(0.5, 0.0, 0.0); // Pressed deeper: the force stays.
+    tool.input.stretch_m = 0.5; // Pressed deeper: the force stays.
     EXPECT_EQ(tool.step().state, SafetyState::force);
 }
 
@@ -437,8 +486,7 @@ TEST(SafeState, finds_the_speed_of_a_device_that_does_not_tell_it)
         tool.step();
         for (const std::uint32_t periods : {1U, 4U}) // By the true time after a stall.
         {
-            tool.input.position_m += Vec3(speed * kPeriod_s * periods, 0.0, 0.0);
-            tool.input.proxy_m = tool.input.position_m;
+            tool.input.hand_m += Vec3(speed * kPeriod_s * periods, 0.0, 0.0);
             EXPECT_EQ(has_cause(tool.step(periods).causes, ForceOff::velocity), speed > 1.0);
         }
     }
@@ -449,8 +497,7 @@ TEST(SafeState, finds_the_speed_of_a_device_that_does_not_tell_it)
     {
         if (i % 4 == 3)
         {
-            tool.input.position_m += Vec3(0.9 * 4 * kPeriod_s, 0.0, 0.0);
-            tool.input.proxy_m = tool.input.position_m;
+            tool.input.hand_m += Vec3(0.9 * 4 * kPeriod_s, 0.0, 0.0);
         }
         else
         {
@@ -542,7 +589,7 @@ TEST(SafeState, never_steps_farther_than_its_law)
         const Vec3 before_n = tool.last.force_n;
         const bool was_whole = tool.sut.gain() >= 1.0;
         const std::uint32_t periods = random.one_in(50) ? 1 + random.below(8U) : 1;
-        const SafetyOutput out = tool.step(periods);
+        const LetOut out = tool.step(periods);
         const double step_n = (out.force_n - before_n).norm();
         const double elapsed_s = kPeriod_s * periods;
         ++seen[static_cast<std::size_t>(out.state)];
