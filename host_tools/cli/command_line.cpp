@@ -3,6 +3,7 @@
 #include "host_tools/cli/command_line.hpp"
 
 #include "platform/base/program_log.hpp"
+#include "platform/base/read_file.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -44,21 +45,58 @@ std::string trimmed(const std::string& text)
                : text.substr(first, text.find_last_not_of(" \t\r") + 1 - first);
 }
 
-/// FILE:LINE of the first line that has this key, or all of whose text ends in it.
-std::string place_of(const std::string& key, const std::string& path)
+/// A file of options has no more bytes.
+constexpr std::uintmax_t kOptionFileMost = 1ULL << 20;
+
+/// Before the library opens it: a pipe or a device may never end. Throws the reason.
+std::string check_option_file(const std::string& path)
+{
+    if (const auto bytes = read_file(path, kOptionFileMost); !bytes)
+    {
+        throw CLI::FileError(fmt::format("--config: {}: {}", path, bytes.error().text));
+    }
+    return {};
+}
+
+struct FilePlace
+{
+    std::string text;    ///< FILE:LINE, or FILE where no line was found.
+    bool is_pair{false}; ///< The line is KEY = VALUE.
+};
+
+/// The first line that has this key, or all of whose text ends in it.
+FilePlace place_of(const std::string& key, const std::string& path)
 {
     std::ifstream file(path);
     int number = 0;
     for (std::string line; std::getline(file, line);)
     {
         ++number;
-        const std::string name = trimmed(line.substr(0, line.find('=')));
+        const std::size_t equals = line.find('=');
+        const std::string name = trimmed(line.substr(0, equals));
         if (name == key || name == "[" + key + "]" || name.ends_with(" " + key))
         {
-            return fmt::format("{}:{}", path, number);
+            return {fmt::format("{}:{}", path, number), name == key && equals != line.npos};
         }
     }
-    return path;
+    return {path};
+}
+
+/// A key that is shown: another file's line, a password's for instance, is none.
+bool is_like_a_name(const std::string& key)
+{
+    constexpr std::size_t kLongest = 32;
+    const auto is_part = [](char c)
+    { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' || c == '_'; };
+    return key.size() <= kLongest && std::ranges::all_of(key, is_part);
+}
+
+/// The text without the value that it quotes, which a file may hold by mistake.
+std::string without_value(const std::string& text)
+{
+    const std::size_t first = text.find('\'');
+    const std::size_t last = text.rfind('\'');
+    return first == last ? text : text.substr(0, first + 1) + "..." + text.substr(last);
 }
 
 /// How many letters have to be put in, left out or exchanged to make one of the other
@@ -111,12 +149,17 @@ std::string unknown_key(const CLI::App& app, const CLI::ConfigError& error)
     if (section != std::string::npos)
     {
         key.resize(section);
-        return fmt::format("--config: {}: there are no sections; '[{}]' is one",
-                           place_of(key, path), key);
+        return fmt::format("--config: {}: begins a section; there are none",
+                           place_of(key, path).text);
+    }
+    const FilePlace place = place_of(key, path);
+    if (!place.is_pair || !is_like_a_name(key))
+    {
+        return fmt::format("--config: {}: a line is KEY = VALUE", place.text);
     }
     const std::string nearest = nearest_name(app, key, true);
-    return fmt::format("--config: {}: no option is called '{}'; {}", place_of(key, path), key,
-                       nearest.empty() ? "a line is KEY = VALUE" : "'" + nearest + "'?");
+    return fmt::format("--config: {}: no option is called '{}'; {}", place.text, key,
+                       nearest.empty() ? "see --help" : "'" + nearest + "'?");
 }
 
 /// The first word that no option took, an option's before others.
@@ -144,6 +187,15 @@ std::string wrong_count(const CLI::ArgumentMismatch& error)
     return fmt::format("{}: {}; see --help", name,
                        text.find("At Most") == std::string_view::npos ? "a value is missing"
                                                                       : "is given twice");
+}
+
+/// The library's own words have the name behind a colon, and the value behind a '='.
+std::string wrong_form(const CLI::ConversionError& error)
+{
+    const std::string_view text = error.what();
+    const std::size_t name = text.find("--");
+    return fmt::format("{}: a value isn't what it takes; see --help",
+                       text.substr(std::min(name, text.size()), text.find(' ', name) - name));
 }
 
 /// "a, b or c".
@@ -363,7 +415,9 @@ CommandOption CommandLine::add_flag(const std::string& name, bool& value,
 
 void CommandLine::add_option_file(const std::string& name, const std::string& description)
 {
-    app_->set_config(name, "", description)->configurable(false);
+    app_->set_config(name, "", description)
+        ->configurable(false)
+        ->check(CLI::Validator(check_option_file, ""));
     app_->allow_config_extras(CLI::config_extras_mode::error);
 }
 
@@ -415,10 +469,9 @@ std::optional<int> CommandLine::parse(int argc, char** argv)
         const bool is_extra = std::string_view(error.what()).find("parse") != std::string::npos;
         return fail(is_extra ? unknown_key(*app_, error) : on_one_line(error.what()), kExitUsage);
     }
-    catch (const CLI::FileError&)
+    catch (const CLI::FileError& error)
     {
-        return fail(fmt::format("--config: {}: can't be read, or is no file",
-                                app_->get_config_ptr()->as<std::string>()));
+        return fail(error.what());
     }
     catch (const CLI::ExtrasError&)
     {
@@ -427,6 +480,10 @@ std::optional<int> CommandLine::parse(int argc, char** argv)
     catch (const CLI::ArgumentMismatch& error)
     {
         return fail(wrong_count(error), kExitUsage);
+    }
+    catch (const CLI::ConversionError& error)
+    {
+        return fail(wrong_form(error), kExitUsage);
     }
     catch (const CLI::ParseError& error)
     {
@@ -484,7 +541,8 @@ std::string CommandLine::option_file_text() const
 int CommandLine::fail(const std::string& text, int code) const
 {
     const std::string place = code == kExitUsage ? place_in_file(text) : "";
-    log_message(LogLevel::error, app_->get_name(), place + text);
+    log_message(LogLevel::error, app_->get_name(),
+                place.empty() ? text : place + without_value(text));
     return code;
 }
 
@@ -502,7 +560,7 @@ std::string CommandLine::place_in_file(const std::string& text) const
         return {};
     }
     const auto path = file->as<std::string>();
-    const std::string place = place_of(name.substr(2), path);
+    const std::string place = place_of(name.substr(2), path).text;
     return place == path ? "" : place + ": "; // Else it is no line of the file.
 }
 

@@ -30,9 +30,9 @@ refuse 3 "hrtc load: KIND: 'gpu' is not cpu, memory or disk; see --help" "$hrtc"
 refuse 3 'hrtc: --stifness: no option is called so; --stiffness?' "$hrtc" ball.spm --stifness=300
 refuse 3 'hrtc: --report: a value is missing; see --help' "$hrtc" ball.spm --report --strict
 refuse 3 'hrtc: --cache-mib: must be less than --pool-mib' "$hrtc" ball.spm --cache-mib 3
-refuse 3 "hrtc: number.toml:3: --rate: '1k' is not a whole number in 100 .. 10000; see --help" \
+refuse 3 "hrtc: number.toml:3: --rate: '...' is not a whole number in 100 .. 10000; see --help" \
     "$hrtc" --config number.toml
-refuse 2 "hrtc: --config: missing.toml: can't be read, or is no file" "$hrtc" --config missing.toml
+refuse 2 "hrtc: --config: missing.toml: no such file" "$hrtc" --config missing.toml
 
 refuse 3 'spm_build: --output is required; see --help' "$build" mesh.obj
 refuse 3 'spm_build: --unit excludes --fit-diag; see --help' \

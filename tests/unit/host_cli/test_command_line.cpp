@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <sys/stat.h>
 #include <vector>
 
 namespace tactus
@@ -204,19 +205,54 @@ TEST(CommandLine, reads_a_file_of_options_behind_the_line)
         return said.substr(std::min(before.size(), said.size()));
     };
     write("fast = 1\n");
-    EXPECT_EQ(refusal_behind_the_path(), ":1: no option is called 'fast'; a line is KEY = VALUE\n");
+    EXPECT_EQ(refusal_behind_the_path(), ":1: no option is called 'fast'; see --help\n");
     write("# Mine.\nshare = 1\n  cuont = 1\n");
     EXPECT_EQ(refusal_behind_the_path(), ":3: no option is called 'cuont'; 'count'?\n");
     write("\n[loop]\ncount = 1\n");
-    EXPECT_EQ(refusal_behind_the_path(), ":2: there are no sections; '[loop]' is one\n");
+    EXPECT_EQ(refusal_behind_the_path(), ":2: begins a section; there are none\n");
     write("share = 1\n count = x\n");
     EXPECT_EQ(refusal_of({"f", "--config", path}),
-              "try: " + path + ":2: --count: 'x' is not a whole number in -2 .. 9; see --help\n");
+              "try: " + path + ":2: --count: '...' is not a whole number in -2 .. 9; see --help\n");
     EXPECT_EQ(refusal_of({"f", "--config", path, "--count=y"}),
               "try: --count: 'y' is not a whole number in -2 .. 9; see --help\n");
     write("print = true\n");
     EXPECT_NE(refusal_of({"f", "--config", path}).find("not allowed in a configuration file"),
               std::string::npos);
+}
+
+TEST(CommandLine, reads_a_regular_file_of_options_of_one_mebibyte_at_most)
+{
+    const test::TemporaryFolder folder("command-line");
+    const std::string path = folder.path() / "options.toml";
+    const auto refusal = [](const std::string& file)
+    {
+        Form form;
+        testing::internal::CaptureStderr();
+        EXPECT_EQ(form.parse({"f", "--config", file}), kExitFailed);
+        return testing::internal::GetCapturedStderr();
+    };
+    const std::string comment(1'000, '#');
+    std::ofstream file(path);
+    for (std::size_t bytes = 0; bytes + comment.size() < (1U << 20); bytes += comment.size() + 1)
+    {
+        file << comment << '\n';
+    }
+    file.flush();
+    Form form;
+    EXPECT_EQ(form.parse({"f", "--config", path}), std::nullopt);
+    file << comment << '\n';
+    file.close();
+    const std::string size = std::to_string(std::filesystem::file_size(path));
+    EXPECT_EQ(refusal(path),
+              "try: --config: " + path + ": has " + size + " bytes; at most 1048576 are read\n");
+    const std::string pipe = folder.path() / "pipe";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    for (const std::string& endless : {pipe, std::string("/dev/zero")})
+    {
+        EXPECT_EQ(refusal(endless), "try: --config: " + endless + ": is not a regular file\n");
+    }
+    std::ofstream(path, std::ios::trunc).close();
+    EXPECT_EQ(refusal(path), "try: --config: " + path + ": is empty\n");
 }
 
 TEST(CommandLine, fails_in_one_line_behind_the_name_of_the_program)
