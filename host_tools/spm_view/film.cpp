@@ -332,14 +332,16 @@ Result<std::unique_ptr<Film>, Refusal> Film::develop(const std::string& path, st
     watch.ends = [&](std::uint64_t frame, const RecordedFrame& given, const FrameOutput& returned)
     { maker.take(frame, given, returned); };
     watch.goes_on = goes_on;
+    watch.runs_failed = false;
     const auto report = replay(*recording, nullptr, watch);
     if (!report || film->moments_.empty())
     {
         return Refusal{path + ": " + (report ? "it has no frame" : report.error().text)};
     }
-    film->note_ = report.value().difference || recording->lost_from() != kNoFrame
-                      ? replay_line(*recording, report.value())
-                      : "";
+    film->note_ =
+        report.value().difference || recording->has_failed() || recording->lost_from() != kNoFrame
+            ? replay_line(*recording, report.value())
+            : "";
     return film;
 }
 

@@ -47,6 +47,12 @@ Result<RecordingResult, Refusal> Recorder::finish()
     return RecordingResult{writer_.frames(), file_.bytes(), lost_from};
 }
 
+void Recorder::add_failed(const GivenFrame& frame)
+{
+    stop();
+    tap_.record_failed(frame);
+}
+
 void Recorder::stop()
 {
     thread_.reset();

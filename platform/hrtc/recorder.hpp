@@ -50,6 +50,9 @@ public:
     /// Writes what waits. The caller's thread, if that is the worker.
     void step();
 
+    /// Adds the frame that failed; no frame runs any more.
+    void add_failed(const GivenFrame& frame);
+
     /// Writes what waits, ends the recording and gives the file its name. Once, when no frame runs
     /// any more.
     [[nodiscard]] Result<RecordingResult, Refusal> finish();

@@ -53,10 +53,16 @@ const char* FrameDecoder::decode(ByteReader& reader)
 const char* FrameDecoder::decode_body(ByteReader& reader)
 {
     const auto flags = reader.read<std::uint8_t>();
-    if (flags > (kHasChanges | kHasBudgets) || (!has_begun_ && (flags & kHasBudgets) == 0))
+    if (flags > (kHasChanges | kHasBudgets | kHasNoHashes) ||
+        (!has_begun_ && (flags & kHasBudgets) == 0))
     {
-        return "has flags that are not 0 to 3, or no budgets in the first frame";
+        return "has flags that are not 0 to 7, or no budgets in the first frame";
     }
+    if (has_begun_ && !frame_.has_hashes && (flags & kHasNoHashes) == 0)
+    {
+        return "has hashes behind one without";
+    }
+    frame_.has_hashes = (flags & kHasNoHashes) == 0;
     has_begun_ = true;
     frame_.now_ns = reader.read<std::int64_t>();
     if (!decode_tools(reader))
@@ -80,6 +86,10 @@ const char* FrameDecoder::decode_body(ByteReader& reader)
     if (const char* fault = decode_door(reader))
     {
         return fault;
+    }
+    if (!frame_.has_hashes)
+    {
+        return nullptr;
     }
     for (std::uint64_t& hash : frame_.state_hashes)
     {

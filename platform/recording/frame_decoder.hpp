@@ -32,6 +32,7 @@ struct RecordedFrame
     Budgets budgets;
     std::uint32_t wish_room{0};
     std::vector<DoorEvent> events;           ///< That were taken from the door.
+    bool has_hashes{true};                   ///< False: it failed, or only its input was kept.
     std::vector<std::uint64_t> state_hashes; ///< One a model, after the frame.
     OutputHashes output;
 

@@ -56,17 +56,40 @@ bool try_update(std::span<const std::byte> now, std::span<std::byte> last) noexc
 std::span<const std::byte> FrameEncoder::encode(const FrameInput& input, const FrameOutput& output,
                                                 std::span<const DeviceRecord> devices) noexcept
 {
+    FixedWriter writer = begin({input, output.door, devices}, 0);
+    for (const ModelOutput& model : output.models)
+    {
+        writer.write(model.state_hash);
+    }
+    const OutputHashes hashes = hash_output(output);
+    for (const std::uint64_t hash : {hashes.tools, hashes.pairs, hashes.models, hashes.work})
+    {
+        writer.write(hash);
+    }
+    return end(writer);
+}
+
+std::span<const std::byte> FrameEncoder::encode_given(const GivenFrame& frame) noexcept
+{
+    return end(begin(frame, kHasNoHashes | kHasBudgets));
+}
+
+/// All but the hashes.
+FixedWriter FrameEncoder::begin(const GivenFrame& frame, std::uint8_t flags) noexcept
+{
+    const auto& [input, door, devices] = frame;
     TACTUS_ASSERT(devices.empty() || devices.size() == input.tools.size());
     TACTUS_ASSERT(input.changes.size() <= kMaxSceneChanges);
     std::array<std::byte, kBudgetsBytes> coded_budgets;
     FixedWriter budget_writer(coded_budgets);
     write_budgets(budget_writer, input.budgets);
     const bool has_changes = !input.changes.empty();
-    const bool has_budgets = try_update(coded_budgets, budgets_) || !has_begun_;
+    const bool has_budgets =
+        try_update(coded_budgets, budgets_) || !has_begun_ || (flags & kHasBudgets) != 0;
     has_begun_ = true;
 
     FixedWriter writer{std::span(bytes_).subspan(sizeof(std::uint32_t))};
-    writer.write(static_cast<std::uint8_t>((has_changes ? kHasChanges : 0) |
+    writer.write(static_cast<std::uint8_t>(flags | (has_changes ? kHasChanges : 0) |
                                            (has_budgets ? kHasBudgets : 0)));
     writer.write(input.now_ns);
     for (std::size_t i = 0; i < input.tools.size(); ++i)
@@ -83,16 +106,13 @@ std::span<const std::byte> FrameEncoder::encode(const FrameInput& input, const F
     }
     writer.write_bytes(has_budgets ? std::span<const std::byte>(coded_budgets)
                                    : std::span<const std::byte>{});
-    write_door(writer, output.door);
-    for (const ModelOutput& model : output.models)
-    {
-        writer.write(model.state_hash);
-    }
-    const OutputHashes hashes = hash_output(output);
-    for (const std::uint64_t hash : {hashes.tools, hashes.pairs, hashes.models, hashes.work})
-    {
-        writer.write(hash);
-    }
+    write_door(writer, door);
+    return writer;
+}
+
+/// Its size goes before it.
+std::span<const std::byte> FrameEncoder::end(const FixedWriter& writer) noexcept
+{
     FixedWriter(bytes_).write(static_cast<std::uint32_t>(writer.size()));
     return std::span<const std::byte>(bytes_).first(sizeof(std::uint32_t) + writer.size());
 }

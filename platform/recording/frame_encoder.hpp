@@ -4,6 +4,7 @@
 
 #include "platform/recording/change_coding.hpp"
 #include "platform/recording/device_coding.hpp"
+#include "platform/recording/fixed_writer.hpp"
 #include "platform/recording/output_hash.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/records/frame_input.hpp"
@@ -28,9 +29,18 @@ inline constexpr std::size_t kMaxCodedFrameBytes =
     sizeof(OutputHashes);
 
 /// A frame's flags: changes of the scene follow, or budgets, since they differ from the frame
-/// before.
+/// before; no hashes follow, since the frame failed or only what it was given is kept.
 inline constexpr std::uint8_t kHasChanges = 1;
 inline constexpr std::uint8_t kHasBudgets = 2;
+inline constexpr std::uint8_t kHasNoHashes = 4;
+
+/// What a frame is given.
+struct GivenFrame
+{
+    FrameInput input;
+    DoorTake door;
+    std::span<const DeviceRecord> devices; ///< One a tool, or none where there are none.
+};
 
 /// Codes frames one after the other. Budgets are written only when they differ from the frame
 /// before. Allocates nothing, so the haptic thread may use it.
@@ -42,8 +52,13 @@ public:
     [[nodiscard]] std::span<const std::byte>
     encode(const FrameInput& input, const FrameOutput& output,
            std::span<const DeviceRecord> devices = {}) noexcept;
+    /// The same of what a run got alone, its budgets in any case.
+    [[nodiscard]] std::span<const std::byte> encode_given(const GivenFrame& frame) noexcept;
 
 private:
+    [[nodiscard]] FixedWriter begin(const GivenFrame& frame, std::uint8_t flags) noexcept;
+    [[nodiscard]] std::span<const std::byte> end(const FixedWriter& writer) noexcept;
+
     std::array<std::byte, kMaxCodedFrameBytes> bytes_{};
     std::array<std::byte, kBudgetsBytes> budgets_{};
     bool has_begun_{false};

@@ -46,6 +46,10 @@ public:
     /// All frames as FrameEncoder coded them, for a FrameDecoder.
     [[nodiscard]] std::span<const std::byte> frames() const noexcept { return frames_; }
     [[nodiscard]] std::uint64_t frame_count() const noexcept { return frame_count_; }
+    /// False: it keeps what the last frames of a run that failed were given, and can't be replayed.
+    [[nodiscard]] bool keeps_run() const noexcept { return failed_frames_ <= 1; }
+    /// The last frame failed in the run.
+    [[nodiscard]] bool has_failed() const noexcept { return failed_frames_ > 0; }
     /// The first frame that the recorder lost; kNoFrame when it lost none.
     [[nodiscard]] std::uint64_t lost_from() const noexcept { return lost_from_; }
 
@@ -57,6 +61,7 @@ private:
     std::map<PieceKey, std::vector<std::byte>> pieces_;
     std::vector<std::byte> frames_;
     std::uint64_t frame_count_{0};
+    std::uint64_t failed_frames_{0}; ///< Without hashes: the last ones.
     std::uint64_t lost_from_{kNoFrame};
 };
 

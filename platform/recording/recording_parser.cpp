@@ -240,6 +240,12 @@ private:
             {
                 fault = check_pieces(decoder_->frame());
             }
+            recording_.failed_frames_ += decoder_->frame().has_hashes ? 0U : 1U;
+            if (!fault && recording_.failed_frames_ > 1 &&
+                recording_.failed_frames_ <= recording_.frame_count_)
+            {
+                fault = "is behind one that failed";
+            }
             if (fault)
             {
                 return "frame " + std::to_string(recording_.frame_count_) + " " + *fault;

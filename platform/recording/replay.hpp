@@ -42,12 +42,16 @@ struct ReplayWatch
     std::function<void(Frame&)> made{};
     /// Asked after each frame: false ends the replay there.
     std::function<bool()> goes_on{};
+    /// False: the replay ends before a frame that failed in the run.
+    bool runs_failed{true};
 };
 
 /// Makes a frame as the recorded one was made, gives it the recorded inputs, arrivals and link
 /// updates of every frame, and compares what comes out with the recorded hashes. Stops at the first
 /// difference. Needs no device, network, timer or thread; takes the pools' memory, and the time of
-/// the frames. Refused when no frame can be made of the set-up.
+/// the frames. Refused when no frame can be made of the set-up, or the recording doesn't keep a run.
+/// A frame that failed in the run fails its assertion here, too; where it doesn't, that is the
+/// difference.
 ///
 /// Pages are linked here anew, by the same Linker in the recorded order, and compared, too.
 /// `kernels` run the queries, null the best of this processor; it makes no difference.

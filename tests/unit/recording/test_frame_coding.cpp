@@ -174,7 +174,7 @@ TEST(FrameCoding, refuses_values_that_no_frame_can_have)
         std::vector<unsigned> bytes;
         const char* said;
     };
-    const std::vector<Case> cases{{kFlags, {4}, "flags"},
+    const std::vector<Case> cases{{kFlags, {8}, "flags"},
                                   {kFlags, {1}, "flags"},          // The first frame has budgets.
                                   {kValid, {0xFF, 0x3F}, "flags"}, // An unknown one.
                                   {kChanges, {0}, "1 to 64 changes"},
@@ -198,6 +198,26 @@ TEST(FrameCoding, refuses_values_that_no_frame_can_have)
         ASSERT_NE(fault, nullptr) << wrong.said;
         EXPECT_NE(std::string(fault).find(wrong.said), std::string::npos) << fault;
     }
+}
+
+TEST(FrameCoding, of_a_frame_that_failed_says_what_it_was_given_and_nothing_follows)
+{
+    constexpr std::size_t kFlagsAt = 4;
+    const ExampleFrame frame;
+    FrameEncoder encoder;
+    const std::vector<std::byte> whole = frame.code(encoder);
+    const auto given = encoder.encode_given({frame.input(), frame.door, frame.devices});
+    std::vector<std::byte> bytes(given.begin(), given.end());
+    EXPECT_EQ(bytes.size(), whole.size() - 8 - sizeof(OutputHashes));
+    EXPECT_EQ(bytes[kFlagsAt], std::byte{7}) << "its budgets are told in any case";
+    EXPECT_TRUE(
+        std::equal(bytes.begin() + kFlagsAt + 1, bytes.end(), whole.begin() + kFlagsAt + 1));
+    bytes.insert(bytes.end(), whole.begin(), whole.end());
+    FrameDecoder decoder(kExampleShape);
+    ByteReader reader(bytes);
+    EXPECT_EQ(decoder.decode(reader), nullptr);
+    EXPECT_FALSE(decoder.frame().has_hashes);
+    EXPECT_STREQ(decoder.decode(reader), "has hashes behind one without");
 }
 
 } // namespace

@@ -72,6 +72,47 @@ TEST(FrameTap, loses_all_frames_from_the_first_that_finds_no_room)
     EXPECT_EQ(sut.lost_from(), 1U);
 }
 
+TEST(FrameTap, of_the_last_inputs_keeps_the_newest_and_the_frame_that_failed)
+{
+    ExampleFrame frame;
+    FrameTap sut(32, FrameTap::Keeps::last_inputs);
+    for (std::int64_t number = 0; number < 1'000; ++number)
+    {
+        record(sut, frame, number);
+    }
+    frame.tools[0].sample_time_ns = 1'000;
+    sut.record_failed({frame.input(), frame.door, frame.devices});
+    EXPECT_EQ(sut.lost_from(), kNoFrame);
+    FrameDecoder decoder(kExampleShape); // Each frame can be the first.
+    const std::vector<std::int64_t> kept = take_all(sut, decoder);
+    ASSERT_GE(kept.size(), 2U);
+    EXPECT_LE(kept.size(), 8U);
+    EXPECT_EQ(kept.back(), 1'000);
+    EXPECT_EQ(kept.front(), 1'001 - static_cast<std::int64_t>(kept.size()));
+    EXPECT_FALSE(decoder.frame().has_hashes);
+    EXPECT_TRUE(decoder.frame().events.empty()) << "nobody keeps the pieces";
+    EXPECT_EQ(decoder.frame().budgets, frame.budgets);
+}
+
+TEST(FrameTap, of_a_run_ends_with_the_frame_that_failed_unless_one_is_lost)
+{
+    ExampleFrame frame;
+    FrameTap sut(64);
+    FrameDecoder decoder(kExampleShape);
+    record(sut, frame, 0);
+    frame.tools[0].sample_time_ns = 1;
+    sut.record_failed({frame.input(), frame.door, frame.devices});
+    EXPECT_EQ(take_all(sut, decoder), (std::vector<std::int64_t>{0, 1}));
+    EXPECT_FALSE(decoder.frame().has_hashes);
+    EXPECT_EQ(decoder.frame().events.size(), frame.events.size());
+
+    FrameTap full(2);
+    record(full, frame, 0);
+    full.record_failed({frame.input(), frame.door, frame.devices});
+    EXPECT_EQ(full.lost_from(), 0U);
+    EXPECT_TRUE(take_all(full, decoder).empty());
+}
+
 TEST(FrameTap, carries_frames_between_threads)
 {
     constexpr std::int64_t kFrames = 2'000;

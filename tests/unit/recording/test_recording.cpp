@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/recording/core_coding.hpp"
 #include "platform/recording/recording.hpp"
+#include "platform/recording/replay.hpp"
 #include "rt_core/base/crc32c.hpp"
 #include "tests/unit/recording/recorded_example.hpp"
 
@@ -139,7 +140,7 @@ TEST(RecordingFile, gives_back_what_was_written)
 TEST(RecordingFile, begins_with_its_magic_and_version)
 {
     const std::vector<std::byte> bytes = example();
-    EXPECT_EQ(std::memcmp(bytes.data(), "TACTREC\n\x0B\0\0\0", 12), 0);
+    EXPECT_EQ(std::memcmp(bytes.data(), "TACTREC\n\x0C\0\0\0", 12), 0);
 }
 
 TEST(RecordingFile, tells_from_where_frames_were_lost)
@@ -150,12 +151,55 @@ TEST(RecordingFile, tells_from_where_frames_were_lost)
     expect_refusal(example(2), "the first lost frame is 2; after 3 frames only that number");
 }
 
+/// So many frames of a run, and so many of which only what they were given is kept.
+Result<Recording, Refusal> with_given_frames(int of_run, int given)
+{
+    RecordingWriter writer(example_setup(model()));
+    FrameEncoder encoder;
+    ExampleFrame frame;
+    frame.door.events = {};
+    for (int i = 0; i < of_run; ++i)
+    {
+        writer.add_frame(frame.code(encoder));
+    }
+    for (int i = 0; i < given; ++i)
+    {
+        writer.add_frame(encoder.encode_given({frame.input(), frame.door, frame.devices}));
+    }
+    writer.finish(kNoFrame);
+    return Recording::parse(writer.take_bytes(), "run.rec");
+}
+
+TEST(RecordingFile, of_a_run_that_failed_ends_with_the_frame_that_did)
+{
+    const auto sut = with_given_frames(3, 1);
+    ASSERT_TRUE(sut) << sut.error().text;
+    EXPECT_TRUE(sut.value().has_failed());
+    EXPECT_TRUE(sut.value().keeps_run());
+    EXPECT_EQ(sut.value().frame_count(), 4U);
+    EXPECT_FALSE(with_given_frames(3, 0).value().has_failed());
+    EXPECT_NE(with_given_frames(3, 2).error().text.find("frame 4 is behind one that failed"),
+              std::string::npos);
+}
+
+TEST(RecordingFile, of_the_last_inputs_alone_is_no_run_and_is_not_replayed)
+{
+    const auto sut = with_given_frames(0, 5);
+    ASSERT_TRUE(sut) << sut.error().text;
+    EXPECT_TRUE(sut.value().has_failed());
+    EXPECT_FALSE(sut.value().keeps_run());
+    EXPECT_EQ(sut.value().frame_count(), 5U);
+    const auto replayed = replay(sut.value());
+    ASSERT_FALSE(replayed);
+    EXPECT_NE(replayed.error().text.find("keeps what the last 5 frames"), std::string::npos);
+}
+
 TEST(RecordingFile, is_refused_when_it_is_of_another_kind_or_version)
 {
     std::vector<std::byte> bytes = example();
     bytes[8] = std::byte{2};
     expect_refusal(bytes,
-                   "at byte 8: format version 2 is of an older Tactus; this program reads 11");
+                   "at byte 8: format version 2 is of an older Tactus; this program reads 12");
     bytes[3] = std::byte{'X'};
     expect_refusal(bytes, "is not a Tactus recording");
     bytes = example();
