@@ -81,19 +81,25 @@ bool has_room_on_stderr() noexcept
     return ready > 0 && out.revents == POLLOUT; // Not with POLLERR: that write would be SIGPIPE.
 }
 
-/// Neither allocates nor uses stdio's stream, whose lock a waiting thread may hold.
-void print(const Failure& failure) noexcept
+using Line = std::array<char, kLineBytes>;
+
+/// What snprintf made, of that length. Neither allocates nor uses stdio's stream, whose lock a
+/// waiting thread may hold.
+void put(const Line& line, int length) noexcept
 {
-    std::array<char, kLineBytes> line{};
-    const int length =
-        std::snprintf(line.data(), line.size(), "hrtc: internal error: %.600s (%.300s:%d)\n",
-                      failure.condition, failure.file, failure.line);
     if (length > 0 && has_room_on_stderr())
     {
         const std::size_t bytes = std::min(static_cast<std::size_t>(length), line.size() - 1);
         // Whether it worked cannot be told to anybody.
         [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, line.data(), bytes);
     }
+}
+
+void print(const Failure& failure) noexcept
+{
+    Line line{};
+    put(line, std::snprintf(line.data(), line.size(), "hrtc: internal error: %.600s (%.300s:%d)\n",
+                            failure.condition, failure.file, failure.line));
 }
 
 void print_first() noexcept
@@ -158,11 +164,17 @@ bool AssertionBrake::has_failed() noexcept
     return has_any_failed.load();
 }
 
-void AssertionBrake::end_process() noexcept
+void AssertionBrake::end_process(std::string_view advice) noexcept
 {
     while (has_failed() && first_report.load() != Report::printed)
     {
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    if (!advice.empty())
+    {
+        Line line{};
+        put(line, std::snprintf(line.data(), line.size(), "hrtc: %.*s\n",
+                                static_cast<int>(advice.size()), advice.data()));
     }
     std::this_thread::sleep_for(kBrakeTime);
     std::_Exit(kExitFailed);

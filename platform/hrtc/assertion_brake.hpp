@@ -4,6 +4,8 @@
 
 #include "platform/hrtc/haptic_loop.hpp"
 
+#include <string_view>
+
 namespace tactus::hrtc
 {
 
@@ -39,8 +41,8 @@ public:
     [[nodiscard]] static bool has_failed() noexcept;
 
     /// The main thread: waits until what failed is printed and the devices have had the time to
-    /// obey, and ends the process with kExitFailed.
-    [[noreturn]] static void end_process() noexcept;
+    /// obey, prints `advice` as a line if there is any, and ends the process with kExitFailed.
+    [[noreturn]] static void end_process(std::string_view advice = {}) noexcept;
 };
 
 } // namespace tactus::hrtc

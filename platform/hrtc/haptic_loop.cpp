@@ -134,6 +134,8 @@ void HapticLoop::rehearse() noexcept
 
 FrameOutput HapticLoop::run_frame(const FrameInput& input) noexcept
 {
+    given_ = input;
+    is_recorded_ = false;
     system_call_trap::mark_frame(true);
     const FrameOutput output = parts_.frame->run(input, {&mark_stage, this});
     system_call_trap::mark_frame(false);
@@ -147,6 +149,7 @@ void HapticLoop::record(const FrameInput& input, const FrameOutput& output) noex
     {
         parts_.tap->record(input, output, devices_);
     }
+    is_recorded_ = true;
 }
 
 void HapticLoop::trace(const FrameOutput& output, MonotonicTime start) noexcept
@@ -198,6 +201,7 @@ void HapticLoop::fail() noexcept
     const bool is_first = !failing_.exchange(true);
     if (is_first && haptic_thread_.load() == std::this_thread::get_id())
     {
+        has_failed_itself_ = true;
         fade_last_forces();
     }
     for (ToolPort& port : ports_)
@@ -205,6 +209,19 @@ void HapticLoop::fail() noexcept
         port.brake();
     }
     failed_.store(true);
+}
+
+std::optional<GivenFrame> HapticLoop::failed_frame() noexcept
+{
+    if (!has_failed_itself_ || is_recorded_)
+    {
+        return std::nullopt;
+    }
+    for (std::size_t i = 0; i < ports_.size(); ++i)
+    {
+        devices_[i] = ports_[i].record();
+    }
+    return GivenFrame{given_, parts_.frame->pools().cache.taken(), devices_};
 }
 
 /// On the haptic thread, in the middle of a frame that can't be trusted any more: it uses nothing

@@ -20,6 +20,7 @@
 #include <atomic>
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <span>
 #include <thread>
 #include <vector>
@@ -76,6 +77,12 @@ public:
     /// then, and on any other thread at once, all devices are braked for good.
     void fail() noexcept;
 
+    /// Any thread, once has_failed(): whether the haptic thread found the bug, and works no more.
+    [[nodiscard]] bool has_failed_itself() const noexcept { return has_failed_itself_; }
+    /// Likewise: what the frame was given in which it failed, or with whose forces; none where it
+    /// was between frames.
+    [[nodiscard]] std::optional<GivenFrame> failed_frame() noexcept;
+
     /// What the supervisor watches.
     [[nodiscard]] const Heartbeat& heartbeat() const noexcept { return heartbeat_; }
     /// State changes of the tools; one other thread may take them.
@@ -119,6 +126,9 @@ private:
     std::vector<double> radii_m_;       ///< One a tool.
     std::vector<DeviceRecord> devices_; ///< Likewise, for those who show or record.
     ObjectTouches touches_;             ///< What tools may touch soon, after the last frame.
+    FrameInput given_;                  ///< To the frame that runs, or ran last.
+    bool is_recorded_{true};            ///< That one.
+    bool has_failed_itself_{false};     ///< Before failed_ is set.
     std::uint64_t frame_{0};
     std::uint64_t fade_frames_{0}; ///< That the last forces of a run take.
     std::uint64_t end_;            ///< Frame that is not run any more.

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/hrtc/failed_run.hpp"
+
+#include "platform/base/atomic_file.hpp"
+#include "platform/recording/recording_writer.hpp"
+
+#include <filesystem>
+#include <system_error>
+#include <unistd.h>
+#include <utility>
+#include <vector>
+
+namespace tactus::hrtc
+{
+
+namespace
+{
+
+Result<Done, Refusal> write_whole(const std::filesystem::path& path,
+                                  std::span<const std::byte> bytes)
+{
+    auto file = AtomicFile::create(path);
+    if (!file)
+    {
+        return file.error();
+    }
+    const auto written = file.value().write(bytes);
+    return written ? file.value().commit() : written;
+}
+
+} // namespace
+
+Result<LastInputs, Refusal> write_last_inputs(FrameTap& tap, const FrameSetup& setup)
+{
+    RecordingWriter writer(to_recorded(setup));
+    for (std::vector<std::byte> coded; tap.try_take(coded);)
+    {
+        writer.add_frame(coded);
+    }
+    writer.finish(kNoFrame);
+    const std::vector<std::byte> bytes = writer.take_bytes();
+    std::filesystem::path path = "hrtc-failed-" + std::to_string(getpid()) + ".rec";
+    auto written = write_whole(path, bytes);
+    if (!written)
+    {
+        std::error_code code;
+        path = std::filesystem::temp_directory_path(code) / path;
+        written = write_whole(path, bytes);
+    }
+    if (!written)
+    {
+        return written.error();
+    }
+    return LastInputs{path.string(), writer.frames()};
+}
+
+} // namespace tactus::hrtc
