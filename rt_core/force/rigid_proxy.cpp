@@ -15,8 +15,8 @@ namespace tactus
 namespace
 {
 
-/// A hold is kept until the tool has slid this share of its radius. What it bends a motion round an
-/// edge by is half the square of it.
+/// A hold is kept until the tool has slid this share of its radius, or touches as near to it: with
+/// the plane of where it was a tool would rest beside an edge that it should slide off.
 constexpr double kHoldSlide = 0.05;
 /// Cosine between the normals of holds that are one.
 constexpr double kSameDirection = 0.999;
@@ -29,6 +29,9 @@ constexpr double kMostViscous = 1e6;
 /// After a longer step than this share of the radius other planes hold.
 constexpr double kLongMotion = 0.25;
 
+/// A core that is a point, without a radius, is as large.
+constexpr double kLeastSkin_m = 1e-9;
+
 /// How much of it is no longer than this.
 double share_within(const Vec3& vector, double most) noexcept
 {
@@ -36,16 +39,34 @@ double share_within(const Vec3& vector, double most) noexcept
     return length > most ? most / length : 1.0;
 }
 
+/// Whether the tool was found to touch there, to within `near_m`.
+bool is_measured(const BodyTouch& touch, std::span<const Contact> contacts, double near_m) noexcept
+{
+    return std::ranges::any_of(
+        contacts,
+        [&](const Contact& contact)
+        {
+            return (contact.on_tool_m - touch.on_tool_m).squaredNorm() < near_m * near_m &&
+                   (contact.on_surface_m - touch.on_surface_m).squaredNorm() < near_m * near_m;
+        });
+}
+
 bool turns(const ToolSpec& spec) noexcept
 {
     return !spec.passes_through && !std::holds_alternative<PointCore>(spec.core);
+}
+
+/// What it has to slide with, never nothing.
+double skin_of(const ToolSpec& spec, double core_m) noexcept
+{
+    return std::max({spec.radius_m, kLeastSkin * core_m, kLeastSkin_m});
 }
 
 /// The core's ball and the radius.
 double size_of(const ToolSpec& spec) noexcept
 {
     const double core_m = PlacedCore(spec.core, Similarity{}).radius();
-    return core_m + std::max(spec.radius_m, kLeastSkin * core_m);
+    return core_m + skin_of(spec, core_m);
 }
 
 /// Of the metric: its square is the angular stiffness over the stiffness.
@@ -75,7 +96,7 @@ RigidProxy::RigidProxy(const ToolSpec& spec, Planes& planes) noexcept
     const PlacedCore core(spec.core, Similarity{});
     center_m_ = core.center();
     core_radius_m_ = core.radius();
-    radius_m_ = std::max(spec.radius_m, kLeastSkin * core_radius_m_);
+    radius_m_ = skin_of(spec, core_radius_m_);
 }
 
 void RigidProxy::see(const ToolGoal& goal) noexcept
@@ -419,7 +440,7 @@ void RigidProxy::add(const BodyTouch& touch, const PlacedSurface& placed, double
     planes_->add(touch, grip);
 }
 
-/// Adds what held before, and forgets where the tool is no longer.
+/// Adds what held before, and forgets where the tool is no longer, or is known to touch now.
 void RigidProxy::add_holds(std::span<const PlacedSurface> surfaces, double elapsed_s) noexcept
 {
     std::size_t kept = 0;
@@ -438,7 +459,10 @@ void RigidProxy::add_holds(std::span<const PlacedSurface> surfaces, double elaps
         const Vec3 gap = touch.on_tool_m - touch.on_surface_m;
         const double height = touch.normal.dot(gap);
         const double slid = (gap - height * touch.normal).norm();
-        if (slid > kHoldSlide * radius_m_ || height > 2.0 * radius_m_)
+        const double near_m = kHoldSlide * radius_m_;
+        if (slid > near_m || height > 2.0 * radius_m_ ||
+            is_measured(touch, placed->touches->nearest.view(), near_m) ||
+            is_measured(touch, placed->touches->corners.view(), near_m))
         {
             continue;
         }

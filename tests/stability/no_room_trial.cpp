@@ -14,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -145,7 +146,8 @@ public:
             hand.position_m = place_m_;
             hand.rotation = rotation_;
             hand.sample_time_ns = has_clock_ ? kCrampedFrame_ns * (frame + 1'000) : 0;
-            hand.elapsed_periods = random_.one_in(50) ? 5 : 1;
+            hand.elapsed_periods = random_.one_in(50) ? random_.below(6U) : 1;
+            spoil(hand);
             check(rig_.step(std::span(&hand, 1), budgets_), frame, figures);
         }
     }
@@ -186,7 +188,11 @@ private:
     {
         std::vector<const TestModel*> models{cramping_models()[0], &cramped_tool_model(),
                                              cramping_models()[1], cramping_models()[2]};
-        budgets_.planes = random_.one_in(8) ? 1 + random_.below(60U) : budgets_.planes;
+        budgets_.planes = random_.one_in(8) ? random_.below(60U) : budgets_.planes;
+        budgets_.nodes = random_.one_in(12) ? random_.below(20U) : budgets_.nodes;
+        budgets_.triangles = random_.one_in(12) ? random_.below(20U) : budgets_.triangles;
+        budgets_.splits = random_.one_in(12) ? random_.below(3U) : budgets_.splits;
+        budgets_.merges = random_.one_in(12) ? random_.below(3U) : budgets_.merges;
         has_clock_ = !random_.one_in(4);
         turns_scene_ = random_.one_in(3);
         scene_turn_ = turns_scene_ ? cramped_turn(random_.in_cube(1.0), 1.0) : Mat3::Identity();
@@ -196,6 +202,7 @@ private:
         spec.core = tool_.core;
         spec.radius_m = tool_.radius_m;
         spec.smooth_m = tool_.smooth_m;
+        spec.angular_stiffness_nm_per_rad = tool_.angular_stiffness_nm_per_rad;
         spec.passes_through = tool_.passes_through;
         spec.wants_contacts = tool_.passes_through || random_.one_in(4);
         spec.wants_distance = tool_.passes_through;
@@ -246,7 +253,8 @@ private:
         Object object;
         object.model = ModelId{shown == 0 ? 0U : shown + 1};
         object.extent = extent_in_model(*cramping_models()[shown]);
-        object.scale = random_.one_in(20) ? 0.5 : 1.0;
+        constexpr std::array<double, 4> kScales{0.5, 3.0, kPoseScaleMin, kPoseScaleMax};
+        object.scale = random_.one_in(12) ? kScales[random_.below(kScales.size())] : 1.0;
         object.place_m = scene_turn_ * place_m;
         object.rotation = scene_turn_ * rotation;
         objects_.push_back(object);
@@ -392,7 +400,11 @@ private:
         case 7:
             return random_.in_cube(0.02);
         case 8:
-            return Vec3(side * 6.0, 0.0, 0.0);
+        {
+            constexpr std::array<double, 4> kFar_m{6.0, 6.0, 0.9 * kPoseReachMax_m,
+                                                   0.9 * kGoalRange_m};
+            return Vec3(side * kFar_m[random_.below(kFar_m.size())], 0.0, 0.0);
+        }
         default:
             at = Vec3(0.5 * half.x(), 0.25 * half.y(), side * (half.z() + 2.0 * reach_m));
             break;
@@ -435,6 +447,28 @@ private:
         --frames_left_;
         place_m_ += step_m_;
         rotation_ = turned_by(turn_, rotation_);
+    }
+
+    /// Now and then the device has no sample, a broken one, or was away for long.
+    void spoil(ToolState& hand)
+    {
+        switch (random_.below(1'000U))
+        {
+        case 0:
+            hand.valid = false;
+            break;
+        case 1:
+            hand.position_m[0] = std::numeric_limits<double>::quiet_NaN();
+            break;
+        case 2:
+            hand.rotation *= 0.0;
+            break;
+        case 3:
+            hand.elapsed_periods = 0xFFFF'FFFFU;
+            break;
+        default:
+            break;
+        }
     }
 
     void check(const FrameOutput& output, std::uint32_t frame, TrialFigures& figures)
@@ -496,6 +530,14 @@ std::span<const CrampedTool> cramped_tools()
         {"mesh without a radius", MeshCore{ModelId{1}}},
         {"point that measures", PointCore{}, 0.0, 0.0, true},
         {"mesh that measures", MeshCore{ModelId{1}}, 0.0, 0.0, true},
+        {"capsule without a length", Segment{}, kCrampedSize_m},
+        {"capsule without any size", Segment{}},
+        {"box without any size", Box{}},
+        {"plane", Box{Vec3(0.003, 0.002, 0.0)}},
+        {"hull of a point", Hull::create(std::array{Vec3(0.001, 0, 0)}).value()},
+        {"hull of a line", Hull::create(std::array{Vec3(0, 0, 0), Vec3(0, 0, 0.003)}).value()},
+        {"box that hardly turns", box, 0.0005, 0.0, false, 1e6},
+        {"box that turns at nothing", box, 0.0005, 0.0, false, 1e-200},
     };
     return tools;
 }

@@ -17,11 +17,13 @@ struct CrampedTool
     const char* name;
     ToolCore core;
     double radius_m{0.0};
-    double smooth_m{0.0};       ///< As ToolSpec has it.
-    bool passes_through{false}; ///< It measures, and has no force.
+    double smooth_m{0.0};                     ///< As ToolSpec has it.
+    bool passes_through{false};               ///< It measures, and has no force.
+    double angular_stiffness_nm_per_rad{0.0}; ///< As ToolSpec has it.
 };
 
-/// Every kind, with a radius and without one. A mesh is of model 1.
+/// Every kind, with a radius and without one, and cores that are no more than a point, a line or a
+/// plane. A mesh is of model 1.
 [[nodiscard]] std::span<const CrampedTool> cramped_tools();
 
 /// Episodes of 200 frames among objects that leave a tool no room or next to none: a plate that is
