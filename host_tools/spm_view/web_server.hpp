@@ -33,9 +33,9 @@ public:
         const Films* films{nullptr};     ///< To be shown in place of what is live; may be null.
     };
 
-    /// Listens on 127.0.0.1 until it is destroyed, which takes some 100 ms, and up to 2 s with a
-    /// viewer that has stopped reading. `parts` outlive it. Port 0: any that is free. Refused when
-    /// the port can't be had or a library's file isn't there.
+    /// Listens on 127.0.0.1 until it is destroyed, which takes some 100 ms. `parts` outlive it.
+    /// Port 0: any that is free. Refused when the port can't be had or a library's file isn't
+    /// there.
     [[nodiscard]] static Result<std::unique_ptr<WebServer>, Refusal> start(const Parts& parts,
                                                                            std::uint16_t port);
     WebServer(const WebServer&) = delete;

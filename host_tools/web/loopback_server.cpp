@@ -7,18 +7,17 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
-#include <ctime>
+#include <functional>
 #include <string_view>
 #include <sys/socket.h>
+#include <unistd.h>
+#include <utility>
 
 namespace tactus::web
 {
 
 namespace
 {
-
-/// For a request to come and an answer to be taken.
-constexpr time_t kPatience_s = 2;
 
 const httplib::Headers& safe_headers()
 {
@@ -32,7 +31,49 @@ const httplib::Headers& safe_headers()
     return headers;
 }
 
+/// The library's threads, which tell of each connection that waits for one.
+class Threads final : public httplib::TaskQueue
+{
+public:
+    Threads(std::size_t count, Connections& connections)
+        : connections_(connections), threads_(count)
+    {
+    }
+
+    void enqueue(std::function<void()> serve) override
+    {
+        connections_.arrive();
+        threads_.enqueue(std::move(serve));
+    }
+    void shutdown() override
+    {
+        connections_.end_all();
+        threads_.shutdown();
+    }
+
+private:
+    Connections& connections_;
+    httplib::ThreadPool threads_;
+};
+
 } // namespace
+
+PatientServer::PatientServer(std::size_t threads) : connections_(threads)
+{
+    new_task_queue = [this, threads] { return new Threads(threads, connections_); }; // It owns it.
+}
+
+bool PatientServer::process_and_close_socket(socket_t socket)
+{
+    connections_.begin(socket);
+    PeerStream stream(connections_, socket);
+    bool is_closed = false;
+    const bool is_served = process_request(stream, true, is_closed, nullptr);
+    connections_.end(socket);
+    ::shutdown(socket, SHUT_RDWR);
+    ::close(socket);
+    return is_served;
+}
 
 void answer(httplib::Response& response, int status, const std::string& text)
 {
@@ -40,19 +81,18 @@ void answer(httplib::Response& response, int status, const std::string& text)
     response.set_content(text + "\n", "text/plain; charset=utf-8");
 }
 
-LoopbackServer::LoopbackServer(std::size_t threads)
+LoopbackServer::LoopbackServer(std::size_t threads) : server_(threads)
 {
     using httplib::Request;
     using httplib::Response;
-    server_.new_task_queue = [threads] { return new httplib::ThreadPool(threads); }; // It owns it.
-    server_.set_keep_alive_max_count(1); // One that idles would hold a thread.
-    server_.set_read_timeout(kPatience_s);
-    server_.set_write_timeout(kPatience_s);
     server_.set_payload_max_length(1);
     server_.set_default_headers(safe_headers());
     server_.set_pre_routing_handler(
         [this](const Request& request, Response& response)
         {
+            // Without parts: a kilobyte can name hundreds, each as large as the whole. It is the
+            // library's own request, which it goes on with.
+            const_cast<Request&>(request).ranges.clear();
             return is_refused(request, response) ? httplib::Server::HandlerResponse::Handled
                                                  : httplib::Server::HandlerResponse::Unhandled;
         });
@@ -83,9 +123,11 @@ LoopbackServer::~LoopbackServer()
 std::optional<Refusal> LoopbackServer::start(std::uint16_t port, const char* option)
 {
     // The library's own choice lets a second server take the same port and share its visitors.
+    socket_t listening = -1;
     server_.set_socket_options(
-        [](socket_t socket)
+        [&listening](socket_t socket)
         {
+            listening = socket;
             const int yes = 1;
             ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
         });
@@ -99,6 +141,9 @@ std::optional<Refusal> LoopbackServer::start(std::uint16_t port, const char* opt
                                    "0 for any",
                                    port, std::strerror(errno), option)};
     }
+    // The library's own backlog is 5: who comes sixth in a burst waits for seconds.
+    ::listen(listening, SOMAXCONN);
+    server_.set_socket_options(nullptr);
     port_ = static_cast<std::uint16_t>(got);
     listener_ = std::thread(
         [this]

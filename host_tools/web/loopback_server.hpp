@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "host_tools/web/peer_stream.hpp"
 #include "platform/base/refusal.hpp"
 
 #include <atomic>
@@ -21,9 +22,21 @@ inline constexpr const char* kMetricsType = "text/plain; version=0.0.4; charset=
 /// Answers with a line of text.
 void answer(httplib::Response& response, int status, const std::string& text);
 
-/// A server of this machine's loopback alone: GET only, no other host's name, nothing for other
-/// pages, nothing of others in ours, no connection that idles. What it answers is declared on
-/// server() before start().
+/// The library's server, with connections that give way to others (Connections).
+class PatientServer final : public httplib::Server
+{
+public:
+    explicit PatientServer(std::size_t threads);
+
+private:
+    bool process_and_close_socket(socket_t socket) override;
+
+    Connections connections_;
+};
+
+/// A server of this machine's loopback alone: GET only, no other host's name, no parts of answers,
+/// nothing for other pages, nothing of others in ours, no connection that idles while another one
+/// waits. What it answers is declared on server() before start().
 class LoopbackServer
 {
 public:
@@ -45,7 +58,7 @@ private:
     [[nodiscard]] bool is_refused(const httplib::Request& request, httplib::Response& response);
     [[nodiscard]] bool is_ours(const std::string& authority) const;
 
-    httplib::Server server_;
+    PatientServer server_;
     std::uint16_t port_{0};
     std::atomic<bool> has_ended_{false}; ///< The listener, by itself where accept() fails.
     std::thread listener_;

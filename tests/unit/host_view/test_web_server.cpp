@@ -6,19 +6,16 @@
 #include "host_tools/spm_view/web_server.hpp"
 #include "tests/shared/test_model.hpp"
 #include "tests/unit/host_view/live_rig.hpp"
+#include "tests/unit/host_web/connection.hpp"
 #include "transport/content_hash.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <arpa/inet.h>
 #include <atomic>
 #include <memory>
-#include <netinet/in.h>
 #include <string>
-#include <sys/socket.h>
 #include <thread>
-#include <unistd.h>
 #include <utility>
 #include <vector>
 
@@ -27,48 +24,7 @@ namespace tactus::view
 namespace
 {
 
-class Connection
-{
-public:
-    explicit Connection(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_STREAM, 0))
-    {
-        sockaddr_in address = {};
-        address.sin_family = AF_INET;
-        address.sin_port = htons(port);
-        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-        EXPECT_EQ(::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)),
-                  0);
-    }
-    Connection(const Connection&) = delete;
-    Connection& operator=(const Connection&) = delete;
-    ~Connection() { ::close(socket_); }
-
-    void send(const std::string& text) const
-    {
-        // The other side may have had enough already.
-        static_cast<void>(::send(socket_, text.data(), text.size(), MSG_NOSIGNAL));
-    }
-    void end_sending() const { ::shutdown(socket_, SHUT_WR); }
-    /// Until the other side closes, or `until` has come.
-    std::string read(const std::string& until = "")
-    {
-        std::string all;
-        char bytes[4096];
-        for (ssize_t count = 1; count > 0;)
-        {
-            count = ::recv(socket_, static_cast<char*>(bytes), sizeof(bytes), 0);
-            all.append(static_cast<char*>(bytes), count > 0 ? static_cast<std::size_t>(count) : 0);
-            if (!until.empty() && all.find(until) != std::string::npos)
-            {
-                break;
-            }
-        }
-        return all;
-    }
-
-private:
-    int socket_;
-};
+using tactus::test::Connection;
 
 class WebServerTest : public ::testing::Test
 {
@@ -168,6 +124,58 @@ TEST_F(WebServerTest, survives_requests_that_are_none)
         connection.end_sending();
         EXPECT_NE(status_of(connection.read()), 200);
     }
+    EXPECT_EQ(status_of(get("/state")), 200);
+}
+
+TEST_F(WebServerTest, sends_no_parts_however_many_are_asked_for)
+{
+    const std::string whole = get("/lib/three.min.js");
+    std::string ranges = "Range: bytes=0-";
+    for (int i = 0; i < 300; ++i)
+    {
+        ranges += ",0-";
+    }
+    for (const std::string& range :
+         {ranges, std::string("Range: bytes=0-9"), ranges + "\r\n" + ranges})
+    {
+        EXPECT_EQ(get("/lib/three.min.js", range + "\r\n"), whole);
+    }
+}
+
+TEST_F(WebServerTest, answers_one_that_asks_while_forty_keep_silent)
+{
+    tactus::test::expect_answer_among_silent(sut_->port(), 40, [this] { return status_of(get("/state")); });
+}
+
+TEST_F(WebServerTest, gives_up_a_request_that_comes_byte_by_byte)
+{
+    Connection connection(sut_->port());
+    connection.send("GET /");
+    std::size_t bytes = 0;
+    for (; bytes < 8'000 && !connection.is_closed(); ++bytes) // A longer one is refused.
+    {
+        connection.send("a");
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    EXPECT_LT(bytes, 8'000U);
+    EXPECT_EQ(status_of(get("/state")), 200);
+}
+
+TEST_F(WebServerTest, gives_up_a_request_without_end)
+{
+    Connection connection(sut_->port());
+    connection.send("GET /state HTTP/1.1\r\n");
+    std::string lines;
+    for (int i = 0; i < 100; ++i)
+    {
+        lines += fmt::format("X-{}: {}\r\n", i, std::string(100, 'x'));
+    }
+    std::size_t kilobytes = 0;
+    for (; kilobytes < 100'000 && !connection.is_closed(); kilobytes += 10)
+    {
+        connection.send(lines);
+    }
+    EXPECT_LT(kilobytes, 100'000U);
     EXPECT_EQ(status_of(get("/state")), 200);
 }
 
