@@ -13,8 +13,8 @@ namespace tactus::web
 namespace
 {
 
-/// A scraper and a curious person at once.
-constexpr std::size_t kThreads = 2;
+/// A scraper and a curious person at once, and silent ones that give way one by one.
+constexpr std::size_t kThreads = 6;
 
 } // namespace
 

