@@ -530,12 +530,16 @@ TEST(Proxy, a_point_with_no_surface_near_goes_as_far_as_everything_is_clear)
 {
     ToolSpec point = ball_tool();
     point.radius_m = 0.0;
-    ProxyRig rig(std::vector<Solid>{}, Vec3(0.0, 0.0, 0.0), point);
-    rig.clear = 3.0;
-    const ToolOutput output = rig.step(Vec3(6.0, 0.0, 0.0));
-    EXPECT_NEAR(rig.sut.position_m().x(), 3.0, 1e-9);
-    EXPECT_FALSE(output.in_contact);
-    EXPECT_EQ(output.force_n, Vec3(0.0, 0.0, 0.0));
+    for (const double hand_m : {0.0, 1.0, 2.9999999, 3.1, 6.0, 7.3})
+    {
+        ProxyRig rig(std::vector<Solid>{}, Vec3(0.0, 0.0, 0.0), point);
+        rig.clear = 3.0;
+        const Vec3 hand = hand_m * Vec3(0.1, 0.7, -0.3).normalized();
+        const ToolOutput output = rig.step(hand);
+        EXPECT_NEAR(rig.sut.position_m().norm(), std::min(hand_m, 3.0), 1e-9) << hand_m;
+        EXPECT_FALSE(output.in_contact);
+        EXPECT_EQ(output.force_n, Vec3(0.0, 0.0, 0.0));
+    }
 }
 
 /// Both sides of a gap that is narrower than the ball, or of a plate that is thinner than that.
