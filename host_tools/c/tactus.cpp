@@ -481,19 +481,29 @@ void load(tactus_frame& frame)
     frame.courier->step(frame.now_ns.load(std::memory_order_relaxed));
 }
 
+/// How far an object would move what some tool may meet of it.
+double way_near_m(const tactus_frame& frame, std::uint32_t object, const Similarity& to)
+{
+    double way_m = 0.0;
+    for (const ObjectTouch& touch : frame.touches)
+    {
+        if (touch.object == object)
+        {
+            way_m = std::max(
+                way_m, way_in_ball_m(frame.places[object], to, touch.place_m, touch.radius_m));
+        }
+    }
+    return way_m;
+}
+
 /// An object's move of this frame. False where it has to go on with the next one.
 bool carry(tactus_frame& frame, SceneChange& move)
 {
     const double since_s = 1e-9 * static_cast<double>(frame.period_ns);
+    const auto way_to_m = [&](const Similarity& place)
+    { return way_near_m(frame, move.number, place); };
     Similarity& place = frame.places[move.number];
-    double way_m = 0.0;
-    for (const ObjectTouch& touch : frame.touches)
-    {
-        if (touch.object == move.number)
-        {
-            way_m = std::max(way_m, way_in_ball_m(place, move.pose, touch.place_m, touch.radius_m));
-        }
-    }
+    const double way_m = way_to_m(move.pose);
     for (const ObjectTouch& touch : frame.touches)
     {
         frame.is_outrun[touch.tool] |= touch.object == move.number && touch.is_in_reach &&
@@ -502,7 +512,8 @@ bool carry(tactus_frame& frame, SceneChange& move)
     const bool is_held = frame.belief.is_too_fast(way_m, since_s);
     if (is_held)
     {
-        static_cast<Similarity&>(move.pose) = frame.belief.held(place, move.pose, way_m, since_s);
+        static_cast<Similarity&>(move.pose) =
+            frame.belief.held(place, move.pose, since_s, way_to_m);
     }
     place = move.pose;
     return !is_held;

@@ -31,10 +31,12 @@ constexpr std::size_t first_of(std::size_t word, std::uint64_t bits) noexcept
     return word * kWordBits + static_cast<std::size_t>(std::countr_zero(bits));
 }
 
-/// Between two times of a host's clock; 0 where that is no time: what it says may be anything.
+/// Between two times of a host's clock, up to a day. Else 0: what a host says may be anything.
 std::int64_t since_ns(std::int64_t before_ns, std::int64_t now_ns) noexcept
 {
-    const bool is_time = now_ns > before_ns && (before_ns >= 0) == (now_ns >= 0);
+    constexpr std::int64_t kDay_ns = 86'400'000'000'000;
+    const bool is_time = now_ns > before_ns && (before_ns >= 0) == (now_ns >= 0) &&
+                         now_ns - before_ns <= kDay_ns;
     return is_time ? now_ns - before_ns : 0;
 }
 
@@ -391,7 +393,10 @@ void PoseDoor::move_on(std::size_t object, MonotonicTime now) noexcept
     glide.outruns = belief_.outruns(way_m, since_s);
     uses_[object].outran_frames += is_too_fast ? 1U : 0U;
     glide.is_held = is_too_fast && (glide.time > Duration{0} || !glide.outruns);
-    move_to(object, glide.is_held ? belief_.held(places_[object], wanted, way_m, since_s) : wanted);
+    move_to(object, glide.is_held ? belief_.held(places_[object], wanted, since_s,
+                                                 [&](const Similarity& place)
+                                                 { return way_near_m(object, place); })
+                                  : wanted);
     glide.is_under_way = glide.is_held || now - glide.start < glide.time;
 }
 

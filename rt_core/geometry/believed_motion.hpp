@@ -49,12 +49,29 @@ struct BelievedSpeed
     {
         return way_m > most_m(since_s + kPatience_s);
     }
-    /// Where it is carried in that time. The way of its points in reach is `way_m`, which is too
-    /// fast.
-    [[nodiscard]] Similarity held(const Similarity& from, const Similarity& to, double way_m,
-                                  double since_s) const noexcept
+    /// Where it is carried in that time: as far towards `to` as its points in reach may go, whose
+    /// way to a place is `way_to_m(place)`. That of a turn is not even: what it makes of a share of
+    /// the way is looked at, too.
+    template <typename WayTo>
+    [[nodiscard]] Similarity held(const Similarity& from, const Similarity& to, double since_s,
+                                  const WayTo& way_to_m) const noexcept
     {
-        return between(from, to, most_m(since_s) / way_m);
+        constexpr int kRounds = 16;
+        constexpr double kRounded = 1.0 + 1e-9;
+        constexpr double kLess = 0.95; // Of a way that isn't even, so that there is an end.
+        Similarity place = to;
+        double share = 1.0;
+        for (int round = 0; round < kRounds; ++round)
+        {
+            const double way_m = way_to_m(place);
+            if (!is_too_fast(way_m, since_s * kRounded))
+            {
+                return place;
+            }
+            share *= (round == 0 ? 1.0 : kLess) * most_m(since_s) / way_m;
+            place = between(from, to, share);
+        }
+        return from;
     }
 };
 
