@@ -4,6 +4,7 @@
 /// Scenes whose objects and tools come, move and go: every bracket and every clearance holds the
 /// distance that is found by trying all (I5), whatever else happens.
 
+#include "rt_core/records/object_touch.hpp"
 #include "tests/shared/face_tree.hpp"
 #include "tests/shared/frame_rig.hpp"
 #include "tests/shared/random.hpp"
@@ -202,6 +203,93 @@ TEST(SceneChanges, an_object_that_came_round_a_tool_and_was_left_makes_a_force_w
         }
         ASSERT_GT(sut.sent_n.norm(), 0.3) << "round " << round;
     }
+}
+
+/// It was far away in the last frame, and nothing was known of it.
+TEST(SceneChanges, an_object_that_leaps_into_a_tool_makes_no_force_until_the_tool_is_clear_of_it)
+{
+    Pressed sut(2);
+    const double height_m = 0.06 * sut.model.diagonal_m;
+    SceneChange change = sut.change(SceneChangeKind::object_moves, 0);
+    change.number = 1;
+    change.pose.translation_m = Vec3(0.0, 0.0, 10.0);
+    sut.rig->change(change);
+    for (int i = 0; i < 50; ++i)
+    {
+        sut.step(height_m);
+    }
+    ASSERT_EQ(sut.output.pairs.size(), 1U);
+    change.pose.translation_m.z() = height_m - 0.02 * sut.model.diagonal_m + 0.001;
+    sut.rig->change(change);
+    for (int i = 0; i < 100; ++i)
+    {
+        sut.step(height_m);
+        ASSERT_EQ(sut.sent_n, Vec3(0.0, 0.0, 0.0)) << i;
+    }
+    ASSERT_EQ(sut.output.pairs.size(), 2U);
+    EXPECT_FALSE(sut.output.pairs[1].is_joined);
+    for (int i = 0; i < 100 && !sut.output.pairs[1].is_joined; ++i)
+    {
+        sut.step(height_m + 0.0002 * i);
+        ASSERT_EQ(sut.sent_n, Vec3(0.0, 0.0, 0.0)) << i;
+    }
+    EXPECT_TRUE(sut.output.pairs[1].is_joined);
+}
+
+/// A way of 20 mm at once, which is more than 8 N / 500 N/m: to where the tool is, and to where it
+/// is not.
+TEST(SceneChanges, an_object_that_jumps_at_a_tool_is_lost_before_the_touch)
+{
+    for (const double height_m : {0.015, 0.035})
+    {
+        Pressed sut;
+        const double above_m = 0.02 * sut.model.diagonal_m + height_m;
+        for (int i = 0; i < 50; ++i)
+        {
+            sut.step(above_m);
+        }
+        ASSERT_FALSE(sut.output.tools[0].in_contact);
+        ObjectPose pose;
+        pose.translation_m = Vec3(0.0, 0.0, 0.02);
+        sut.rig->place_object(pose);
+        EXPECT_EQ(sut.step(above_m).lost_object, height_m < 0.02 + kTouchSlack_m) << height_m;
+        for (int i = 0; i < 200; ++i)
+        {
+            sut.step(above_m);
+            ASSERT_LE(sut.step_n, 2.0 * 8.0 * 1e-3 / kRiseTime_s) << i;
+        }
+    }
+}
+
+/// What moves is told only where it may change the force; what carries the proxy along always.
+TEST(SceneChanges, tell_how_far_an_object_at_the_tool_went_and_took_it_along)
+{
+    Pressed sut;
+    sut.press();
+    EXPECT_EQ(sut.output.tools[0].object_way_m, 0.0);
+    EXPECT_EQ(sut.output.tools[0].carried_m, Vec3(0.0, 0.0, 0.0));
+    ObjectPose pose;
+    for (int i = 1; i <= 10; ++i)
+    {
+        pose.translation_m = Vec3(0.0, 0.0, 1e-4 * i);
+        sut.rig->place_object(pose);
+        const ToolOutput output = sut.step(sut.pressed_m());
+        EXPECT_NEAR(output.object_way_m, 1e-4, 1e-12);
+        EXPECT_EQ(output.object_turn_rad, 0.0);
+        EXPECT_NEAR((output.carried_m - Vec3(0.0, 0.0, 1e-4)).norm(), 0.0, 1e-12);
+    }
+    pose.rotation = Eigen::AngleAxisd(1e-3, Vec3::UnitX()).toRotationMatrix();
+    sut.rig->place_object(pose);
+    const ToolOutput turned = sut.step(sut.pressed_m());
+    EXPECT_NEAR(turned.object_turn_rad, 1e-3, 1e-9);
+    EXPECT_GE(turned.object_way_m, turned.carried_m.norm());
+    for (int i = 0; i < 300; ++i)
+    {
+        sut.step(0.5 * sut.model.diagonal_m);
+    }
+    pose.translation_m.z() += 1e-4;
+    sut.rig->place_object(pose);
+    EXPECT_EQ(sut.step(0.5 * sut.model.diagonal_m).object_way_m, 0.0);
 }
 
 TEST(SceneChanges, an_object_that_comes_beside_a_touch_leaves_its_force_as_it_is)
