@@ -7,6 +7,7 @@
 #include "platform/hrtc/messages.hpp"
 #include "platform/hrtc/options.hpp"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -23,6 +24,9 @@ enum class InjectedFault : std::uint8_t
     sleep,      ///< The processor is given away.
 };
 inline constexpr std::size_t kInjectedFaults = 4;
+/// In the order of InjectedFault.
+inline constexpr std::array<const char*, kInjectedFaults> kInjectedFaultNames{
+    "overrun", "page fault", "allocation", "sleep"};
 
 /// Which frames of a self-check are spoilt, and how.
 struct InjectionPlan
@@ -42,9 +46,10 @@ void inject(InjectedFault fault, Duration period) noexcept;
 struct SelfCheck
 {
     std::uint64_t injected{0};
-    std::uint64_t flagged{0};       ///< Of these, as what they were.
-    std::uint64_t false_flags{0};   ///< Own faults in frames that were not spoilt.
-    bool allocations_counted{true}; ///< False: this build can't, and none was injected.
+    std::uint64_t flagged{0};              ///< Of these, as what they were.
+    std::uint64_t false_flags{0};          ///< Own faults in frames that were not spoilt.
+    bool allocations_counted{true};        ///< False: this build can't, and none was injected.
+    std::optional<std::uint64_t> unseen{}; ///< The first spoilt frame that was not flagged so.
 
     [[nodiscard]] bool is_passed() const noexcept
     {
