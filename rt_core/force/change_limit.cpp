@@ -27,10 +27,11 @@ bool hold_spring(SpringForce& spring, const Vec3& last, const Vec3& rest, bool i
     return has_acted;
 }
 
-/// 0 where it isn't known.
-double norm_within(const Vec3& way, double most) noexcept
+/// How far a hand went by itself: where it goes along with what carries its tool that counts as the
+/// object's way. 0 where it isn't known.
+double own_way(const Vec3& way, const Vec3& carried, double most) noexcept
 {
-    const double norm = way.norm();
+    const double norm = std::min(way.norm(), (way - carried).norm());
     return std::isfinite(norm) ? std::min(norm, most) : 0.0;
 }
 
@@ -70,10 +71,10 @@ bool ChangeLimit::hold(ToolForce& force, const ToolPeriod& period) noexcept
 ChangeLimit::Steps ChangeLimit::steps(const ToolForce& force, const ToolPeriod& period) noexcept
 {
     const double arm = rule_.arm_m;
-    const double hand =
-        norm_within(period.hand_m - hand_m_, rule_.hand_speed_max_m_per_s * period_s_);
-    const double turned =
-        norm_within(period.turned_rad - turned_rad_, kTurningMax_rad_per_s * period_s_);
+    const double hand = own_way(period.hand_m - hand_m_, period.carried_m,
+                                rule_.hand_speed_max_m_per_s * period_s_);
+    const double turned = own_way(period.turned_rad - turned_rad_, period.carried_rad,
+                                  kTurningMax_rad_per_s * period_s_);
     const double objects = std::min(rule_.object_speed_max_m_per_s * period_s_,
                                     period.object_way_m + arm * period.object_turn_rad);
     hand_m_ = period.hand_m;

@@ -32,11 +32,12 @@ struct ChangeRule
 ///
 /// K and A are the stiffnesses in use, `hand` and `turned` what the device has measured in this
 /// period and `objects` what the frame believes of those in reach: how far they went, and arm x
-/// their turn. A surface that stays as it is changes the force by no more, since a proxy among
-/// planes goes no farther than its hand, in the metric of the spring's energy. The slew is for all
-/// else: another normal, a material, damping, a program's force, and a touch that begins with a
-/// spring that is already long, which so rises from zero. It counts one period, however long a
-/// stall.
+/// their turn. A hand that goes along with what carries its tool is counted
+/// by what it goes beside that, so that nothing is counted twice. A surface that stays as it is
+/// changes the force by no more, since a proxy among planes goes no farther than its hand, in the
+/// metric of the spring's energy. The slew is for all else: another normal, a material, damping, a
+/// program's force, and a touch that begins with a spring that is already long, which so rises from
+/// zero. It counts one period, however long a stall.
 ///
 /// Downward all is let through where the tool touches nothing any more, to what the program itself
 /// wanted, and where a cause fades it, to zero. What is let through is bounded in its direction,

@@ -41,8 +41,8 @@ inline constexpr double kBackStep_n = 2.0 * 8.0 * kPeriod_s / kRiseTime_s + kOwn
 class PressingHand final : public HandMotion
 {
 public:
-    PressingHand(const Vec3& place_m, const Vec3& outward, double height_m)
-        : place_m_(place_m), outward_(outward), height_m_(height_m)
+    PressingHand(const Vec3& place_m, const Vec3& outward, double height_m, double press_m)
+        : place_m_(place_m), outward_(outward), height_m_(height_m), press_m_(press_m)
     {
     }
     [[nodiscard]] Vec3 start_world_m() const noexcept override
@@ -52,13 +52,14 @@ public:
     [[nodiscard]] Vec3 next_world_m(const HandSense& sense) noexcept override
     {
         const double done = std::min(static_cast<double>(sense.frame) / 500.0, 1.0);
-        return place_m_ + (height_m_ - done * (height_m_ + kPress_m)) * outward_;
+        return place_m_ + (height_m_ - done * (height_m_ + press_m_)) * outward_;
     }
 
 private:
     Vec3 place_m_;
     Vec3 outward_;
     double height_m_;
+    double press_m_;
 };
 
 /// A device as it is, but for what a test does in its readings; keeps what was written.
@@ -122,6 +123,10 @@ struct LoopRigOptions
     bool static_model{false};
     bool has_door{false};                   ///< Objects stand where door() says.
     double object_speed_m_per_s{kInfinity}; ///< Believed of them.
+    /// The same of the last stage of the force; none: no less than the door.
+    std::optional<double> change_speed_m_per_s;
+    DeviceLimits device{kDeskClass};
+    double press_m{kPress_m}; ///< Below zero: the hand comes to rest above the surface.
     std::uint64_t frames{2'000};
     double speed_max_m_per_s{10.0};
     double stiffness_n_per_m{500.0};
@@ -158,6 +163,8 @@ public:
         tool().spec = frames_.frame().tool(0).spec();
         tool().conditioner.device = device_limits;
         tool().conditioner.period_s = kPeriod_s;
+        tool().change.object_speed_max_m_per_s =
+            options_.change_speed_m_per_s.value_or(options_.object_speed_m_per_s);
         LoopParts parts;
         parts.frame = &frames_.frame();
         parts.tools = tools_;
@@ -303,10 +310,11 @@ private:
             model_.faces, {}, [&](const auto& face) { return middle(face).x(); }));
         SimulatedDeviceOptions device;
         device.clock = &clock();
+        device.device = options_.device;
         device.watchdog = options_.watchdog;
         device.workspace_centre_world_m = place;
-        auto hand =
-            std::make_unique<PressingHand>(place, Vec3::UnitX(), kStartHeight * model_.diagonal_m);
+        auto hand = std::make_unique<PressingHand>(
+            place, Vec3::UnitX(), kStartHeight * model_.diagonal_m, options_.press_m);
         tool().device = std::make_unique<TamperedDevice>(
             std::move(SimulatedDevice::create(device, std::move(hand))).value(), options_.faults,
             [this](std::uint64_t frame, DeviceSample& sample)

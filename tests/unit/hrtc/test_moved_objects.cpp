@@ -6,8 +6,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <functional>
 
 namespace tactus::hrtc::test
@@ -264,6 +266,62 @@ TEST(MovedObject, that_strikes_before_the_touch_is_felt_as_no_more_than_is_belie
         }
     }
     EXPECT_GT(unbelieved_n, 4.0);
+}
+
+/// How far a force is from what the last one may fall to.
+double growth_n(const Vec3& before_n, const Vec3& now_n)
+{
+    double least = kInfinity;
+    for (int share = 0; share <= 1'000; ++share)
+    {
+        least = std::min(least, (now_n - 1e-3 * share * before_n).norm());
+    }
+    return least;
+}
+
+/// An object that leaps over a hand at rest before it, believed without end by all stages but the
+/// last one. 0.5 mm of its way count there, and the slew.
+TEST(MovedObject, that_leaps_over_a_hand_is_felt_step_by_step_whatever_is_believed_of_it)
+{
+    const std::array<std::pair<DeviceLimits, double>, 2> devices{
+        {{kOmegaClass, 0.5}, {kTouchClass, 0.25}}};
+    for (const auto& [device, most_n] : devices)
+    {
+        for (const double leap_m : {0.012, 0.015, 0.025})
+        {
+            for (const double off_m : {0.0002, 0.001, 0.004})
+            {
+                LoopRigOptions options;
+                options.device = device;
+                options.press_m = -off_m - 0.01 * tactus::test::small_model(0).diagonal_m;
+                options.has_door = true;
+                options.change_speed_m_per_s = 0.5;
+                options.meanwhile = [leap_m](LoopRig& rig, std::uint64_t frame)
+                {
+                    ObjectPose pose = rig.placed();
+                    pose.translation_m.x() += frame < kSettled ? 0.0 : leap_m;
+                    rig.door().put(0, pose, rig.clock().now());
+                };
+                LoopRig rig(options);
+                rig.run();
+                double growth = 0.0;
+                double felt_n = 0.0;
+                for (std::uint64_t frame = kSettled; frame < 1'900; ++frame)
+                {
+                    growth =
+                        std::max(growth, growth_n(rig.written_n(frame - 1), rig.written_n(frame)));
+                    felt_n = std::max(felt_n, rig.written_n(frame).norm());
+                }
+                EXPECT_EQ(rig.largest_step_n(0, kSettled - 1), 0.0) << "before it nothing is felt";
+                EXPECT_LE(growth, most_n) << leap_m << " m from " << off_m << " m";
+                EXPECT_GT(felt_n, 1.0) << leap_m << " m from " << off_m << " m";
+                EXPECT_GT(rig.frames_with(ForceAction::change_limited), 0U);
+                std::printf("leap of %.0f mm from %.1f mm, device of %.1f N: %.3f N a period, %.1f "
+                            "N at most\n",
+                            1e3 * leap_m, 1e3 * off_m, device.force_max_n, growth, felt_n);
+            }
+        }
+    }
 }
 
 TEST(MovedObject, of_an_honest_host_is_felt_as_if_all_were_believed)

@@ -117,6 +117,24 @@ TEST(ChangeLimit, of_hand_and_objects_only_as_much_counts_as_is_believed)
     EXPECT_NEAR(tool.step(Vec3(8, 0, 0)).x(), before_n + 2 * kSlew_n, kTight) << "nor from there";
 }
 
+TEST(ChangeLimit, a_hand_that_goes_along_with_an_object_counts_with_it_and_not_twice)
+{
+    LimitedChange tool;
+    const Vec3 way(0.0, 3e-4, 0.0);
+    tool.period.object_way_m = 3e-4;
+    tool.period.carried_m = way;
+    double before_n = 0.0;
+    for (const double share : {1.0, 0.0, 0.5, 2.0})
+    {
+        tool.period.hand_m += share * way;
+        const double beside_m = std::min(share, std::abs(share - 1.0)) * 3e-4;
+        EXPECT_NEAR(tool.step(Vec3(8, 0, 0)).x() - before_n, 500.0 * (beside_m + 3e-4) + kSlew_n,
+                    kTight)
+            << share;
+        before_n = tool.last.push.force_n.x();
+    }
+}
+
 TEST(ChangeLimit, a_force_doesnt_turn_round_at_once)
 {
     LimitedChange tool;
