@@ -29,6 +29,9 @@ constexpr double kMostViscous = 1e6;
 /// After a longer step than this share of the radius other planes hold.
 constexpr double kLongMotion = 0.25;
 
+/// Of a tool's size, its arm.
+constexpr double kLeastArm = 1e-3;
+constexpr double kMostArm = 1e6;
 /// A core that is a point, without a radius, is as large.
 constexpr double kLeastSkin_m = 1e-9;
 
@@ -69,12 +72,16 @@ double size_of(const ToolSpec& spec) noexcept
     return core_m + skin_of(spec, core_m);
 }
 
-/// Of the metric: its square is the angular stiffness over the stiffness.
+/// Of the metric: its square is the angular stiffness over the stiffness. What is farther from the
+/// tool's size would only leave the range of what is computed.
 double arm_of(const ToolSpec& spec) noexcept
 {
+    const double size_m = size_of(spec);
     const bool is_set = spec.angular_stiffness_nm_per_rad > 0.0 && spec.stiffness_n_per_m > 0.0;
-    return is_set ? std::sqrt(spec.angular_stiffness_nm_per_rad / spec.stiffness_n_per_m)
-                  : size_of(spec);
+    return is_set
+               ? std::clamp(std::sqrt(spec.angular_stiffness_nm_per_rad / spec.stiffness_n_per_m),
+                            kLeastArm * size_m, kMostArm * size_m)
+               : size_m;
 }
 
 } // namespace

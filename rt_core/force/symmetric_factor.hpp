@@ -5,6 +5,7 @@
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/force/half_spaces.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tactus
@@ -29,7 +30,9 @@ public:
                 {
                     sum -= lower_(row, k) * lower_(column, k);
                 }
-                lower_(row, column) = row == column ? std::sqrt(sum) : sum / lower_(column, column);
+                // On the diagonal 1 or more, but for what is rounded off where others are huge.
+                lower_(row, column) =
+                    row == column ? std::sqrt(std::max(sum, 0.5)) : sum / lower_(column, column);
             }
         }
     }
