@@ -31,12 +31,16 @@ Result<Done, Refusal> write_whole(const std::filesystem::path& path,
 
 } // namespace
 
-Result<LastInputs, Refusal> write_last_inputs(FrameTap& tap, const FrameSetup& setup)
+Result<KeptInputs, Refusal> write_last_inputs(const LastInputs& inputs,
+                                              const std::optional<GivenFrame>& failed,
+                                              const FrameSetup& setup)
 {
     RecordingWriter writer(to_recorded(setup));
-    for (std::vector<std::byte> coded; tap.try_take(coded);)
+    inputs.write_to(writer);
+    if (failed) // Without the pieces of models that it took from the door: nobody keeps them.
     {
-        writer.add_frame(coded);
+        FrameEncoder encoder;
+        writer.add_frame(encoder.encode_given({failed->input, {}, failed->devices}));
     }
     writer.finish(kNoFrame);
     const std::vector<std::byte> bytes = writer.take_bytes();
@@ -52,7 +56,7 @@ Result<LastInputs, Refusal> write_last_inputs(FrameTap& tap, const FrameSetup& s
     {
         return written.error();
     }
-    return LastInputs{path.string(), writer.frames()};
+    return KeptInputs{path.string(), writer.frames()};
 }
 
 } // namespace tactus::hrtc

@@ -3,17 +3,18 @@
 #pragma once
 
 #include "platform/base/refusal.hpp"
-#include "platform/recording/frame_tap.hpp"
+#include "platform/recording/last_inputs.hpp"
 #include "rt_core/frame/frame.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace tactus::hrtc
 {
 
 /// What is left of a run that failed and was not recorded.
-struct LastInputs
+struct KeptInputs
 {
     std::string path;
     std::uint64_t frames{0};
@@ -23,6 +24,9 @@ struct LastInputs
 /// moves the hand again: hrtc-failed-PID.rec in the working directory or, where that can't be
 /// written, in the one for temporary files. A frame's state rests on all frames before it, so only
 /// a recording of the whole run replays it. Once no frame runs any more; not the haptic thread.
-[[nodiscard]] Result<LastInputs, Refusal> write_last_inputs(FrameTap& tap, const FrameSetup& setup);
+/// `failed`: none where it failed between frames.
+[[nodiscard]] Result<KeptInputs, Refusal> write_last_inputs(const LastInputs& inputs,
+                                                            const std::optional<GivenFrame>& failed,
+                                                            const FrameSetup& setup);
 
 } // namespace tactus::hrtc

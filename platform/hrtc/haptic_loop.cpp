@@ -149,6 +149,10 @@ void HapticLoop::record(const FrameInput& input, const FrameOutput& output) noex
     {
         parts_.tap->record(input, output, devices_);
     }
+    if (parts_.last_inputs != nullptr)
+    {
+        parts_.last_inputs->keep(input, devices_);
+    }
     is_recorded_ = true;
 }
 

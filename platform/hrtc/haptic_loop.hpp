@@ -14,6 +14,7 @@
 #include "platform/hrtc/trace_tap.hpp"
 #include "platform/periodic_timer.hpp"
 #include "platform/recording/frame_tap.hpp"
+#include "platform/recording/last_inputs.hpp"
 #include "platform/remote/pose_door.hpp"
 #include "rt_core/frame/frame.hpp"
 
@@ -38,6 +39,7 @@ struct LoopParts
     Budgets budgets;                       ///< Of every frame, when there is no governor.
     BudgetGovernor* governor{nullptr};     ///< Chooses each frame's budgets; may be none.
     FrameTap* tap{nullptr};                ///< Takes every frame for a recording; may be none.
+    LastInputs* last_inputs{nullptr};      ///< Takes every frame's hands; may be none.
     std::uint64_t frames{0};               ///< How many to run.
     bool is_virtual{false};                ///< No time is measured: others work on the thread, too.
     const ModelMarks* hosts_gone{nullptr}; ///< May be none.

@@ -8,16 +8,12 @@
 namespace tactus
 {
 
-FrameTap::FrameTap(std::size_t cells, Keeps keeps) : keeps_(keeps), cells_(cells), queue_(cells_) {}
+FrameTap::FrameTap(std::size_t cells) : cells_(cells), queue_(cells_) {}
 
 void FrameTap::record(const FrameInput& input, const FrameOutput& output,
                       std::span<const DeviceRecord> devices) noexcept
 {
-    if (keeps_ == Keeps::last_inputs)
-    {
-        put(encoder_.encode_given({input, {}, devices}));
-    }
-    else if (lost_from_.load(std::memory_order_relaxed) == kNoFrame) // Only this thread writes it.
+    if (lost_from_.load(std::memory_order_relaxed) == kNoFrame) // Only this thread writes it.
     {
         put(encoder_.encode(input, output, devices));
     }
@@ -27,20 +23,13 @@ void FrameTap::record_failed(const GivenFrame& frame) noexcept
 {
     if (lost_from_.load(std::memory_order_relaxed) == kNoFrame)
     {
-        const bool has_pieces = keeps_ == Keeps::run;
-        put(encoder_.encode_given(
-            {frame.input, has_pieces ? frame.door : DoorTake{}, frame.devices}));
+        put(encoder_.encode_given(frame));
     }
 }
 
 void FrameTap::put(std::span<const std::byte> coded) noexcept
 {
     const std::size_t needed = (coded.size() + sizeof(Cell) - 1) / sizeof(Cell);
-    while (keeps_ == Keeps::last_inputs && queue_.capacity() - queue_.size() < needed &&
-           queue_.size() > 0)
-    {
-        drop_oldest();
-    }
     if (queue_.capacity() - queue_.size() < needed)
     {
         lost_from_.store(frames_, std::memory_order_relaxed); // See lost_from().
@@ -53,18 +42,6 @@ void FrameTap::put(std::span<const std::byte> coded) noexcept
         std::memcpy(cell.data(), coded.data(), std::min(coded.size(), sizeof(Cell)));
         const bool pushed = queue_.try_push(cell);
         TACTUS_ASSERT(pushed);
-    }
-}
-
-void FrameTap::drop_oldest() noexcept
-{
-    Cell cell;
-    bool is_there = queue_.try_pop(cell);
-    std::uint32_t body = 0;
-    std::memcpy(&body, cell.data(), sizeof(body));
-    for (std::size_t got = sizeof(Cell); is_there && got < sizeof(body) + body; got += sizeof(Cell))
-    {
-        is_there = queue_.try_pop(cell);
     }
 }
 

@@ -17,20 +17,14 @@ namespace tactus
 {
 
 /// Carries coded frames from the haptic thread to whoever writes them, through a queue of fixed
-/// size. The haptic thread never waits. Of a run, a frame that finds no room is lost, and with it
-/// all later ones, since a replay can't go past a gap. Where only the last inputs are kept, for
-/// when the run fails, it takes the room of the oldest.
+/// size. The haptic thread never waits: a frame that finds no room is lost, and with it all later
+/// ones, since a replay can't go past a gap.
 class FrameTap
 {
 public:
-    enum class Keeps : std::uint8_t
-    {
-        run,         ///< All that a replay needs.
-        last_inputs, ///< What the last frames were given, but for pieces of models.
-    };
     /// Room for `cells` of 64 B; a frame of one tool and model takes 3 to 8, an object that
     /// its host moves 2 more, an arrival a third.
-    explicit FrameTap(std::size_t cells = kUsualCells, Keeps keeps = Keeps::run);
+    explicit FrameTap(std::size_t cells = kUsualCells);
 
     /// A second or more of usual frames: 1 MiB.
     static constexpr std::size_t kUsualCells = 16'384;
@@ -42,7 +36,7 @@ public:
     /// Likewise of a frame that failed, the last. Any thread once the haptic one records no more.
     void record_failed(const GivenFrame& frame) noexcept;
 
-    /// The other thread, one, and of the last inputs once nothing is recorded any more: the next
+    /// The other thread, one: the next
     /// coded frame into `frame`, as FrameEncoder coded it; false when none waits. Allocates.
     [[nodiscard]] bool try_take(std::vector<std::byte>& frame);
 
@@ -56,9 +50,7 @@ private:
     using Cell = std::array<std::byte, 64>;
 
     void put(std::span<const std::byte> coded) noexcept;
-    void drop_oldest() noexcept;
 
-    Keeps keeps_;
     FrameEncoder encoder_;
     std::vector<Cell> cells_;
     SpscQueue<Cell> queue_;

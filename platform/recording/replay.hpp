@@ -49,8 +49,8 @@ struct ReplayWatch
 /// Makes a frame as the recorded one was made, gives it the recorded inputs, arrivals and link
 /// updates of every frame, and compares what comes out with the recorded hashes. Stops at the first
 /// difference. Needs no device, network, timer or thread; takes the pools' memory, and the time of
-/// the frames. Refused when no frame can be made of the set-up, or the recording doesn't keep a run.
-/// A frame that failed in the run fails its assertion here, too; where it doesn't, that is the
+/// the frames. Refused when no frame can be made of the set-up, or the recording doesn't keep a
+/// run. A frame that failed in the run fails its assertion here, too; where it doesn't, that is the
 /// difference.
 ///
 /// Pages are linked here anew, by the same Linker in the recorded order, and compared, too.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "platform/recording/frame_tap.hpp"
+#include "platform/recording/last_inputs.hpp"
+#include "platform/recording/recording.hpp"
 #include "tests/unit/recording/recorded_example.hpp"
 
 #include <gtest/gtest.h>
@@ -72,26 +74,42 @@ TEST(FrameTap, loses_all_frames_from_the_first_that_finds_no_room)
     EXPECT_EQ(sut.lost_from(), 1U);
 }
 
-TEST(FrameTap, of_the_last_inputs_keeps_the_newest_and_the_frame_that_failed)
+TEST(LastInputs, keeps_the_newest_in_order)
 {
-    ExampleFrame frame;
-    FrameTap sut(32, FrameTap::Keeps::last_inputs);
-    for (std::int64_t number = 0; number < 1'000; ++number)
+    const TinyModel model = make_tiny_model({});
+    for (const std::int64_t frames : {0, 1, 4, 5, 6, 1'003})
     {
-        record(sut, frame, number);
+        LastInputs sut(2, 11); // Five frames, and a sample too few for a sixth.
+        std::array<ToolState, 2> tools{};
+        std::array<DeviceRecord, 2> devices{};
+        for (std::int64_t number = 0; number < frames; ++number)
+        {
+            tools[0].sample_time_ns = number;
+            tools[1].position_m.x() = static_cast<double>(number);
+            devices[1].buttons = static_cast<std::uint32_t>(number);
+            sut.keep({tools, {}, {}, number}, devices);
+        }
+        RecordedSetup setup = example_setup(model);
+        setup.tools.resize(2);
+        RecordingWriter writer(setup);
+        sut.write_to(writer);
+        writer.finish(kNoFrame);
+        EXPECT_EQ(writer.frames(), static_cast<std::uint64_t>(std::min<std::int64_t>(frames, 5)));
+        const auto recording = Recording::parse(writer.take_bytes(), "last.rec");
+        ASSERT_TRUE(recording) << recording.error().text;
+        FrameDecoder decoder(recording.value().shape());
+        std::int64_t number = std::max<std::int64_t>(frames - 5, 0);
+        for (ByteReader reader(recording.value().frames()); !reader.at_end(); ++number)
+        {
+            ASSERT_EQ(decoder.decode(reader), nullptr);
+            EXPECT_FALSE(decoder.frame().has_hashes);
+            EXPECT_EQ(decoder.frame().now_ns, number);
+            EXPECT_EQ(decoder.frame().tools[0].sample_time_ns, number);
+            EXPECT_EQ(decoder.frame().tools[1].position_m.x(), static_cast<double>(number));
+            EXPECT_EQ(decoder.frame().devices[1].buttons, static_cast<std::uint32_t>(number));
+        }
+        EXPECT_EQ(number, frames);
     }
-    frame.tools[0].sample_time_ns = 1'000;
-    sut.record_failed({frame.input(), frame.door, frame.devices});
-    EXPECT_EQ(sut.lost_from(), kNoFrame);
-    FrameDecoder decoder(kExampleShape); // Each frame can be the first.
-    const std::vector<std::int64_t> kept = take_all(sut, decoder);
-    ASSERT_GE(kept.size(), 2U);
-    EXPECT_LE(kept.size(), 8U);
-    EXPECT_EQ(kept.back(), 1'000);
-    EXPECT_EQ(kept.front(), 1'001 - static_cast<std::int64_t>(kept.size()));
-    EXPECT_FALSE(decoder.frame().has_hashes);
-    EXPECT_TRUE(decoder.frame().events.empty()) << "nobody keeps the pieces";
-    EXPECT_EQ(decoder.frame().budgets, frame.budgets);
 }
 
 TEST(FrameTap, of_a_run_ends_with_the_frame_that_failed_unless_one_is_lost)
