@@ -15,8 +15,9 @@ namespace tactus
 namespace
 {
 
-/// A hold is kept until the tool has slid this share of its radius, or touches as near to it: with
-/// the plane of where it was a tool would rest beside an edge that it should slide off.
+/// A hold is kept until the tool has slid this share of its radius. Of a tool that has come to rest
+/// it goes where a touch is as near: held by a plane of where it was, a tool would rest beside an
+/// edge that it should slide off. One that still rocks needs both ends of what it lies on.
 constexpr double kHoldSlide = 0.05;
 /// Cosine between the normals of holds that are one.
 constexpr double kSameDirection = 0.999;
@@ -264,6 +265,7 @@ ToolOutput RigidProxy::respond(const ToolGoal& goal, std::span<const PlacedSurfa
     is_squeezed_ = false;
     is_crowded_ = false;
     goes_on_ = false;
+    was_still_ = went_m_ <= kLeastMotion * radius_m_;
     went_m_ = 0.0;
     is_joined_ = is_joined_ || room.is_clear();
     if (!is_joined_)
@@ -447,7 +449,7 @@ void RigidProxy::add(const BodyTouch& touch, const PlacedSurface& placed, double
     planes_->add(touch, grip);
 }
 
-/// Adds what held before, and forgets where the tool is no longer, or is known to touch now.
+/// Adds what held before, and forgets where the tool is no longer, or rests and is measured now.
 void RigidProxy::add_holds(std::span<const PlacedSurface> surfaces, double elapsed_s) noexcept
 {
     std::size_t kept = 0;
@@ -467,9 +469,10 @@ void RigidProxy::add_holds(std::span<const PlacedSurface> surfaces, double elaps
         const double height = touch.normal.dot(gap);
         const double slid = (gap - height * touch.normal).norm();
         const double near_m = kHoldSlide * radius_m_;
-        if (slid > near_m || height > 2.0 * radius_m_ ||
-            is_measured(touch, placed->touches->nearest.view(), near_m) ||
-            is_measured(touch, placed->touches->corners.view(), near_m))
+        const bool is_old =
+            was_still_ && (is_measured(touch, placed->touches->nearest.view(), near_m) ||
+                           is_measured(touch, placed->touches->corners.view(), near_m));
+        if (slid > near_m || height > 2.0 * radius_m_ || is_old)
         {
             continue;
         }
