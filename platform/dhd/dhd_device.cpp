@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <thread>
 #include <utility>
 
@@ -20,6 +21,16 @@ namespace
 
 /// How far the SDK's frames may be from orthonormal: they are products of calibrated joints.
 constexpr double kFrameTolerance = 1e-3;
+
+/// The SDK's.
+constexpr Duration kWatchdogStep = microseconds(125);
+
+/// At most as many as the SDK takes: 32 ms.
+std::uint8_t watchdog_steps(Duration time)
+{
+    return static_cast<std::uint8_t>(std::min<std::int64_t>(
+        time.ns / kWatchdogStep.ns, std::numeric_limits<std::uint8_t>::max()));
+}
 
 Refusal refuse_device(std::string line)
 {
@@ -177,6 +188,7 @@ DhdDevice::DhdDevice(DhdLibrary library, char id, const DeviceInfo& info,
     , has_wrist_(library_->dhdHasWrist(id))
     , has_gripper_(library_->dhdHasGripper(id))
     , period_(options.period)
+    , watchdog_steps_(watchdog_steps(options.times.force_hold))
     , id_(id)
 {
 }
@@ -282,6 +294,10 @@ bool DhdDevice::is_held() const noexcept
 bool DhdDevice::obey(const DeviceCommand& command) noexcept
 {
     const DhdFunctions& sdk = *library_;
+    const MonotonicTime now = clock().now();
+    // The device's watchdog may have disabled the forces meanwhile.
+    makes_forces_ = makes_forces_ && now - obeyed_ < kWatchdogStep * watchdog_steps_;
+    obeyed_ = now;
     bool is_done = true;
     if (command.state == DeviceState::brake)
     {
@@ -295,6 +311,10 @@ bool DhdDevice::obey(const DeviceCommand& command) noexcept
         {
             static_cast<void>(sdk.dhdSetBrakes(0, id_));
             is_done = sdk.dhdEnableForce(1, id_) >= 0;
+            if (sdk.dhdSetWatchdog != nullptr)
+            {
+                sdk.dhdSetWatchdog(watchdog_steps_, id_); // Devices without one refuse.
+            }
         }
         is_done = is_done && set_force(command);
     }

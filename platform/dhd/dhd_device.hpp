@@ -49,7 +49,8 @@ struct DhdDeviceOptions
 ///
 /// brake() is acted on in the I/O thread's next turn: it sets zero force, then the device's own
 /// brakes. While a call into the SDK hangs nobody can do so; the device's own electronics must end
-/// the force then, as the maker's do.
+/// the force then. Its watchdog is set to the time of a force's hold, as far as device and SDK have
+/// one; it ends the force of a program that has died, too.
 class DhdDevice final : public RemoteDevice
 {
 public:
@@ -87,6 +88,7 @@ private:
     const bool has_wrist_;
     const bool has_gripper_;
     const Duration period_;
+    const std::uint8_t watchdog_steps_; ///< Of the device's own watchdog.
     std::atomic<bool> is_stopped_{false};
 
     // The I/O thread's.
@@ -94,6 +96,7 @@ private:
     bool is_open_{true};
     bool is_new_{true};        ///< Nothing was read since it was opened.
     bool makes_forces_{false}; ///< Brakes are off, forces enabled.
+    MonotonicTime obeyed_;     ///< When the device was last told a force.
 
     std::optional<RtThread> thread_; ///< Ends before anything that it uses.
 };

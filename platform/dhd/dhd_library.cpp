@@ -89,6 +89,7 @@ const char* DhdLibrary::find_functions() noexcept
     want("dhdSetBrakes", functions_.dhdSetBrakes);
     want("dhdEnableForce", functions_.dhdEnableForce);
     want("dhdErrorGetLastStr", functions_.dhdErrorGetLastStr);
+    find(handle_, "dhdSetWatchdog", functions_.dhdSetWatchdog); // It may be missing.
     return missing;
 }
 

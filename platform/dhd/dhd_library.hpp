@@ -40,6 +40,9 @@ struct DhdFunctions
     int (*dhdSetBrakes)(int on, char id);
     int (*dhdEnableForce)(unsigned char on, char id);
     const char* (*dhdErrorGetLastStr)(); ///< Of the last failure.
+    /// Null in SDKs before 3.3.2. After that time without a force, in steps of 125 us, the device
+    /// itself disables its forces, whatever has become of the program; 0: never.
+    int (*dhdSetWatchdog)(unsigned char steps, char id);
 };
 
 /// The SDK, loaded when it is asked for and given back at the end of its life.

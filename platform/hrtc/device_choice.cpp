@@ -3,6 +3,7 @@
 #include "platform/hrtc/device_choice.hpp"
 
 #include "platform/dhd/dhd_device.hpp"
+#include "platform/dhd/dhd_guard.hpp"
 #include "platform/hrtc/recorded_motion.hpp"
 #include "platform/plugin/device_plugin.hpp"
 #include "platform/simulated/device_classes.hpp"
@@ -235,6 +236,26 @@ Result<std::unique_ptr<HapticDevice>, Refusal> open_device(const DeviceChoice& c
     options.frame = frame.value();
     options.clock = &clock;
     return as_device(DhdDevice::create(options));
+}
+
+bool wants_guard(const DeviceChoice& choice) noexcept
+{
+    return choice.kind == DeviceKind::dhd || choice.kind == DeviceKind::plugin;
+}
+
+Result<std::unique_ptr<DeviceGuard>, Refusal> open_guard(const DeviceChoice& choice,
+                                                         std::int64_t rate_hz)
+{
+    if (choice.kind == DeviceKind::dhd)
+    {
+        return DhdGuard::create(DhdDeviceOptions{}.library, choice.index);
+    }
+    auto frame = DeviceFrame::create(choice.frame);
+    if (!frame)
+    {
+        return frame.error();
+    }
+    return load_guard(choice.library, {rate_hz, frame.value(), choice.words.c_str()});
 }
 
 } // namespace tactus::hrtc

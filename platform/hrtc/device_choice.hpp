@@ -4,6 +4,7 @@
 
 #include "platform/base/refusal.hpp"
 #include "platform/clock.hpp"
+#include "platform/device_guard.hpp"
 #include "platform/haptic_device.hpp"
 #include "platform/hrtc/placement.hpp"
 #include "platform/simulated/device_classes.hpp"
@@ -75,5 +76,12 @@ struct DeviceWait
                                                                          std::size_t tool,
                                                                          const DeviceWait& wait,
                                                                          const Clock& clock);
+
+/// Whether the device is this machine's, and holds a force that its program has left to it.
+[[nodiscard]] bool wants_guard(const DeviceChoice& choice) noexcept;
+
+/// In the guardian's process: what brakes such a device; none where its library has none.
+[[nodiscard]] Result<std::unique_ptr<DeviceGuard>, Refusal> open_guard(const DeviceChoice& choice,
+                                                                       std::int64_t rate_hz);
 
 } // namespace tactus::hrtc

@@ -4,6 +4,7 @@
 
 #include "host_tools/cli/stop_signals.hpp"
 #include "platform/base/atomic_file.hpp"
+#include "platform/hrtc/device_choice.hpp"
 #include "platform/hrtc/histogram_files.hpp"
 #include "platform/hrtc/recorder.hpp"
 #include "platform/hrtc/report.hpp"
@@ -15,6 +16,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
@@ -147,6 +149,50 @@ std::optional<Refusal> check_outputs(const Options& options)
     return std::nullopt;
 }
 
+/// What brakes each device that would hold its force.
+Result<Guardian::Guards, Refusal> make_guards(const Options& options)
+{
+    Guardian::Guards guards;
+    for (std::size_t tool = 0; tool < options.devices.size(); ++tool)
+    {
+        const DeviceChoice& choice = options.devices[tool];
+        if (!wants_guard(choice))
+        {
+            continue;
+        }
+        auto guard = open_guard(choice, options.rate_hz);
+        if (!guard)
+        {
+            return guard.error();
+        }
+        if (guard.value() == nullptr)
+        {
+            log_line(fmt::format("tool {}: {} has no guard; when hrtc is killed, its own watchdog "
+                                 "ends the force, or nothing does",
+                                 tool, choice.library));
+            continue;
+        }
+        guards.push_back(std::move(guard).value());
+    }
+    return guards;
+}
+
+/// None where no device needs one.
+Result<std::unique_ptr<Guardian>, Refusal> start_guardian(const Options& options)
+{
+    if (std::ranges::none_of(options.devices, wants_guard))
+    {
+        return std::unique_ptr<Guardian>();
+    }
+    auto guardian = Guardian::start([&options] { return make_guards(options); },
+                                    options.thread.priority, options.thread.allow_no_rt);
+    if (!guardian)
+    {
+        return failure("--device: " + guardian.error().text);
+    }
+    return guardian;
+}
+
 } // namespace
 
 Result<std::unique_ptr<Session>, Refusal> Session::open(const Options& options)
@@ -163,7 +209,13 @@ Result<std::unique_ptr<Session>, Refusal> Session::open(const Options& options)
     {
         linux_extras::keep_calling_thread_off(*options.thread.cpu);
     }
+    auto guardian = start_guardian(options);
+    if (!guardian)
+    {
+        return guardian.error();
+    }
     std::unique_ptr<Session> session(new Session(options));
+    session->guardian_ = std::move(guardian).value();
     if (auto error = session->connect())
     {
         return *error;
@@ -276,7 +328,8 @@ Result<FinishedRun, Refusal> Session::run(const std::string& what)
                     .controller = *controller_,
                     .topics = topics_.get(),
                     .recorder = recorder ? &*recorder : nullptr,
-                    .trace = trace ? &*trace : nullptr});
+                    .trace = trace ? &*trace : nullptr,
+                    .guardian = guardian_.get()});
     if (auto error = run.start())
     {
         return *error;

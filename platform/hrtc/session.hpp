@@ -5,6 +5,7 @@
 #include "platform/base/refusal.hpp"
 #include "platform/hrtc/controller.hpp"
 #include "platform/hrtc/finished_run.hpp"
+#include "platform/hrtc/guardian.hpp"
 #include "platform/hrtc/host_topics.hpp"
 #include "platform/hrtc/messages.hpp"
 #include "platform/hrtc/options.hpp"
@@ -47,6 +48,7 @@ private:
     std::unique_ptr<dds::DdsClient> client_;   ///< Lives as long as the links of its models.
     std::unique_ptr<dds::SceneReader> reader_; ///< Until the topics have it; none unless needed.
     ShownScene scene_;                         ///< Of a host; empty otherwise.
+    std::unique_ptr<Guardian> guardian_; ///< Outlives the devices; none where none needs it.
     std::unique_ptr<Controller> controller_;
     std::unique_ptr<HostTopics> topics_; ///< None from files.
 };

@@ -260,6 +260,7 @@ void SessionRun::watch(const std::string& what)
 
 /// What loop and supervisor have noted since the last time.
 void SessionRun::take_events()
+            tell_of_guardian();
 {
     std::vector<SafetyEvent> events;
     loop_.safety_log().take_into(events);
@@ -329,6 +330,16 @@ FinishedRun SessionRun::finish()
     haptic_thread_->join();
     brake_.reset();
     supervisor_.stop();
+/// A line when it is gone: the run goes on, and fades as long as this process lives.
+void SessionRun::tell_of_guardian()
+{
+    if (parts_.guardian != nullptr && parts_.guardian->has_died())
+    {
+        log_line("the guardian is gone; when hrtc is killed, nothing brakes its devices");
+        parts_.guardian = nullptr;
+    }
+}
+
     const bool is_supervised = supervisor_thread_.has_value();
     if (is_supervised)
     {

@@ -7,6 +7,7 @@
 #include "platform/hrtc/controller.hpp"
 #include "platform/hrtc/finished_run.hpp"
 #include "platform/hrtc/front_tap.hpp"
+#include "platform/hrtc/guardian.hpp"
 #include "platform/hrtc/haptic_loop.hpp"
 #include "platform/hrtc/host_topics.hpp"
 #include "platform/hrtc/loop_time.hpp"
@@ -38,6 +39,7 @@ struct RunParts
     HostTopics* topics{nullptr}; ///< None from files.
     Recorder* recorder{nullptr}; ///< None unless --record.
     TraceFile* trace{nullptr};   ///< None unless --trace.
+    Guardian* guardian{nullptr}; ///< None unless a device needs one.
 };
 
 /// One run of the loop on its real-time thread, the supervisor and the transport beside it; in
@@ -73,6 +75,7 @@ private:
     void take_events();
     void tell_of_device(const SafetyEvent& event);
     void tell_of_strangers();
+    void tell_of_guardian();
     void end_after_failure();
     void finish_recording();
     void finish_trace();

@@ -4,6 +4,7 @@
 
 #include "platform/base/refusal.hpp"
 #include "platform/device_frame.hpp"
+#include "platform/device_guard.hpp"
 #include "platform/haptic_device.hpp"
 #include "rt_core/base/result.hpp"
 
@@ -27,11 +28,13 @@ struct DeviceWish
 };
 
 using MakeDevice = Result<std::unique_ptr<HapticDevice>, Refusal> (*)(const DeviceWish&);
+/// In the guardian's process, before the device is made in the program's.
+using MakeGuard = Result<std::unique_ptr<DeviceGuard>, Refusal> (*)(const DeviceWish&);
 
 /// Of what passes between program and library; a library of other sizes is refused. The first
 /// number counts what sizes don't show.
 using PluginLayout = std::array<std::uint32_t, 6>;
-inline constexpr PluginLayout kPluginLayout{2,
+inline constexpr PluginLayout kPluginLayout{3,
                                             sizeof(DeviceInfo),
                                             sizeof(DeviceSample),
                                             sizeof(Wrench),
@@ -43,6 +46,7 @@ struct DevicePlugin
 {
     PluginLayout layout{};
     MakeDevice make{nullptr};
+    MakeGuard guard{nullptr}; ///< Null: the hardware ends the force of a dead program by itself.
 };
 
 /// Loads the library, which stays for the life of the process, and makes its device. One without a
@@ -52,6 +56,10 @@ struct DevicePlugin
 [[nodiscard]] Result<std::unique_ptr<HapticDevice>, Refusal> load_device(const std::string& path,
                                                                          const DeviceWish& wish);
 
+/// Loads the library and makes its guard; none where it has none. Refused likewise.
+[[nodiscard]] Result<std::unique_ptr<DeviceGuard>, Refusal> load_guard(const std::string& path,
+                                                                       const DeviceWish& wish);
+
 } // namespace tactus
 
 extern "C"
@@ -60,9 +68,9 @@ extern "C"
     __attribute__((visibility("default"))) extern const tactus::DevicePlugin tactus_device_plugin;
 }
 
-/// Makes a library of the source that says it: `make` is a MakeDevice.
-#define TACTUS_DEVICE_PLUGIN(make)                                                                 \
+/// Makes a library of the source that says it: of a MakeDevice, and a MakeGuard if there is one.
+#define TACTUS_DEVICE_PLUGIN(...)                                                                  \
     const tactus::DevicePlugin tactus_device_plugin                                                \
     {                                                                                              \
-        tactus::kPluginLayout, (make)                                                              \
+        tactus::kPluginLayout, __VA_ARGS__                                                         \
     }

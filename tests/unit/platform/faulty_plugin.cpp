@@ -30,10 +30,26 @@ make_faulty(const tactus::DeviceWish& wish)
     }
     return std::unique_ptr<tactus::HapticDevice>();
 }
+
+tactus::Result<std::unique_ptr<tactus::DeviceGuard>, tactus::Refusal>
+make_no_guard(const tactus::DeviceWish& wish)
+{
+    const std::string_view words = wish.words;
+    if (words == "throws")
+    {
+        throw std::runtime_error("no such port");
+    }
+    if (words == "no guard")
+    {
+        return tactus::Refusal{"has no second line to its motors"};
+    }
+    return std::unique_ptr<tactus::DeviceGuard>();
+}
 #else
 constexpr tactus::MakeDevice make_faulty = nullptr;
+constexpr tactus::MakeGuard make_no_guard = nullptr;
 #endif
 
 } // namespace
 
-TACTUS_DEVICE_PLUGIN(make_faulty);
+TACTUS_DEVICE_PLUGIN(make_faulty, make_no_guard);

@@ -4,13 +4,29 @@
 /// dhdSetForceAndTorqueAndGripperForce when STAND_IN_DHD_IS_OLD is defined.
 #include "tests/unit/platform/stand_in_dhd.hpp"
 
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 namespace
 {
 
 using tactus::test::StandInDhd;
 using tactus::test::StandInDhdDevice;
 
+std::int64_t now_ns()
+{
+    std::timespec now{};
+    ::clock_gettime(CLOCK_MONOTONIC, &now);
+    return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
+
 StandInDhd stand_in;
+const std::int64_t start_ns = now_ns();
 
 StandInDhdDevice& device_of(char id)
 {
@@ -30,6 +46,55 @@ int on(char id, const Work& work)
     work(device);
     return 0;
 }
+
+/// The device that outlives the program; of no effect without a log.
+class Hardware
+{
+public:
+    Hardware() : log_(std::getenv(tactus::test::kDhdLogVariable)) {}
+
+    [[nodiscard]] bool is_there() const { return log_ != nullptr; }
+    /// The system gives the lock back when the process that has it has ended.
+    bool try_open()
+    {
+        lock_ = is_there() ? ::open(log_, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644) : -1;
+        const bool is_mine = !is_there() || ::flock(lock_, LOCK_EX | LOCK_NB) == 0;
+        if (!is_mine)
+        {
+            ::close(lock_);
+        }
+        is_first_ = true;
+        return is_mine;
+    }
+    void close() const
+    {
+        if (is_there())
+        {
+            ::close(lock_);
+        }
+    }
+    /// The first call of a program that opens it tells that this is another one.
+    void make_force(double x, double y, double z)
+    {
+        if (is_there())
+        {
+            std::array<char, 160> line{};
+            const int length = std::snprintf(line.data(), line.size(), "%lld %.6f %.6f %.6f %s\n",
+                                             static_cast<long long>(now_ns()), x, y, z,
+                                             is_first_ ? "opened" : "force");
+            is_first_ = false;
+            [[maybe_unused]] const ssize_t written =
+                ::write(lock_, line.data(), static_cast<std::size_t>(length));
+        }
+    }
+
+private:
+    const char* log_;
+    int lock_{-1};
+    bool is_first_{true};
+};
+
+Hardware hardware;
 
 } // namespace
 
@@ -53,6 +118,11 @@ extern "C"
         {
             return -1;
         }
+        if (!hardware.try_open())
+        {
+            device.is_open = false;
+            return -1;
+        }
         const std::lock_guard lock(device.mutex);
         device.brakes = true;
         device.forces_enabled = false;
@@ -61,6 +131,7 @@ extern "C"
 
     int dhdClose(char id)
     {
+        hardware.close();
         return device_of(id).is_open.exchange(false) ? 0 : -1;
     }
 
@@ -72,6 +143,13 @@ extern "C"
     int dhdGetPosition(double* x, double* y, double* z, char id)
     {
         ++device_of(id).reads;
+        if (hardware.is_there())
+        {
+            *x = 0.0;
+            *y = 0.0;
+            *z = 0.02 * std::cos(1.5707963 * 1e-9 * static_cast<double>(now_ns() - start_ns));
+            return 0;
+        }
         return on(id,
                   [&](const StandInDhdDevice& device)
                   {
@@ -177,6 +255,7 @@ extern "C"
         return on(id,
                   [&](StandInDhdDevice& device)
                   {
+                      hardware.make_force(fx, fy, fz);
                       device.force_n = {fx, fy, fz};
                       device.torque_nm = {tx, ty, tz};
                       device.grip_n = grip;
@@ -196,6 +275,11 @@ extern "C"
     int dhdEnableForce(unsigned char is_on, char id)
     {
         return on(id, [&](StandInDhdDevice& device) { device.forces_enabled = is_on != 0; });
+    }
+
+    int dhdSetWatchdog(unsigned char steps, char id)
+    {
+        return on(id, [&](StandInDhdDevice& device) { device.watchdog_steps = steps; });
     }
 
     const char* dhdErrorGetLastStr()

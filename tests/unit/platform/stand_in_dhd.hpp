@@ -47,6 +47,7 @@ struct StandInDhdDevice
     std::atomic<bool> has_velocity{true};
     std::atomic<bool> has_brakes{true};
     std::atomic<std::uint64_t> reads{0};
+    std::atomic<int> watchdog_steps{0}; ///< Of 125 us.
 };
 
 struct StandInDhd
@@ -54,6 +55,11 @@ struct StandInDhd
     std::atomic<int> count{8};
     std::array<StandInDhdDevice, 8> devices;
 };
+
+/// A file that TACTUS_DHD_LOG names makes a device that outlives the program: it takes one program
+/// at a time, its hand goes up and down along z by 2 cm in 4 s, and each force goes to the file, a
+/// line each as those of tests/hostile/recording_device.cpp.
+inline constexpr const char* kDhdLogVariable = "TACTUS_DHD_LOG";
 
 /// The name of the function of the stand-in that returns it.
 inline constexpr const char* kStandInDhdName = "tactus_stand_in_dhd";

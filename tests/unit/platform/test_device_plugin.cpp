@@ -38,5 +38,19 @@ TEST(DevicePlugin, a_library_that_makes_no_device_is_refused_with_its_name)
               "is no device: its TACTUS_DEVICE_PLUGIN has no function");
 }
 
+TEST(DevicePlugin, a_guard_that_a_library_refuses_is_refused_with_its_name)
+{
+    const auto refusal = [](const char* words)
+    {
+        const auto guard = load_guard(TACTUS_FAULTY_PLUGIN, {1'000, {}, words});
+        return guard ? std::string("not refused") : guard.error().text;
+    };
+    const std::string name = std::string(TACTUS_FAULTY_PLUGIN) + ": ";
+    EXPECT_EQ(refusal("no guard"), name + "has no second line to its motors");
+    EXPECT_EQ(refusal(""), name + "its TACTUS_DEVICE_PLUGIN makes no guard and says no reason");
+    EXPECT_EQ(refusal("throws"), name + "its TACTUS_DEVICE_PLUGIN threw: no such port");
+    EXPECT_FALSE(load_guard("nowhere.so", {1'000, {}, ""}));
+}
+
 } // namespace
 } // namespace tactus::test

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "platform/dhd/dhd_guard.hpp"
 #include "tests/unit/platform/dhd_rig.hpp"
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <string>
+#include <thread>
 
 namespace tactus
 {
@@ -262,6 +265,43 @@ TEST_F(DhdDeviceTest, is_gone_when_unplugged_and_idle_when_it_is_back)
     await_turn();
     EXPECT_EQ(motors().force_n, (std::array{0.0, 0.0, 0.0}));
     EXPECT_TRUE(motors().forces_enabled);
+}
+
+TEST_F(DhdDeviceTest, sets_the_devices_own_watchdog_to_the_time_of_a_forces_hold)
+{
+    open_and_write({{1.0, 0.0, 0.0}, {}, 0.0});
+    EXPECT_EQ(hand().watchdog_steps, 255) << "no device takes a minute";
+    sut.reset();
+    options.times.force_hold = milliseconds(20);
+    open();
+    await([](const DeviceSample& sample) { return sample.valid; });
+    await_turn();
+    EXPECT_EQ(hand().watchdog_steps, 160);
+}
+
+TEST_F(DhdDeviceTest, is_braked_by_its_guard_when_its_program_has_left_it)
+{
+    const auto guard = DhdGuard::create(TACTUS_STAND_IN_DHD, 0);
+    ASSERT_TRUE(guard);
+    hand().force_n = {1.0, 2.0, 3.0};
+    hand().brakes = false;
+    hand().forces_enabled = true;
+    hand().is_open = true; // For the program that has died, as the system is about to find.
+    std::thread closes(
+        [this]
+        {
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+            hand().is_open = false;
+        });
+    EXPECT_TRUE(guard.value()->brake());
+    closes.join();
+    EXPECT_EQ(hand().force_n, (std::array{0.0, 0.0, 0.0}));
+    EXPECT_TRUE(hand().brakes);
+    EXPECT_FALSE(hand().forces_enabled);
+    EXPECT_FALSE(hand().is_open);
+    const auto missing = DhdGuard::create("libnowhere.so", 0);
+    ASSERT_FALSE(missing);
+    EXPECT_TRUE(missing.error().text.starts_with("dhd device: the SDK can't be loaded"));
 }
 
 TEST_F(DhdDeviceTest, leaves_the_device_without_a_force_and_closed)
