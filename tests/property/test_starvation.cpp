@@ -7,6 +7,7 @@
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/shared/greedy_tools.hpp"
 #include "tests/shared/random.hpp"
+#include "tests/shared/trial_length.hpp"
 
 #include <gtest/gtest.h>
 
@@ -30,9 +31,9 @@ TEST_P(Starvation, a_touch_stays_exact_and_is_not_held_back)
     const std::uint64_t seed = seed_of(2'310);
     SCOPED_TRACE("seed " + std::to_string(seed));
 
-    const GreedyFigures figures = run_greedy(model, GetParam(), 1'000, seed);
+    const GreedyFigures figures = run_greedy(model, GetParam(), trial_length(1'000), seed);
 
-    ASSERT_GT(figures.frames, 300U);
+    ASSERT_GT(figures.frames, trial_length(300));
     EXPECT_EQ(figures.broken, "");
     EXPECT_LE(figures.splits_max, GetParam().splits);
     EXPECT_EQ(figures.exact, figures.frames);
@@ -51,14 +52,14 @@ TEST(StarvationOfMany, sixteen_tools_among_a_hundred_objects_leave_a_touch_as_it
     GreedyCase greedy{"alone", GreedyCase::Others::none};
     greedy.tools = kMaxTools - 1;
     greedy.objects = 100;
-    const GreedyFigures alone = run_greedy(model, greedy, 600, seed);
-    ASSERT_GT(alone.frames, 200U);
+    const GreedyFigures alone = run_greedy(model, greedy, trial_length(600), seed);
+    ASSERT_GT(alone.frames, trial_length(200));
     EXPECT_EQ(alone.exact, alone.frames);
     for (const auto others : {GreedyCase::Others::pass, GreedyCase::Others::teleport})
     {
         greedy.others = others;
         greedy.hands_diag_per_s = 4.0;
-        const GreedyFigures among_others = run_greedy(model, greedy, 600, seed);
+        const GreedyFigures among_others = run_greedy(model, greedy, trial_length(600), seed);
         EXPECT_EQ(among_others.broken, "");
         EXPECT_EQ(among_others.frames, alone.frames);
         EXPECT_EQ(among_others.exact, among_others.frames);

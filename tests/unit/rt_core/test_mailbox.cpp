@@ -70,11 +70,16 @@ TEST(Mailbox, never_mixes_two_letters_and_never_goes_back)
             Letter letter;
             if (!sut.try_read(letter))
             {
-                continue; // The writer is in the middle of one, on this processor perhaps.
+                std::this_thread::yield(); // The writer is in the middle of one, perhaps here.
+                continue;
             }
             const std::uint32_t number = letter.words[0];
             faults += letter.words != letter_of(number).words || number < last ? 1 : 0;
             seen += number != last ? 1 : 0;
+            if (number == last)
+            {
+                std::this_thread::yield();
+            }
             last = number;
         }
         --reading;

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+namespace tactus::test
+{
+
+/// Whether long trials are run in full, as CI has it: with TACTUS_TRIALS=full in the environment.
+[[nodiscard]] inline bool has_full_trials()
+{
+    const char* text = std::getenv("TACTUS_TRIALS");
+    return text != nullptr && std::string_view(text) == "full";
+}
+
+/// How much of a long trial is run, and how much of what it counts has to come of it: all, or a
+/// quarter for those who wait.
+[[nodiscard]] inline std::uint32_t trial_length(std::uint32_t all)
+{
+    return has_full_trials() ? all : all / 4;
+}
+
+} // namespace tactus::test
