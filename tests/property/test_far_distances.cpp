@@ -37,8 +37,8 @@ ToolSpec measuring_tool(double radius_m, const ToolCore& core = PointCore{})
 ObjectPose some_pose(Random& random, double diagonal_m)
 {
     ObjectPose pose;
-    pose.rotation = Eigen::AngleAxisd(random.between(-3.0, 3.0),
-                                      (random.in_cube(1.0) + Vec3(0, 0, 1e-3)).normalized())
+    pose.rotation = Eigen::AngleAxisd{random.between(-3.0, 3.0),
+                                      (random.in_cube(1.0) + Vec3(0, 0, 1e-3)).normalized()}
                         .toRotationMatrix();
     pose.translation_m = random.in_cube(3.0 * diagonal_m);
     pose.scale = random.between(0.5, 2.0);

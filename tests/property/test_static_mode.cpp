@@ -30,7 +30,8 @@ protected:
     Vec3 random_place()
     {
         const Face& face = model_.faces[random_.below(model_.faces.size())];
-        return to_vec3(face[random_.below(3)]) + random_.in_cube(0.1 * model_.diagonal_m);
+        const Vec3 corner_m = to_vec3(face[random_.below(3)]);
+        return corner_m + random_.in_cube(0.1 * model_.diagonal_m);
     }
     /// Steps with a moving tool; every answer on the way holds.
     std::uint32_t frames_until_static(FrameRig& rig, const Budgets& budgets)

@@ -40,8 +40,8 @@ Truth measure(const TestModel& model, const PlacedCore& core, double radius_m)
 
 Mat3 turned(Random& random, double most)
 {
-    return Eigen::AngleAxisd(random.between(-most, most),
-                             (random.in_cube(1.0) + Vec3(0, 0, 1e-3)).normalized())
+    return Eigen::AngleAxisd{random.between(-most, most),
+                             (random.in_cube(1.0) + Vec3(0, 0, 1e-3)).normalized()}
         .toRotationMatrix();
 }
 

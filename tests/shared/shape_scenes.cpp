@@ -32,9 +32,8 @@ Triangle cap(Random& random)
 {
     const Vec3 from = random.in_cube(1.0);
     const Vec3 to = random.in_cube(1.0);
-    return {from,
-            from + random.between(0.0, 1.0) * (to - from) + random.in_cube(small(random, -27.0)),
-            to};
+    const Vec3 foot = from + random.between(0.0, 1.0) * (to - from);
+    return {from, foot + random.in_cube(small(random, -27.0)), to};
 }
 
 Triangle two_equal_corners(Random& random)
@@ -54,7 +53,10 @@ Triangle all_equal_corners(Random& random)
 
 Vec3 on_grid(Random& random, std::uint32_t steps)
 {
-    return Vec3(random.below(steps), random.below(steps), random.below(steps));
+    const double x = random.below(steps);
+    const double y = random.below(steps);
+    const double z = random.below(steps);
+    return {x, y, z};
 }
 
 /// Exactly (small integers) or as nearly as doubles allow.
@@ -100,8 +102,9 @@ Triangle moved(const Triangle& triangle, const Vec3& way)
 TrianglePair near_one_another(const Triangle& first, const Triangle& second, double gap,
                               Random& random)
 {
-    return {first, moved(second,
-                         place_on(first, random) - place_on(second, random) + random.in_cube(gap))};
+    const Vec3 here = place_on(first, random);
+    const Vec3 there = place_on(second, random);
+    return {first, moved(second, here - there + random.in_cube(gap))};
 }
 
 TrianglePair somehow_placed(const Triangle& first, const Triangle& second, Random& random)
@@ -160,7 +163,10 @@ TrianglePair coplanar(Random& random)
     const Vec3 origin = on_grid(random, 5);
     const double step = std::ldexp(1.0, -static_cast<int>(random.below(20)));
     const auto corner = [&]
-    { return Vec3((origin + random.below(64) * u + random.below(64) * v) * step); };
+    {
+        const Vec3 along = origin + random.below(64) * u;
+        return Vec3((along + random.below(64) * v) * step);
+    };
     return {{corner(), corner(), corner()}, {corner(), corner(), corner()}};
 }
 
@@ -184,7 +190,9 @@ TrianglePair with_shared_edge(Random& random)
 
 TrianglePair grazing(Random& random)
 {
-    return near_one_another(generic_triangle(random), generic_triangle(random), 1e-12, random);
+    const Triangle first = generic_triangle(random);
+    const Triangle second = generic_triangle(random);
+    return near_one_another(first, second, 1e-12, random);
 }
 
 /// An edge of each nearly parallel to one of the other: to 1e-17, and exactly.
@@ -194,25 +202,24 @@ TrianglePair with_parallel_edges(Random& random)
     const double tilt = random.one_in(5) ? 0.0 : small(random, -56.0);
     const std::uint32_t i = random.below(3);
     const std::uint32_t j = random.below(3);
-    pair.second[(j + 1) % 3] =
-        pair.second[j] + random.between(-2.0, 2.0) * (pair.first[(i + 1) % 3] - pair.first[i]) +
-        random.in_cube(tilt);
+    const Vec3 edge = random.between(-2.0, 2.0) * (pair.first[(i + 1) % 3] - pair.first[i]);
+    pair.second[(j + 1) % 3] = pair.second[j] + edge + random.in_cube(tilt);
     return somehow_placed(pair.first, pair.second, random);
 }
 
 /// Planes nearly parallel, a little apart.
 TrianglePair layered(Random& random)
 {
-    const Triangle flat{Vec3(random.between(-1, 1), random.between(-1, 1), 0.0),
-                        Vec3(random.between(-1, 1), random.between(-1, 1), 0.0),
-                        Vec3(random.between(-1, 1), random.between(-1, 1), 0.0)};
+    const Triangle flat{Vec3{random.between(-1, 1), random.between(-1, 1), 0.0},
+                        Vec3{random.between(-1, 1), random.between(-1, 1), 0.0},
+                        Vec3{random.between(-1, 1), random.between(-1, 1), 0.0}};
     TrianglePair pair{flat, flat};
     const double tilt = random.one_in(5) ? 0.0 : small(random, -56.0);
     const double gap = small(random, -56.0);
     for (Vec3& corner : pair.second)
     {
         corner +=
-            Vec3(random.between(-1, 1), random.between(-1, 1), gap + tilt * random.between(-1, 1));
+            Vec3{random.between(-1, 1), random.between(-1, 1), gap + tilt * random.between(-1, 1)};
     }
     return pair;
 }
@@ -292,8 +299,8 @@ BoxScene box_scene(const TrianglePair& pair, Random& random)
         place[axis] *= where == 0 ? -1.0 : (where == 1 ? 1.0 : random.between(-1.0, 1.0));
     }
     const double size = scene.box.half.maxCoeff();
-    scene.triangle = moved(scene.triangle, place - place_on(scene.triangle, random) +
-                                               random.in_cube(size * small(random, -50.0)));
+    const Vec3 way = place - place_on(scene.triangle, random);
+    scene.triangle = moved(scene.triangle, way + random.in_cube(size * small(random, -50.0)));
     return scene;
 }
 

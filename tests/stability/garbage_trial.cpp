@@ -38,7 +38,8 @@ void spoil_not_a_number(ToolState& sample, const ToolState& /*good*/, Random& ra
 {
     if (random.one_in(2))
     {
-        sample.rotation(random.below(3), random.below(3)) = Limits::quiet_NaN();
+        const std::uint32_t row = random.below(3);
+        sample.rotation(row, random.below(3)) = Limits::quiet_NaN();
         return;
     }
     sample.position_m = with_one(sample.position_m, random, Limits::quiet_NaN());

@@ -103,8 +103,8 @@ void RandomMeshMotion::change_grip()
     rate_rad_ = kTurns_rad[random_.below(kTurns_rad.size())];
     if (random_.one_in(4))
     {
-        rotation_ = Eigen::Quaterniond(random_.between(0.1, 1.0), random_.between(-1.0, 1.0),
-                                       random_.between(-1.0, 1.0), random_.between(-1.0, 1.0))
+        rotation_ = Eigen::Quaterniond{random_.between(0.1, 1.0), random_.between(-1.0, 1.0),
+                                       random_.between(-1.0, 1.0), random_.between(-1.0, 1.0)}
                         .normalized();
     }
 }

@@ -81,8 +81,8 @@ void RandomMotion::begin_slide()
     manner.radius_diag = std::min(0.05, radius_m_ / model_.diagonal_m);
     manner.step_m = random_.between(kSlowest_diag, kFastest_diag) * model_.diagonal_m;
     manner.turn_rate = [rate = random_.between(-1.0, 1.0)](std::uint64_t) { return rate; };
-    slide_.emplace(tree_, manner,
-                   Vec3(random_corner() + random_.in_cube(0.01 * model_.diagonal_m)));
+    const Vec3 corner = random_corner();
+    slide_.emplace(tree_, manner, Vec3(corner + random_.in_cube(0.01 * model_.diagonal_m)));
 }
 
 void RandomMotion::slide()
@@ -120,7 +120,8 @@ void RandomMotion::fly()
 void RandomMotion::begin_jump()
 {
     const double off = random_.one_in(5) ? 0.7 : 0.01;
-    hold_at(random_corner() + random_.in_cube(off * model_.diagonal_m));
+    const Vec3 corner = random_corner();
+    hold_at(corner + random_.in_cube(off * model_.diagonal_m));
 }
 
 void RandomMotion::begin_spin()
@@ -145,11 +146,12 @@ void RandomMotion::spin()
 void RandomMotion::carry_object()
 {
     ObjectPose& pose = moment_.pose;
-    pose.rotation = Eigen::Quaterniond(random_.between(0.1, 1.0), random_.between(-1.0, 1.0),
-                                       random_.between(-1.0, 1.0), random_.between(-1.0, 1.0))
+    pose.rotation = Eigen::Quaterniond{random_.between(0.1, 1.0), random_.between(-1.0, 1.0),
+                                       random_.between(-1.0, 1.0), random_.between(-1.0, 1.0)}
                         .normalized()
                         .toRotationMatrix();
-    const Vec3 place = random_corner() + random_.in_cube(0.01 * model_.diagonal_m);
+    const Vec3 corner = random_corner();
+    const Vec3 place = corner + random_.in_cube(0.01 * model_.diagonal_m);
     pose.translation_m = moment_.goal_m - pose.scale * (pose.rotation * place);
 }
 

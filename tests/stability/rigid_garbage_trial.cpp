@@ -43,9 +43,8 @@ void spoil_rotation(ToolState& sample, const ToolState& /*good*/, Random& random
 /// Another one in each frame.
 void spoil_turns(ToolState& sample, const ToolState& /*good*/, Random& random)
 {
-    sample.rotation =
-        turned_about(random.in_cube(1.0) + Vec3(0, 0, 1e-3), random.between(kSecondTurn_rad, 3.0)) *
-        sample.rotation;
+    const Vec3 axis = random.in_cube(1.0) + Vec3(0, 0, 1e-3);
+    sample.rotation = turned_about(axis, random.between(kSecondTurn_rad, 3.0)) * sample.rotation;
 }
 void spoil_turned(ToolState& sample, const ToolState& /*good*/, Random& /*random*/)
 {

@@ -110,7 +110,8 @@ public:
         {
             rest_.rotation = Eigen::AngleAxisd(random.between(0.0, 3.0), axis_).toRotationMatrix();
             rest_.scale = random.between(0.5, 2.0);
-            rest_.translation_m = random.between(100.0, 1'000.0) * random.in_cube(1.0).normalized();
+            const double far_m = random.between(100.0, 1'000.0);
+            rest_.translation_m = far_m * random.in_cube(1.0).normalized();
         }
         period_frames_ = random.between(500.0, 2'000.0);
         sway_m_ = stage_ == RigidStage::turning ? 2e-4 * random.in_cube(1.0) : Vec3(0, 0, 0);

@@ -326,7 +326,7 @@ void run_round(const SceneTrial& trial, std::uint32_t first, SceneFigures& figur
 ObjectPose any_pose(Random& random, double world_m)
 {
     ObjectPose pose;
-    pose.rotation = Eigen::AngleAxisd(random.between(0.0, 3.0), random.in_cube(1.0).normalized())
+    pose.rotation = Eigen::AngleAxisd{random.between(0.0, 3.0), random.in_cube(1.0).normalized()}
                         .toRotationMatrix();
     pose.translation_m = random.in_cube(world_m);
     pose.scale = random.between(0.5, 1.5);

@@ -138,8 +138,8 @@ PlacedCore twin_core(std::uint32_t turn, const Vec3& center_m, double size_m, Ra
     static const std::array<Vec3, 5> kWedge{Vec3(-0.5, 0, 0), Vec3(0.5, 0, 0), Vec3(0, 0.6, 0),
                                             Vec3(0, 0, 0.7), Vec3(0.2, 0.2, 0.2)};
     static const Hull wedge = Hull::create(kWedge).value();
-    const Eigen::Quaterniond rotation(random.between(0.1, 1.0), random.between(-1.0, 1.0),
-                                      random.between(-1.0, 1.0), random.between(-1.0, 1.0));
+    const Eigen::Quaterniond rotation{random.between(0.1, 1.0), random.between(-1.0, 1.0),
+                                      random.between(-1.0, 1.0), random.between(-1.0, 1.0)};
     const Similarity place{rotation.normalized().toRotationMatrix(), center_m, size_m};
     switch (turn % 4)
     {

@@ -89,9 +89,10 @@ Vertices sheet(const Triangle& base, Random& random)
     Vertices vertices{base[0], base[1], base[2]};
     for (std::uint32_t count = 2 + random.below(6); count > 0; --count)
     {
-        vertices.push_back(base[0] + random.between(-1.0, 1.0) * (base[1] - base[0]) +
-                           random.between(-1.0, 1.0) * (base[2] - base[0]) +
-                           random.in_cube(thickness));
+        Vec3 vertex = base[0] + random.between(-1.0, 1.0) * (base[1] - base[0]);
+        vertex += random.between(-1.0, 1.0) * (base[2] - base[0]);
+        vertex += random.in_cube(thickness);
+        vertices.push_back(vertex);
     }
     return vertices;
 }

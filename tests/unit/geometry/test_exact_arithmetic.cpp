@@ -25,7 +25,8 @@ Quad wide(const DoubleDouble& value)
 
 DoubleDouble some_number(Random& random)
 {
-    const double high = random.between(-1.0, 1.0) * std::exp2(random.between(-40.0, 40.0));
+    const double mantissa = random.between(-1.0, 1.0);
+    const double high = mantissa * std::exp2(random.between(-40.0, 40.0));
     return two_sum(high, high * 0x1p-54 * random.between(-1.0, 1.0));
 }
 

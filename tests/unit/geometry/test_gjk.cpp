@@ -126,7 +126,8 @@ TEST_P(GjkTest, bounds_hold_wherever_it_begins_and_ends)
         const Hull hull = hull_of(scene.vertices);
         const double length = local_length(hull.body(), scene.triangle);
         const GjkAnswer usual = ask_gjk(hull.body(), scene.triangle);
-        Vec3 direction = random.in_cube(1.0) * std::exp2(random.between(-900.0, 900.0));
+        Vec3 direction = random.in_cube(1.0);
+        direction *= std::exp2(random.between(-900.0, 900.0));
         const GjkAnswer other = gjk_distance(hull.body(), scene.triangle, direction);
         const double limit = random.between(0.0, 1.2) * usual.upper;
         const GjkAnswer cut = gjk_distance(hull.body(), scene.triangle, direction, limit);
@@ -232,7 +233,8 @@ TEST(Gjk, ends_when_the_bounds_are_as_near_as_the_tolerance_says_and_not_much_la
     for (int i = 0; i < 2'000; ++i)
     {
         const RoundBody round({{random.in_cube(1.0), random.in_cube(1.0)}, 1.0});
-        const Vec3 far = random.in_cube(1.0).normalized() * random.between(5.0, 30.0);
+        const Vec3 outward = random.in_cube(1.0).normalized();
+        const Vec3 far = outward * random.between(5.0, 30.0);
         const Triangle triangle{far + random.in_cube(2.0), far + random.in_cube(2.0),
                                 far + random.in_cube(2.0)};
         const GjkAnswer answer = ask_gjk(round.body(), triangle);

@@ -81,7 +81,7 @@ std::vector<Vec3> points_of(const ToolCore& core, Random& random)
     {
         const auto share = [&]
         { return i < 8 ? 2.0 * random.below(2) - 1.0 : random.between(-1, 1); };
-        const Vec3 shares(share(), share(), share());
+        const Vec3 shares{share(), share(), share()};
         if (const auto* segment = std::get_if<Segment>(&core))
         {
             points.push_back(point_at(*segment, 0.5 + 0.5 * shares.x()));
@@ -95,7 +95,8 @@ std::vector<Vec3> points_of(const ToolCore& core, Random& random)
             const auto vertices = hull->vertices();
             const auto any = [&]
             { return vertices[random.below(static_cast<std::uint32_t>(vertices.size()))]; };
-            points.push_back(0.5 * (1.0 + shares.x()) * any() + 0.5 * (1.0 - shares.x()) * any());
+            const Vec3 first = 0.5 * (1.0 + shares.x()) * any();
+            points.push_back(first + 0.5 * (1.0 - shares.x()) * any());
         }
         else
         {
@@ -236,7 +237,7 @@ TEST(PlacedCore, no_point_moved_farther_than_it_says)
         const double much = random.one_in(3) ? 1.0 : 1e-6;
         after.translation_m += random.in_cube(much);
         after.rotation =
-            Eigen::AngleAxisd(much * random.between(-1, 1), random.in_cube(1.0).normalized())
+            Eigen::AngleAxisd{much * random.between(-1, 1), random.in_cube(1.0).normalized()}
                 .toRotationMatrix() *
             before.rotation;
         after.scale *= 1.0 + much * random.between(-0.5, 0.5);

@@ -80,8 +80,8 @@ TEST(SharedFeatures, of_any_pairs_in_any_order_are_those_that_measuring_finds)
         for (int round = 0; round < 12; ++round)
         {
             const double spread = round % 2 == 0 ? 1.0 : 0.0;
-            const Vec3 over(random.between(0.0, 2.0), random.between(0.0, 2.0),
-                            sheets.height + sheets.apart);
+            const Vec3 over{random.between(0.0, 2.0), random.between(0.0, 2.0),
+                            sheets.height + sheets.apart};
             const auto below = sheet(random, sheets, Vec3(0, 0, 0), spread);
             const auto above = sheet(random, sheets, over, spread);
             std::vector<std::pair<double, std::pair<const Triangle*, const Triangle*>>> pairs;

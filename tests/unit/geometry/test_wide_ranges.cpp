@@ -77,8 +77,8 @@ TEST(WideRanges, every_answer_to_finite_numbers_is_finite)
         expect_finite("capsule",
                       closest_points(Capsule{{huge.point(), huge.point()}, std::abs(huge.number())},
                                      triangle));
-        expect_finite("sphere", closest_points(Sphere{large.point(), std::abs(large.number())},
-                                               large.triangle()));
+        const Sphere sphere{large.point(), std::abs(large.number())};
+        expect_finite("sphere", closest_points(sphere, large.triangle()));
         ASSERT_FALSE(::testing::Test::HasFatalFailure()) << "case " << i;
     }
 }

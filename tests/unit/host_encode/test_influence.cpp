@@ -160,7 +160,7 @@ TEST(Influence, boxes_miss_no_chunk_that_a_ball_needs)
         {
             const double radius_m =
                 diagonal_m * (ball % 3 == 0 ? 0.001 : 0.03) * (1 + unit(random));
-            const Vec3 offset(unit(random), unit(random), unit(random));
+            const Vec3 offset{unit(random), unit(random), unit(random)};
             const Vec3 centre_m =
                 to_vec3(model->decoded->position_m({any_vertex(random)})) + offset * radius_m;
             std::set<std::uint32_t> chunks;

@@ -143,7 +143,7 @@ Zone random_zone(const ModelHeader& header, const std::vector<SourceFace>& faces
     {
         return BallZone{center_m, any_size()};
     }
-    const Vec3 half_m(random.one_in(8) ? 0.0 : any_size(), any_size(), any_size());
+    const Vec3 half_m{random.one_in(8) ? 0.0 : any_size(), any_size(), any_size()};
     return BoxZone{center_m - half_m, center_m + half_m};
 }
 

@@ -22,7 +22,7 @@ constexpr std::uint64_t kSeed = 20'260'731;
 Pose random_pose(std::mt19937_64& random, double length)
 {
     std::normal_distribution<double> number;
-    Eigen::Vector4d q(number(random), number(random), number(random), number(random));
+    Eigen::Vector4d q{number(random), number(random), number(random), number(random)};
     q *= length / q.norm();
     Pose pose;
     pose.rotation = {q[0], q[1], q[2], q[3]};

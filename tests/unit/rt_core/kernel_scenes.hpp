@@ -134,9 +134,10 @@ struct ProbePlace
           }},
          {"grazing", [](Random& random, const QuantaTriangle& face, double /*size*/)
           { return between_corners(random, face, 0.5); }},
-         {"just above", [](Random& random, const QuantaTriangle& face, double size) {
-              return Vec3(between_corners(random, face, 0.05) +
-                          random.in_cube(size * thin_share(random)));
+         {"just above", [](Random& random, const QuantaTriangle& face, double size)
+          {
+              const Vec3 over = between_corners(random, face, 0.05);
+              return Vec3(over + random.in_cube(size * thin_share(random)));
           }}}};
     return places;
 }

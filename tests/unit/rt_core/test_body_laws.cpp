@@ -536,7 +536,8 @@ Material bumpy(double height_m, double length_m)
 ObjectPose random_pose(Random& random)
 {
     ObjectPose pose;
-    pose.rotation = turn(random.in_cube(1.0), random.between(0.0, 3.0));
+    const Vec3 axis = random.in_cube(1.0);
+    pose.rotation = turn(axis, random.between(0.0, 3.0));
     pose.translation_m = random.in_cube(0.1);
     return pose;
 }
@@ -583,7 +584,7 @@ TYPED_TEST(BodyLaws, a_texture_makes_no_energy_on_closed_ways_and_turns)
         {
             Random random(seed);
             // From bump to bump: in at a crest and out at a trough would show a false energy.
-            const Vec3 wide_m(random.between(4e-4, 1e-3), random.between(4e-4, 1e-3), 0.0);
+            const Vec3 wide_m{random.between(4e-4, 1e-3), random.between(4e-4, 1e-3), 0.0};
             const double dip_m = random.between(2e-4, 8e-4);
             const double phase = random.between(0.0, 6.0);
             const double tilt_rad = random.between(0.005, 0.02);
@@ -676,8 +677,8 @@ TEST(Texture, of_any_height_is_a_number_and_no_more_than_the_bumps)
             ASSERT_TRUE(is_sound(material)) << height_m;
             for (const double depth_m : {0.0, 5e-324, 1e-300, 1e-9, 1e-3, 1.0, 1e4})
             {
-                const auto sut =
-                    Texture::at(material, random_pose(random), random.in_cube(0.1), depth_m);
+                const ObjectPose pose = random_pose(random);
+                const auto sut = Texture::at(material, pose, random.in_cube(0.1), depth_m);
                 ASSERT_LE(std::abs(sut.push_m), 1.5 * height_m) << height_m << ' ' << depth_m;
                 ASSERT_LE(sut.slope_m.cwiseAbs().maxCoeff(), 0.5 * length_m)
                     << height_m << ' ' << depth_m;

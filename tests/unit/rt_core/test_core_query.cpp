@@ -21,8 +21,8 @@ namespace
 
 PlacedCore random_core(Random& random)
 {
-    const Mat3 rotation = Eigen::AngleAxisd(random.between(-4.0, 4.0),
-                                            (random.in_cube(1.0) + Vec3(2, 0, 0)).normalized())
+    const Mat3 rotation = Eigen::AngleAxisd{random.between(-4.0, 4.0),
+                                            (random.in_cube(1.0) + Vec3(2, 0, 0)).normalized()}
                               .toRotationMatrix();
     const Similarity place{
         rotation,
@@ -202,8 +202,8 @@ TEST(CoreQuery, a_spent_budget_leaves_the_bracket_true)
             const CoreTruth truth(faces, core, 0.3);
             QueryMemory memory{random.below(400)};
 
-            const CoreAnswer asked =
-                ask(*rig.sut, core, 0.3, memory, random.below(30), random.below(200));
+            const std::uint32_t nodes = random.below(30);
+            const CoreAnswer asked = ask(*rig.sut, core, 0.3, memory, nodes, random.below(200));
 
             spent += asked.budget.is_spent ? 1 : 0;
             ASSERT_LE(asked.answer().lower_m, truth.upper);

@@ -192,7 +192,8 @@ void expect_same_as_oracle(std::uint64_t own_seed, std::size_t planes_max)
         Planes<N> planes(random.below(planes_max + 1));
         for (HalfSpace<N>& plane : planes)
         {
-            plane = {unit<N>(random) * random.between(0.1, 10.0), random.between(-0.6, 0.9)};
+            const Motion<N> normal = unit<N>(random);
+            plane = {normal * random.between(0.1, 10.0), random.between(-0.6, 0.9)};
         }
         const Motion<N> wanted = in_cube<N>(random);
         const NearestMotion<N> sut = nearest(planes, wanted);

@@ -698,8 +698,11 @@ TEST(NearestFaces, are_those_of_all_pairs_however_far_and_whatever_is_remembered
         for (int query = 0; query < 6; ++query)
         {
             MeshPlacement place = random_placement(random);
-            place.place.translation_m.y() +=
-                random.one_in(2) ? 0.0 : random.between(0.0, 1.0) * std::exp2(random.below(8));
+            if (!random.one_in(2))
+            {
+                const double share = random.between(0.0, 1.0);
+                place.place.translation_m.y() += share * std::exp2(random.below(8));
+            }
             const AllPairs truth(tool.present(), object.present(), place, 0.0);
             MeshMemory none;
 

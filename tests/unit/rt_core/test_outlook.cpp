@@ -106,7 +106,7 @@ TEST(ObjectPose, to_world_undoes_to_model)
     for (int i = 0; i < 1'000; ++i)
     {
         ObjectPose pose;
-        pose.rotation = Eigen::AngleAxisd(random.between(-3, 3), random.in_cube(1.0).normalized())
+        pose.rotation = Eigen::AngleAxisd{random.between(-3, 3), random.in_cube(1.0).normalized()}
                             .toRotationMatrix();
         pose.translation_m = random.in_cube(10.0);
         pose.scale = std::exp2(random.between(-5.0, 5.0));
@@ -118,7 +118,7 @@ TEST(ObjectPose, to_world_undoes_to_model)
 ObjectPose any_pose(Random& random)
 {
     ObjectPose pose;
-    pose.rotation = Eigen::AngleAxisd(random.between(0.0, 3.0), random.in_cube(1.0).normalized())
+    pose.rotation = Eigen::AngleAxisd{random.between(0.0, 3.0), random.in_cube(1.0).normalized()}
                         .toRotationMatrix();
     pose.translation_m = random.in_cube(10.0);
     pose.scale = random.between(0.1, 10.0);

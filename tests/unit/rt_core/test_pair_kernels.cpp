@@ -91,8 +91,8 @@ struct BoxScene
                  random.in_cube(size)};
         const double gap = random.one_in(3) ? 0.0 : size * std::exp2(-random.between(0.0, 20.0));
         const Vec3 way = gap * random.in_cube(1.0).normalized();
-        place.place.translation_m =
-            point_in(random, boxes.get(touched)) + way - place.to_there(point_in(random, other));
+        const Vec3 to = point_in(random, boxes.get(touched)) + way;
+        place.place.translation_m = to - place.to_there(point_in(random, other));
         apart_units = gap * units_per_m;
     }
 
@@ -532,7 +532,8 @@ TEST(PairKernels, find_the_highest_vertex_along_a_way)
     Random random(90);
     for (const BlocksScene& scene : pairs_of_shapes(random, 12))
     {
-        const std::uint32_t mask = 1U << random.below(15) | random_mask(random, 15);
+        const std::uint32_t one = 1U << random.below(15);
+        const std::uint32_t mask = one | random_mask(random, 15);
         const Vec3f way = random_way(random);
         const KernelProbe& center = scene.tool_box.center;
         double highest = -1e300;
@@ -657,8 +658,10 @@ TEST(PairKernels, decide_and_bound_near_ties_needles_and_faces_in_one_plane)
         Triangle face;
         for (std::size_t i = 0; i < 3; ++i)
         {
-            face[i] = is_on_grid ? Vec3(random.below(4), random.below(4), random.below(4))
-                                 : Vec3(0.0, 0.0, 0.0);
+            for (double& coordinate : face[i])
+            {
+                coordinate = is_on_grid ? random.below(4) : 0.0;
+            }
         }
         face = is_on_grid ? face : shape.make(random, size);
         Triangle tool = near_tie(random, face, size);

@@ -201,10 +201,11 @@ TEST(PlaneKernels, leave_out_no_face_that_is_entered_on_the_way)
             const auto place = random_place(random, sut);
             // Near-ties, too: as far as a face is at an end, but for some roundings.
             const std::uint32_t face = random.below(kFaces);
+            const long double distance = sut.distance_at(random.one_in(2) ? stand : place, face);
             const auto least = static_cast<float>(
-                sut.distance_at(random.one_in(2) ? stand : place, face) *
-                (random.one_in(2) ? 1.0L + static_cast<long double>(random.between(-1e-6, 1e-6))
-                                  : static_cast<long double>(random.between(0.1, 1.0))));
+                distance * (random.one_in(2)
+                                ? 1.0L + static_cast<long double>(random.between(-1e-6, 1e-6))
+                                : static_cast<long double>(random.between(0.1, 1.0))));
             sut.stand_at(stand);
             static_cast<void>(sut.ask(portable_kernels(), stand, least));
             const auto hits = sut.ask(portable_kernels(), place, least);
@@ -244,9 +245,9 @@ TEST(PlaneKernels, pass_over_only_batches_that_have_no_hit)
         for (int i = 0; i < 8; ++i)
         {
             const auto place = random_place(random, sut);
+            const long double distance = sut.distance_at(place, random.below(kFaces));
             const auto least =
-                static_cast<float>(sut.distance_at(place, random.below(kFaces)) *
-                                   static_cast<long double>(random.between(0.5, 1.5)));
+                static_cast<float>(distance * static_cast<long double>(random.between(0.5, 1.5)));
             if (random.one_in(3))
             {
                 sut.stand_at(place);
@@ -301,9 +302,9 @@ TEST(PlaneKernels, of_every_set_give_the_same_bits)
         for (int i = 0; i < 6; ++i)
         {
             places.push_back(random_place(random, rig));
+            const long double distance = rig.distance_at(places.back(), random.below(kFaces));
             leasts.push_back(
-                static_cast<float>(rig.distance_at(places.back(), random.below(kFaces)) *
-                                   static_cast<long double>(random.between(0.5, 1.5))));
+                static_cast<float>(distance * static_cast<long double>(random.between(0.5, 1.5))));
         }
         ASSERT_NO_FATAL_FAILURE(expect_same_of_every_set(
             scene,

@@ -81,8 +81,8 @@ TEST(Rounding, a_double_is_rounded_to_its_neighbour_on_the_asked_side)
     Random random(11);
     for (int i = 0; i < 300'000; ++i)
     {
-        const double value =
-            std::ldexp(random.between(-1.0, 1.0), static_cast<int>(random.below(270)) - 145);
+        const double mantissa = random.between(-1.0, 1.0);
+        const double value = std::ldexp(mantissa, static_cast<int>(random.below(270)) - 145);
         ASSERT_NO_FATAL_FAILURE(expect_rounded(value));
     }
     for (const double value : {1e-300, -1e-300, 5e-324, -5e-324, 1.0 + 1e-16, 1.0 - 1e-16})

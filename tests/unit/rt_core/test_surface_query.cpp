@@ -394,7 +394,8 @@ ChangedFace face_around_origin(Random& random, std::uint32_t prim, bool exact_on
     const Vec3 way = (random.in_cube(1.0) + Vec3(0.0, 0.0, 1e-3)).normalized();
     for (Vec3f& corner : face.corners_m)
     {
-        corner = to_float(way * random.between(0.98, 1.02) + random.in_cube(0.02));
+        const Vec3 scaled = way * random.between(0.98, 1.02);
+        corner = to_float(scaled + random.in_cube(0.02));
     }
     face.error = exact_only || !random.one_in(3) ? 0 : static_cast<ErrorCode>(1 + random.below(10));
     return face;

@@ -34,6 +34,14 @@ void PrintTo(const ShapeClass& shape, std::ostream* out)
     *out << shape.name;
 }
 
+Vec3 on_grid(Random& random, std::uint32_t across, std::uint32_t up)
+{
+    const double x = random.below(across);
+    const double y = random.below(across);
+    const double z = random.below(up);
+    return {x, y, z};
+}
+
 /// A point near the triangle: above its inside, beside an edge or a corner, far off, or on it.
 Vec3 query_near(Random& random, const Triangle& triangle, double size)
 {
@@ -47,7 +55,10 @@ Vec3 query_near(Random& random, const Triangle& triangle, double size)
     case 1:
         return at + random.in_cube(size * std::exp2(random.between(-40.0, 0.0)));
     case 2:
-        return triangle[random.below(3)] + random.in_cube(size * 0.1);
+    {
+        const Vec3& corner = triangle[random.below(3)];
+        return corner + random.in_cube(size * 0.1);
+    }
     default:
         return random.in_cube(2.0 * size);
     }
@@ -78,7 +89,8 @@ Pose cap(Random& random)
     const Vec3 from = random.in_cube(1.0);
     const Vec3 to = random.in_cube(1.0);
     const double height = std::exp2(random.between(-26.6, -3.0));
-    const Vec3 apex = from + random.between(0.0, 1.0) * (to - from) + random.in_cube(height);
+    const Vec3 foot = from + random.between(0.0, 1.0) * (to - from);
+    const Vec3 apex = foot + random.in_cube(height);
     return with_query(random, {from, apex, to}, 1.0);
 }
 
@@ -102,8 +114,8 @@ Pose collinear(Random& random)
 {
     if (random.one_in(2))
     {
-        const Vec3 a(random.below(8), random.below(8), random.below(8));
-        const Vec3 step(random.below(4), random.below(4), 1 + random.below(4));
+        const Vec3 a = on_grid(random, 8, 8);
+        const Vec3 step = on_grid(random, 4, 4) + Vec3(0, 0, 1);
         return with_query(random, {a, a + step * random.below(5), a + step * random.below(5)}, 8.0);
     }
     const Vec3 a = random.in_cube(1.0);
@@ -140,11 +152,7 @@ Pose tiny(Random& random)
 /// Stored coordinates: floats on a grid, as in a model.
 Pose on_the_grid(Random& random)
 {
-    const auto point = [&random]
-    {
-        const Vec3 grid(random.below(1U << 16U), random.below(1U << 16U), random.below(16));
-        return Vec3(grid * 0x1p-16);
-    };
+    const auto point = [&random] { return Vec3(on_grid(random, 1U << 16U, 16) * 0x1p-16); };
     const Triangle triangle{point(), point(), point()};
     return {triangle, random.one_in(3) ? point() : query_near(random, triangle, 1.0)};
 }
