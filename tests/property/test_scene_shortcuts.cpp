@@ -292,6 +292,13 @@ private:
     {
         EXPECT_EQ(ours.side, theirs.side);
         EXPECT_LE((ours.normal - theirs.normal).norm(), variant_.starts_warm ? 0.0 : kAlike);
+        if (streams_ && !variant_.starts_warm)
+        {
+            compared_.contacts += static_cast<std::uint32_t>(ours.contacts.size());
+            ASSERT_NO_FATAL_FAILURE(expect_contacts(ours, theirs));
+            ASSERT_NO_FATAL_FAILURE(expect_contacts(theirs, ours));
+            return;
+        }
         ASSERT_EQ(ours.contacts.size(), theirs.contacts.size());
         for (std::size_t i = 0; i < ours.contacts.size(); ++i)
         {
@@ -300,15 +307,28 @@ private:
             ++compared_.contacts;
             ASSERT_EQ(a.face, b.face);
             ASSERT_EQ(a.feature, b.feature);
-            if (streams_ && !variant_.starts_warm)
-            {
-                ASSERT_NEAR(a.distance_m, b.distance_m, kAlike);
-                continue;
-            }
             ASSERT_EQ(a.distance_m, b.distance_m);
             ASSERT_EQ(a.on_tool_m, b.on_tool_m);
             ASSERT_EQ(a.on_surface_m, b.on_surface_m);
             ASSERT_EQ(a.normal, b.normal);
+        }
+    }
+
+    /// Of distances that round otherwise: what touches by a rounding is in one report alone, and
+    /// contacts as near as each other come in another order.
+    void expect_contacts(const ContactReport& some, const ContactReport& others)
+    {
+        for (const Contact& contact : some.contacts)
+        {
+            const auto* const same =
+                std::ranges::find(others.contacts, contact.face, &Contact::face);
+            if (same == others.contacts.end())
+            {
+                ASSERT_GE(contact.distance_m, radius_m() - kAlike);
+                continue;
+            }
+            ASSERT_EQ(contact.feature, same->feature);
+            ASSERT_NEAR(contact.distance_m, same->distance_m, kAlike);
         }
     }
 
