@@ -173,7 +173,7 @@ private:
     bool sticks_{false};
     bool slides_{false};
     bool goes_on_{false};
-    bool is_on_{false}; ///< The step is not the frame's first.
+    bool is_on_{false};     ///< The step is not the frame's first.
     bool was_still_{false}; ///< Before this step, and so it rests but for what is new.
     double went_m_{0.0};
     Motion<6> gone_{Motion<6>::Zero()};     ///< In this frame.

@@ -297,17 +297,24 @@ TEST_F(RigidRest, a_box_a_hull_and_a_mesh_on_bumps_and_on_teeth)
         {
             for (int i = 0; i < 3; ++i)
             {
-                Vec3 way = random.in_cube(1.0);
-                way.z() *= model == &gear ? 0.1 : 1.0; // It is flat.
-                way.normalize();
-                const Mat3 turned = rotation_about(random.in_cube(1.0), random.between(0.0, 3.0));
+                Vec3 way;
+                Mat3 turned;
+                do // A spike may fit between two teeth.
+                {
+                    way = random.in_cube(1.0);
+                    way.z() *= model == &gear ? 0.1 : 1.0; // It is flat.
+                    way.normalize();
+                    const Vec3 axis = random.in_cube(1.0);
+                    turned = rotation_about(axis, random.between(0.0, 3.0));
+                } while (crossings(tool, {turned, 0.05 * way - origin_of(*model), 1.0}, *model) ==
+                         0);
                 press(tool, *model, {0.1 * way, 0.05 * way, turned, turned});
             }
         }
     }
     tell("bumps and teeth");
-    EXPECT_LT(errors.force, 0.04);
-    EXPECT_LT(errors.torque, 0.03);
+    EXPECT_LT(errors.force, 2e-3);
+    EXPECT_LT(errors.torque, 0.015);
 }
 
 } // namespace tactus::test

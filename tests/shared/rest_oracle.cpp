@@ -21,6 +21,9 @@ namespace
 constexpr double kReach_m = 0.002; ///< Beyond the radius.
 constexpr double kStep = 1e-7;     ///< Of differences, in metres and radians.
 constexpr int kRounds = 200;       ///< Of each stiffness.
+/// Of a step, as a share of the radius: a longer one could leap over a face, which costs nothing
+/// on its other side.
+constexpr double kLongestStep = 0.5;
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
@@ -45,6 +48,10 @@ public:
         : radius_m_(tool.radius_m), hand_(hand)
     {
         arm_m_ = std::sqrt(springs.stiffness_nm_per_rad / springs.stiffness_n_per_m);
+        for (const Triangle& part : tool.faces)
+        {
+            size_m_ = std::max({size_m_, part[0].norm(), part[1].norm(), part[2].norm()});
+        }
         for (const Face& face : faces)
         {
             Pair pair{to_triangle(face), {}};
@@ -86,7 +93,13 @@ public:
         }
         return deepest;
     }
-    [[nodiscard]] double arm_m() const { return arm_m_; }
+    /// What of a motion is a step of the search.
+    [[nodiscard]] Vector6 step_of(const Vector6& motion) const
+    {
+        const double way_m = motion.head<3>().norm() + size_m_ * motion.tail<3>().norm();
+        const double longest_m = kLongestStep * radius_m_;
+        return way_m > longest_m ? Vector6(motion * (longest_m / way_m)) : motion;
+    }
 
 private:
     static Triangle placed(const Triangle& part, const Similarity& place)
@@ -109,6 +122,7 @@ private:
 
     double radius_m_;
     double arm_m_{1.0};
+    double size_m_{0.0}; ///< How far the core's corners are from its origin, at most.
     Similarity hand_;
     std::vector<Pair> pairs_;
 };
@@ -143,7 +157,7 @@ Similarity least(const Energy& energy, Similarity place, double hardness)
         {
             Eigen::Matrix<double, 6, 6> damped = square;
             damped.diagonal() *= 1.0 + damping;
-            const Similarity tried = moved(place, -damped.ldlt().solve(down));
+            const Similarity tried = moved(place, energy.step_of(-damped.ldlt().solve(down)));
             const Eigen::VectorXd then = energy.at(tried, hardness);
             is_better = then.squaredNorm() < now.squaredNorm();
             damping = is_better ? std::max(1e-9, 0.2 * damping) : 4.0 * damping;
