@@ -166,8 +166,8 @@ public:
     {
         for (ObjectPose& pose : poses_)
         {
-            pose.rotation = Eigen::Quaterniond(random.between(0.1, 1.0), random.between(-1.0, 1.0),
-                                               random.between(-1.0, 1.0), random.between(-1.0, 1.0))
+            pose.rotation = Eigen::Quaterniond{random.between(0.1, 1.0), random.between(-1.0, 1.0),
+                                               random.between(-1.0, 1.0), random.between(-1.0, 1.0)}
                                 .normalized()
                                 .toRotationMatrix();
             pose.scale = scale;
@@ -213,6 +213,7 @@ public:
         , judge_(judge)
     {
         judge_.begin(2, trial.model, trial.tree);
+        run_over_before_ = judge_.figures().run_over.trials;
     }
 
     /// Returns whether the tool is squeezed.
@@ -238,9 +239,12 @@ public:
         }
         return tool.squeezed;
     }
+    /// A tool that an object ran over may be within it, in a corner where it has no room.
     void end()
     {
-        if (squeezed_s_ > 0.0)
+        judge_.figures().let_go += squeezed_s_ > 0.0 ? 0 : 1;
+        const bool is_run_over = judge_.figures().run_over.trials > run_over_before_;
+        if (squeezed_s_ > 0.0 && !is_run_over)
         {
             judge_.flag("there is room again, but not for the tool");
         }
@@ -252,6 +256,7 @@ private:
     Jaws& jaws_;
     PopThroughJudge& judge_;
     double squeezed_s_{0.0};
+    std::uint64_t run_over_before_{0};
 };
 
 void close_and_open(ClosingRound& round, double open_m, double speed_m_per_s)

@@ -37,6 +37,7 @@ struct PopThroughFigures
     std::uint64_t frozen{0};
     std::uint64_t squeezed{0};
     std::uint64_t faded{0};       ///< Frames after kFadeTime_s of a squeeze.
+    std::uint64_t let_go{0};      ///< Rounds after which the tool was squeezed no more.
     std::uint64_t felt_smooth{0}; ///< Frames in which smooth normals made the wall stiffer.
 
     /// The same claims, tried elsewhere.
