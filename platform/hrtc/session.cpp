@@ -11,6 +11,7 @@
 #include "platform/hrtc/scene_choice.hpp"
 #include "platform/hrtc/session_run.hpp"
 #include "platform/hrtc/trace_file.hpp"
+#include "platform/plugin/device_plugin.hpp"
 #include "platform/posix/linux_extras.hpp"
 #include "transport/store/store_link.hpp"
 
@@ -153,9 +154,8 @@ std::optional<Refusal> check_outputs(const Options& options)
 Result<Guardian::Guards, Refusal> make_guards(const Options& options)
 {
     Guardian::Guards guards;
-    for (std::size_t tool = 0; tool < options.devices.size(); ++tool)
+    for (const DeviceChoice& choice : options.devices)
     {
-        const DeviceChoice& choice = options.devices[tool];
         if (!wants_guard(choice))
         {
             continue;
@@ -165,16 +165,27 @@ Result<Guardian::Guards, Refusal> make_guards(const Options& options)
         {
             return guard.error();
         }
-        if (guard.value() == nullptr)
+        if (guard.value() != nullptr)
+        {
+            guards.push_back(std::move(guard).value());
+        }
+    }
+    return guards;
+}
+
+void tell_of_unguarded(const Options& options)
+{
+    for (std::size_t tool = 0; tool < options.devices.size(); ++tool)
+    {
+        const DeviceChoice& choice = options.devices[tool];
+        if (choice.kind == DeviceKind::plugin && !has_guard(choice.library))
         {
             log_line(fmt::format("tool {}: {} has no guard; when hrtc is killed, its own watchdog "
                                  "ends the force, or nothing does",
                                  tool, choice.library));
             continue;
         }
-        guards.push_back(std::move(guard).value());
     }
-    return guards;
 }
 
 /// None where no device needs one.
@@ -231,6 +242,7 @@ Result<std::unique_ptr<Session>, Refusal> Session::open(const Options& options)
     if (auto error = session->assemble())
     {
         return *error;
+    tell_of_unguarded(session->options_);
     }
     return session;
 }

@@ -114,4 +114,10 @@ Result<std::unique_ptr<DeviceGuard>, Refusal> load_guard(const std::string& path
     return guard;
 }
 
+bool has_guard(const std::string& path)
+{
+    const auto plugin = load_plugin(path);
+    return plugin && plugin.value()->guard != nullptr;
+}
+
 } // namespace tactus

@@ -60,6 +60,9 @@ struct DevicePlugin
 [[nodiscard]] Result<std::unique_ptr<DeviceGuard>, Refusal> load_guard(const std::string& path,
                                                                        const DeviceWish& wish);
 
+/// Whether a library that load_device() takes has one.
+[[nodiscard]] bool has_guard(const std::string& path);
+
 } // namespace tactus
 
 extern "C"
