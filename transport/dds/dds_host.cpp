@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <tuple>
 #include <utility>
 
 #include "tactus.h"
@@ -23,21 +24,35 @@ namespace
 
 /// The catalogue is written anew this often: after a stall a host may have been taken for dead.
 constexpr auto kAnnouncement = std::chrono::seconds(1);
-constexpr auto kLookAtDisputed = std::chrono::milliseconds(50);
+constexpr auto kLookForGone = std::chrono::milliseconds(50);
+/// Each controller is looked at once in so many of these times.
+constexpr std::size_t kLooks = 20;
 /// Each has up to four DDS writers, about 400 KB.
 constexpr std::size_t kMaxClients = 1'024;
 /// Controllers that get all objects at the same time: many at once make each other lose what they
 /// get, and it is sent again and again.
-constexpr std::ptrdiff_t kMaxJoining = 2;
-/// Who says nothing about its objects for so long has them, or has other troubles.
+constexpr std::size_t kMaxJoining = 2;
+/// Who says nothing about its objects for so long has them, or has other troubles; for less where
+/// others wait. One has 4,096 objects after some 50 ms.
 constexpr auto kJoiningMax = std::chrono::seconds(5);
+constexpr auto kJoiningMaxBeforeOthers = std::chrono::seconds(1);
 /// It is told again that it may come in; the first time may have been before it listened.
 constexpr auto kLetInAgain = std::chrono::milliseconds(100);
 /// Lines a second of controllers that come and go.
 constexpr std::uint32_t kVisitLines = 40;
-/// Samples sent in one step, so that requests are looked at in between.
-constexpr std::size_t kSamplesPerStep = 64;
-constexpr std::size_t kRequestsPerStep = 1'024;
+/// Each step has so long for requests and for pieces, so that poses go out every 10 ms whatever is
+/// asked for. What isn't done waits for the next step; of requests Cyclone keeps 16 a controller
+/// and gives them in turn.
+constexpr auto kRequestsMax = std::chrono::milliseconds(2);
+constexpr auto kServingMax = std::chrono::milliseconds(4);
+/// Pieces that may be asked for in a second. A controller has 256 wishes and asks for each four
+/// times a second; headers of 256 models, 64 parts each, are asked for ten times.
+constexpr std::uint64_t kAskedMax = 262'144;
+constexpr std::uint64_t kAskedMaxOfProcess = 4 * kAskedMax;
+/// What somebody got counts half after so long.
+constexpr auto kHalfLife = std::chrono::milliseconds(250);
+/// What a sample costs beyond its pieces, in bytes.
+constexpr double kASample = 1'000.0;
 /// How long to wait while a controller's reader is not there yet.
 constexpr auto kMatchWait = std::chrono::milliseconds(2);
 
@@ -51,14 +66,14 @@ std::string name_of(const tactus_v4_Wanted& wanted)
 
 Result<std::unique_ptr<DdsHost>, Refusal> DdsHost::create(std::uint32_t domain,
                                                           std::vector<PublishedModel> models,
-                                                          Log log, std::string scene)
+                                                          Log log, std::string scene, Party party)
 {
     if (models.size() > kMaxModels)
     {
         return Refusal{
             fmt::format("{} models; a host serves at most {}", models.size(), kMaxModels)};
     }
-    auto joined = Domain::join(domain);
+    auto joined = Domain::join(domain, party);
     if (!joined)
     {
         return joined.error();
@@ -116,18 +131,29 @@ void DdsHost::wait(std::chrono::milliseconds timeout)
 
 void DdsHost::step()
 {
-    take_requests();
-    if (Clock::now() - last_looked_ >= kLookAtDisputed)
+    ++steps_;
+    has_more_work_ = false;
+    objects_->step();
+    take_requests(Clock::now() + kRequestsMax);
+    const auto now = Clock::now();
+    if (now - last_looked_ >= kLookForGone)
     {
-        look_for_gone(false);
+        last_looked_ = now;
+        look_for_gone();
+        std::ranges::for_each(clients_, [this](Client& client) { heal(client); });
+    }
+    if (now - last_forgot_ >= kHalfLife)
+    {
+        last_forgot_ = now;
+        forget_use();
     }
     let_in();
-    serve();
-    objects_->step();
+    serve(now + kServingMax);
     if (Clock::now() - last_announced_ >= kAnnouncement)
     {
         announce();
     }
+    objects_->step();
 }
 
 DdsHost::Counters DdsHost::counters() const
@@ -188,7 +214,6 @@ Result<Done, Refusal> DdsHost::open_endpoints()
 void DdsHost::announce()
 {
     domain_.participants().report(fault_log_);
-    look_for_gone(true);
     for (std::uint32_t i = 0; i < models_.size(); ++i)
     {
         const ModelStore& store = models_[i].store();
@@ -207,28 +232,34 @@ void DdsHost::announce()
     last_announced_ = Clock::now();
 }
 
-void DdsHost::take_requests()
+void DdsHost::take_requests(Clock::time_point end)
 {
-    take_each<tactus_v4_Wanted>(
-        wanted_.handle, kRequestsPerStep,
-        [this](const tactus_v4_Wanted& wanted, const dds_sample_info_t& info)
+    const auto take = [this](const tactus_v4_Wanted& wanted, const dds_sample_info_t& info)
+    {
+        ControllerId controller{};
+        std::memcpy(controller.data(), wanted.controller, sizeof(wanted.controller));
+        if (tells_end(info))
         {
-            ControllerId controller{};
-            std::memcpy(controller.data(), wanted.controller, sizeof(wanted.controller));
-            if (tells_end(info))
-            {
-                on_end(controller, info.publication_handle);
-                return;
-            }
-            ++counters_.requests;
-            on_request(controller, wanted);
-            if (Client* client = find(controller))
-            {
-                client->writer = info.publication_handle;
-                client->is_disputed =
-                    client->is_disputed || info.instance_state != DDS_ALIVE_INSTANCE_STATE;
-            }
-        });
+            on_end(controller, info.publication_handle);
+            return;
+        }
+        ++counters_.requests;
+        on_request(controller, wanted);
+        if (Client* client = find(controller))
+        {
+            client->writer = info.publication_handle;
+            client->is_disputed =
+                client->is_disputed || info.instance_state != DDS_ALIVE_INSTANCE_STATE;
+        }
+    };
+    while (take_each<tactus_v4_Wanted>(wanted_.handle, kTakenAtOnce, take) == kTakenAtOnce)
+    {
+        if (Clock::now() >= end)
+        {
+            has_more_work_ = true;
+            return;
+        }
+    }
 }
 
 void DdsHost::on_request(const ControllerId& controller, const tactus_v4_Wanted& wanted)
@@ -255,12 +286,49 @@ void DdsHost::on_request(const ControllerId& controller, const tactus_v4_Wanted&
     {
         client->joining = wanted.objects == 0 ? Joining::not_wanted : Joining::done;
     }
+    if (wanted.objects == 3)
+    {
+        renew_motion(*client);
+    }
     take_wishes(*client, wanted);
+}
+
+/// It hears that we are here, but not what moves: a packet in the writer's name, forged or not, may
+/// have told of a much later sample, and what is older is dropped where it comes in.
+void DdsHost::renew_motion(Client& client)
+{
+    const auto now = Clock::now();
+    if (client.motion_renewals.is_due(now) && objects_->try_renew_motion(now))
+    {
+        client.motion_renewals.begin(now);
+        ++counters_.renewed;
+        fault_log_.write(fmt::format("controller {} hears no motion: another writer tells of it",
+                                     client.subscription.controller_name()));
+    }
+}
+
+void DdsHost::heal(Client& client)
+{
+    if (client.subscription.try_heal(Clock::now()))
+    {
+        ++counters_.renewed;
+        fault_log_.write(fmt::format("pieces don't reach controller {}: other writers send them",
+                                     client.subscription.controller_name()));
+    }
 }
 
 void DdsHost::take_wishes(Client& client, const tactus_v4_Wanted& wanted)
 {
-    for (std::uint32_t i = 0; i < wanted.pieces._length; ++i)
+    const std::uint32_t asked = wanted.pieces._length;
+    Use& of_process = client.process->use;
+    client.use.asked += asked;
+    of_process.asked += asked;
+    if (client.use.asked > kAskedMax || of_process.asked > kAskedMaxOfProcess)
+    {
+        refuse(client.subscription.controller(), Refused::rate);
+        return;
+    }
+    for (std::uint32_t i = 0; i < asked; ++i)
     {
         const tactus_v4_PieceName& name = wanted.pieces._buffer[i];
         const ContentKey key{static_cast<ContentKind>(name.kind), name.number};
@@ -304,40 +372,57 @@ DdsHost::Client* DdsHost::add_client(const ControllerId& controller, const tactu
     const bool has_namesake =
         std::ranges::any_of(clients_, [&](const Client& client)
                             { return client.subscription.controller_name() == name; });
-    clients_.push_back({std::move(created).value()});
+    const std::string program = domain_.participants().name_of(controller);
+    auto process = std::ranges::find(
+        processes_, program, [](const auto& known) -> const std::string& { return known->name; });
+    if (process == processes_.end())
+    {
+        process = processes_.insert(process, std::make_shared<Process>(Process{program}));
+    }
+    clients_.push_back({std::move(created).value(), *process});
     visits_log_.write(fmt::format("controller {} subscribed{}", name,
                                   has_namesake ? "; another one of this name is here" : ""));
     return &clients_.back();
 }
 
-/// As in Catalogue: who isn't the controller can't end it, but makes its end be looked for.
+/// As in Catalogue: who isn't the controller can't end it, but makes its end be looked for; and one
+/// that only falls silent, or of whose writers only one ends, stays until its lease ends.
 void DdsHost::on_end(const ControllerId& controller, std::uint64_t writer)
 {
-    if (domain_.participants().writer_of(writer) == controller)
+    Participants& participants = domain_.participants();
+    const bool is_its_own = participants.writer_of(writer) == controller;
+    if (!is_its_own)
+    {
+        participants.refuse(writer, Refused::identity);
+    }
+    Client* client = find(controller);
+    if (client != nullptr && is_its_own && !participants.is_writing(client->writer))
     {
         on_controller_gone(controller);
-        return;
     }
-    domain_.participants().refuse(writer, Refused::identity);
-    if (Client* client = find(controller))
+    else if (client != nullptr)
     {
         client->is_disputed = true;
     }
 }
 
-void DdsHost::look_for_gone(bool at_all)
+void DdsHost::look_for_gone()
 {
-    last_looked_ = Clock::now();
     std::vector<ControllerId> gone;
-    for (const Client& client : clients_)
+    const std::size_t turn_end = looked_at_ + clients_.size() / kLooks + 1;
+    for (std::size_t i = 0; i < clients_.size(); ++i)
     {
+        const Client& client = clients_[i];
         const ControllerId& controller = client.subscription.controller();
-        if ((at_all || client.is_disputed) && !(domain_.participants().is_writing(client.writer) &&
-                                                domain_.participants().is_here(controller)))
+        const bool is_its_turn = i >= looked_at_ && i < turn_end;
+        if ((is_its_turn || client.is_disputed) &&
+            !(domain_.participants().is_writing(client.writer) &&
+              domain_.participants().is_here(controller)))
         {
             gone.push_back(controller);
         }
     }
+    looked_at_ = turn_end < clients_.size() ? turn_end : 0;
     std::ranges::for_each(gone, [this](const ControllerId& each) { on_controller_gone(each); });
 }
 
@@ -357,39 +442,109 @@ void DdsHost::on_controller_gone(const ControllerId& controller)
     clients_.erase(clients_.begin() + (client - clients_.data()));
 }
 
-void DdsHost::serve()
+/// Called every kHalfLife.
+void DdsHost::forget_use()
 {
-    std::size_t sent = 0;
-    std::size_t idle = 0;
-    while (sent < kSamplesPerStep && idle < clients_.size())
+    const auto fade = [](Use& use)
     {
-        next_turn_ = (next_turn_ + 1) % clients_.size();
-        const bool did =
-            clients_[next_turn_].subscription.send_one(epoch_, models_, room_, fault_log_);
-        sent += did ? 1U : 0U;
-        idle = did ? 0 : idle + 1;
+        constexpr auto kTimesInASecond = std::chrono::seconds(1) / kHalfLife;
+        use.asked -= use.asked / kTimesInASecond;
+        use.got_bytes /= 2.0;
+    };
+    std::erase_if(processes_, [](const auto& process) { return process.use_count() == 1; });
+    for (const auto& process : processes_)
+    {
+        fade(process->use);
     }
-    has_more_work_ = sent == kSamplesPerStep;
+    for (Client& client : clients_)
+    {
+        fade(client.use);
+    }
 }
 
-/// Two controllers at a time get all objects.
+/// The one of the process that got least of late, and in it the one that did; null when there is
+/// nothing more to do in this step.
+DdsHost::Client* DdsHost::next_to_serve()
+{
+    Client* next = nullptr;
+    for (Client& client : clients_)
+    {
+        if (client.passed == steps_ || !client.subscription.has_work())
+        {
+            continue;
+        }
+        const auto got = [](const Client& who)
+        { return std::pair(who.process->use.got_bytes, who.use.got_bytes); };
+        next = next == nullptr || got(client) < got(*next) ? &client : next;
+    }
+    return next;
+}
+
+void DdsHost::serve(Clock::time_point end)
+{
+    while (Client* client = next_to_serve())
+    {
+        if (Clock::now() >= end)
+        {
+            has_more_work_ = true;
+            return;
+        }
+        Subscription& subscription = client->subscription;
+        const std::uint64_t sent_before = subscription.bytes_sent();
+        if (!subscription.send_one(epoch_, models_, room_, fault_log_))
+        {
+            client->passed = steps_;
+            continue;
+        }
+        const auto bytes = static_cast<double>(subscription.bytes_sent() - sent_before) + kASample;
+        client->use.got_bytes += bytes;
+        client->process->use.got_bytes += bytes;
+    }
+}
+
+/// Two controllers at a time get all objects: first those of a process of which none is under way,
+/// among them of the one that was let in longest ago.
 void DdsHost::let_in()
 {
     const auto now = Clock::now();
-    std::ptrdiff_t joining = std::ranges::count(clients_, Joining::under_way, &Client::joining);
+    const bool do_others_wait =
+        std::ranges::find(clients_, Joining::waits, &Client::joining) != clients_.end();
+    const auto longest = do_others_wait ? kJoiningMaxBeforeOthers : kJoiningMax;
+    std::vector<const Process*> under_way;
+    std::vector<Client*> waiting;
     for (Client& client : clients_)
     {
-        if (client.joining == Joining::under_way && now - client.let_in > kJoiningMax)
+        if (client.joining == Joining::under_way && now - client.let_in > longest)
         {
             client.joining = Joining::done;
-            --joining;
         }
-        const bool is_next = client.joining == Joining::waits && joining < kMaxJoining;
-        if (is_next && client.subscription.let_in(epoch_))
+        if (client.joining == Joining::under_way)
         {
-            client.joining = Joining::under_way;
-            client.let_in = now;
-            ++joining;
+            under_way.push_back(client.process.get());
+        }
+        if (client.joining == Joining::waits)
+        {
+            waiting.push_back(&client);
+        }
+    }
+    std::ranges::stable_sort(waiting, {},
+                             [&](const Client* client)
+                             {
+                                 const Process* process = client->process.get();
+                                 return std::tuple(std::ranges::count(under_way, process),
+                                                   process->let_in, client->let_in);
+                             });
+    for (Client* client : waiting)
+    {
+        if (under_way.size() == kMaxJoining)
+        {
+            break;
+        }
+        if (client->subscription.let_in(epoch_))
+        {
+            client->joining = Joining::under_way;
+            client->let_in = client->process->let_in = now;
+            under_way.push_back(client->process.get());
         }
     }
 }

@@ -33,6 +33,7 @@ public:
         std::uint64_t bytes_sent{0}; ///< Payload.
         std::uint64_t requests{0};
         std::uint64_t requests_refused{0}; ///< A bad name, an unknown piece, too many.
+        std::uint64_t renewed{0}; ///< Times that writers were made anew for who was deaf to them.
     };
     struct Subscriber
     {
@@ -48,12 +49,13 @@ public:
     /// objects together; empty: nothing.
     [[nodiscard]] static Result<std::unique_ptr<DdsHost>, Refusal>
     create(std::uint32_t domain, std::vector<PublishedModel> models, Log log,
-           std::string scene = {});
+           std::string scene = {}, Party party = Party::host);
 
     /// Waits until there is something to do, at most `timeout`. Signals don't end it early.
     void wait(std::chrono::milliseconds timeout);
-    /// Takes requests, serves a bounded number of samples round-robin, which reads the models'
-    /// files, announces when due, and steps the objects.
+    /// Sends what has moved, then takes requests, serves, which reads the models' files, and
+    /// announces when due, each for some milliseconds at most: call it again at once when wait()
+    /// does. First served is the process that got least lately, and in it the controller that did.
     void step();
 
     [[nodiscard]] Counters counters() const;
@@ -75,12 +77,29 @@ private:
         under_way, ///< It was let in; the objects are on their way to it.
         done,
     };
+    /// What somebody asked for in the last second and got of late.
+    struct Use
+    {
+        std::uint64_t asked{0};
+        double got_bytes{0.0};
+    };
+    /// All controllers of one process, as it names itself.
+    struct Process
+    {
+        std::string name;
+        Use use{};
+        Clock::time_point let_in{}; ///< When the last one was.
+    };
     struct Client
     {
         Subscription subscription;
+        std::shared_ptr<Process> process;
+        Use use{};
         Joining joining{Joining::not_wanted};
         Clock::time_point let_in{};
         std::uint64_t writer{0}; ///< Handle of the last request's.
+        std::uint64_t passed{0}; ///< The step in which there was nothing for it.
+        Backoff motion_renewals{};
         bool is_disputed{false}; ///< Somebody said that it is gone, perhaps another program.
     };
 
@@ -88,19 +107,23 @@ private:
 
     [[nodiscard]] Result<Done, Refusal> open_endpoints();
     void announce();
-    void take_requests();
+    void take_requests(Clock::time_point end);
     void on_request(const ControllerId& controller, const tactus_v4_Wanted& wanted);
     void take_wishes(Client& client, const tactus_v4_Wanted& wanted);
+    void renew_motion(Client& client);
+    void heal(Client& client);
     void refuse(const ControllerId& controller, Refused reason);
     [[nodiscard]] Client* add_client(const ControllerId& controller,
                                      const tactus_v4_Wanted& wanted);
     void on_end(const ControllerId& controller, std::uint64_t writer);
     /// Of what a stranger wrote in a controller's name too, DDS tells no end while the stranger is
-    /// here: a controller goes with its writer or its participant. `at_all`: not at those alone of
-    /// which somebody said so.
-    void look_for_gone(bool at_all);
+    /// here: a controller goes with its writer or its participant. Looks at those of which somebody
+    /// said so, and at some others in turn.
+    void look_for_gone();
     void on_controller_gone(const ControllerId& controller);
-    void serve();
+    void forget_use();
+    void serve(Clock::time_point end);
+    [[nodiscard]] Client* next_to_serve();
     void let_in();
     [[nodiscard]] Client* find(const ControllerId& controller);
 
@@ -115,9 +138,12 @@ private:
     Entity waitset_;
     std::unique_ptr<ObjectPublisher> objects_; ///< From create() on.
     std::vector<Client> clients_;
-    std::size_t next_turn_{0};
+    std::vector<std::shared_ptr<Process>> processes_;
+    std::size_t looked_at_{0}; ///< Of clients_, by look_for_gone().
+    std::uint64_t steps_{0};
     bool has_more_work_{false};
     Clock::time_point last_announced_{};
+    Clock::time_point last_forgot_{};
     Clock::time_point last_looked_{};
     PieceBuffers room_;
     Counters counters_;

@@ -27,6 +27,9 @@ namespace
 constexpr int kRepeats = 3;
 /// An object that has rested for this long gets its record anew, for late joiners.
 constexpr auto kRest = std::chrono::milliseconds(500);
+/// Another writer of motion is made this often at most, and gets so long until it is heard.
+constexpr auto kRenewalEvery = std::chrono::milliseconds(300);
+constexpr auto kHandOver = std::chrono::milliseconds(250);
 /// What it has.
 constexpr const char* kBadMaterial =
     "has a material with stiffness not above 0, friction, damping or viscosity below 0, dynamic "
@@ -38,8 +41,8 @@ constexpr const char* kBadMaterial =
 Result<std::unique_ptr<ObjectPublisher>, Refusal>
 ObjectPublisher::create(const Domain& domain, std::vector<ContentHash> models)
 {
-    const std::uint64_t epoch = domain.participants().own_epoch();
-    std::unique_ptr<ObjectPublisher> publisher(new ObjectPublisher(epoch, std::move(models)));
+    std::unique_ptr<ObjectPublisher> publisher(new ObjectPublisher(domain, std::move(models)));
+    const std::uint64_t epoch = publisher->host_epoch_;
     auto records = make_writer(domain, Topic::objects, host_partition(epoch));
     if (!records)
     {
@@ -55,8 +58,8 @@ ObjectPublisher::create(const Domain& domain, std::vector<ContentHash> models)
     return publisher;
 }
 
-ObjectPublisher::ObjectPublisher(std::uint64_t host_epoch, std::vector<ContentHash> models)
-    : host_epoch_(host_epoch), models_(std::move(models))
+ObjectPublisher::ObjectPublisher(const Domain& domain, std::vector<ContentHash> models)
+    : domain_(&domain), host_epoch_(domain.participants().own_epoch()), models_(std::move(models))
 {
 }
 
@@ -150,6 +153,7 @@ void ObjectPublisher::step()
 {
     const auto now = Clock::now();
     is_full_ = false;
+    change_motion_writer(now);
     due_.clear();
     for (const std::uint32_t object : awake_)
     {
@@ -173,6 +177,31 @@ void ObjectPublisher::step()
         send({}, now);
     }
     settle(now);
+}
+
+bool ObjectPublisher::try_renew_motion(Clock::time_point now)
+{
+    if (now - renewed_ < kRenewalEvery)
+    {
+        return false;
+    }
+    auto motion = make_writer(*domain_, Topic::motion, host_partition(host_epoch_));
+    if (!motion)
+    {
+        return false;
+    }
+    next_motion_ = std::move(motion).value();
+    renewed_ = now;
+    return true;
+}
+
+void ObjectPublisher::change_motion_writer(Clock::time_point now)
+{
+    if (next_motion_.is_valid() &&
+        (readers_of(next_motion_) >= readers_of(motion_) || now - renewed_ >= kHandOver))
+    {
+        motion_ = std::exchange(next_motion_, {});
+    }
 }
 
 ObjectPublisher::Clock::time_point ObjectPublisher::next_beat() const noexcept

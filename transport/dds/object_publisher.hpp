@@ -48,6 +48,11 @@ public:
     /// Call it after moving, and every kMotionBeat at least. 0.1 us and less where all rests.
     void step();
 
+    /// Another writer takes the place of the one that tells what moves, as soon as it is heard by
+    /// as many, or after 250 ms: until then both are there, so nobody misses a beat. Three times a
+    /// second at most; false when it is not due.
+    bool try_renew_motion(std::chrono::steady_clock::time_point now);
+
     /// When step() has something to do though nothing moves; far off when nothing was ever shown.
     [[nodiscard]] std::chrono::steady_clock::time_point next_beat() const noexcept;
 
@@ -70,18 +75,22 @@ private:
         Clock::time_point sent{};
     };
 
-    ObjectPublisher(std::uint64_t host_epoch, std::vector<ContentHash> models);
+    ObjectPublisher(const Domain& domain, std::vector<ContentHash> models);
 
+    void change_motion_writer(Clock::time_point now);
     void wake(std::uint32_t object);
     void write_record(std::uint32_t object);
     void write_end(std::uint32_t object);
     void settle(Clock::time_point now);
     void send(std::span<const std::uint32_t> moved, Clock::time_point now);
 
+    const Domain* domain_;
     std::uint64_t host_epoch_;
     std::vector<ContentHash> models_;
     Endpoint records_;
     Endpoint motion_;
+    Endpoint next_motion_; ///< Takes its place.
+    Clock::time_point renewed_{};
     std::vector<Slot> slots_;
     std::vector<std::uint32_t> free_;  ///< Numbers that were used.
     std::vector<std::uint32_t> awake_; ///< Numbers of those that don't rest.

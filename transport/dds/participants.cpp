@@ -4,6 +4,7 @@
 
 #include "platform/base/printable.hpp"
 #include "transport/content_hash.hpp"
+#include "transport/dds/take.hpp"
 #include "transport/dds/topics.hpp"
 
 #include <dds/dds.h>
@@ -33,37 +34,29 @@ ParticipantId id_of(const dds_guid_t& guid)
     return id;
 }
 
-/// Calls `visit(sample, info)` with what DDS has published anew.
-template <typename Sample, typename Visit>
-void read_news(std::int32_t reader, Visit&& visit)
+/// Takes what DDS has published since the last call: calls `visit(sample)` with what is there and
+/// `forget(sample)`, of which the key alone is set, with what is gone. That is taken from the
+/// reader `kept` as well, which would keep it without end. 1 us without news.
+template <typename Sample, typename Visit, typename Forget>
+void take_news(std::int32_t news, std::int32_t kept, Visit&& visit, Forget&& forget)
 {
-    const std::uint32_t fresh =
-        DDS_NOT_READ_SAMPLE_STATE | DDS_ANY_VIEW_STATE | DDS_ANY_INSTANCE_STATE;
-    for (;;)
-    {
-        void* sample = nullptr;
-        dds_sample_info_t info = {};
-        if (dds_read_mask(reader, &sample, &info, 1, 1, fresh) != 1)
+    take_each<Sample>(
+        news, kMaxKnown,
+        [&](const Sample& sample, const dds_sample_info_t& info)
         {
-            break;
-        }
-        if (info.valid_data)
-        {
-            visit(*static_cast<const Sample*>(sample), info);
-        }
-        dds_return_loan(reader, &sample, 1);
-    }
-    // Of those that are gone; or they would be kept for ever.
-    const std::uint32_t gone = DDS_ANY_SAMPLE_STATE | DDS_ANY_VIEW_STATE |
-                               DDS_NOT_ALIVE_DISPOSED_INSTANCE_STATE |
-                               DDS_NOT_ALIVE_NO_WRITERS_INSTANCE_STATE;
-    void* sample = nullptr;
-    dds_sample_info_t info = {};
-    while (dds_take_mask(reader, &sample, &info, 1, 1, gone) == 1)
-    {
-        dds_return_loan(reader, &sample, 1);
-        sample = nullptr;
-    }
+            if (info.instance_state == DDS_ALIVE_INSTANCE_STATE)
+            {
+                visit(sample);
+                return;
+            }
+            forget(sample);
+            void* last = nullptr;
+            dds_sample_info_t last_info = {};
+            if (dds_take_instance(kept, &last, &last_info, 1, 1, info.instance_handle) > 0)
+            {
+                dds_return_loan(kept, &last, 1);
+            }
+        });
 }
 
 /// Calls `visit(about, info)` with what DDS tells of a participant; never for an unknown one.
@@ -120,6 +113,10 @@ Participants::Participants(std::int32_t participant)
     : writers_(dds_create_reader(participant, DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr))
     , participants_(
           dds_create_reader(participant, DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, nullptr, nullptr))
+    , writer_news_(
+          dds_create_reader(participant, DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr))
+    , participant_news_(
+          dds_create_reader(participant, DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, nullptr, nullptr))
 {
     dds_guid_t guid = {};
     dds_get_guid(participant, &guid);
@@ -174,15 +171,16 @@ void Participants::refuse(std::uint64_t publication_handle, Refused reason, std:
 void Participants::report(RateLimitedLog& log)
 {
     report_other_versions(log);
+    report_crowds(log);
     refusals_.report(log, [this](const ParticipantId& who) { return name_of(who); });
 }
 
 void Participants::report_other_versions(RateLimitedLog& log)
 {
     const std::string ours = std::to_string(kProtocolVersion);
-    read_news<dds_builtintopic_endpoint_t>(
-        writers_,
-        [&](const dds_builtintopic_endpoint_t& writer, const dds_sample_info_t&)
+    take_news<dds_builtintopic_endpoint_t>(
+        writer_news_, writers_,
+        [&](const dds_builtintopic_endpoint_t& writer)
         {
             const auto version = version_of(writer.topic_name);
             const ParticipantId who = id_of(writer.participant_key);
@@ -193,7 +191,53 @@ void Participants::report_other_versions(RateLimitedLog& log)
             }
             log.write(fmt::format("{} is refused: it speaks protocol version {}, this build {}",
                                   name_of(who), *version, ours));
-        });
+        },
+        [](const dds_builtintopic_endpoint_t&) {});
+}
+
+/// Cyclone keeps some KB of each participant that was heard until its lease ends, which its own
+/// word sets, and has no bound: all that can be done is to say so.
+void Participants::report_crowds(RateLimitedLog& log)
+{
+    take_news<dds_builtintopic_participant_t>(
+        participant_news_, participants_,
+        [&](const dds_builtintopic_participant_t& about)
+        {
+            const ParticipantId who = id_of(about.key);
+            if (here_.size() == kMaxKnown || here_.contains(who))
+            {
+                return;
+            }
+            const std::string& name = here_.emplace(who, name_of(who)).first->second;
+            Crowd& crowd = crowds_[name];
+            if (++crowd.count >= crowd.told_at)
+            {
+                crowd.told_at = 10 * crowd.count;
+                log.write(fmt::format("{} has {} participants on this domain", name, crowd.count));
+            }
+        },
+        [&](const dds_builtintopic_participant_t& gone) { forget_participant(id_of(gone.key)); });
+    if (here_.size() >= told_at_)
+    {
+        told_at_ = 10 * here_.size();
+        log.write(fmt::format("{} participants are on this domain, and each takes memory until its "
+                              "lease ends",
+                              here_.size()));
+    }
+}
+
+void Participants::forget_participant(const ParticipantId& who)
+{
+    const auto gone = here_.find(who);
+    if (gone == here_.end())
+    {
+        return;
+    }
+    if (const auto crowd = crowds_.find(gone->second); --crowd->second.count == 0)
+    {
+        crowds_.erase(crowd);
+    }
+    here_.erase(gone);
 }
 
 bool Participants::is_writing(std::uint64_t publication_handle) const

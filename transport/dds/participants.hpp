@@ -59,19 +59,39 @@ public:
     [[nodiscard]] Refusals& refusals() noexcept { return refusals_; }
 
     /// Names each participant that has come since the last call and has topics of another version
-    /// of the protocol, once; and what was refused, see Refusals::report(). Cheap without news.
+    /// of the protocol, once; each process that has 32 participants, 320, and so on; how many there
+    /// are in all from 1,000 on; and what was refused, see Refusals::report(). Cheap without news.
     void report(RateLimitedLog& log);
+    /// Participants on the domain, our own included, as of the last report().
+    [[nodiscard]] std::size_t count() const noexcept { return here_.size(); }
 
 private:
+    /// Participants of one process.
+    struct Crowd
+    {
+        std::size_t count{0};
+        std::size_t told_at{kCrowd};
+    };
+    /// No honest process has so many, nor a domain.
+    static constexpr std::size_t kCrowd = 32;
+    static constexpr std::size_t kMultitude = 1'000;
+
     void report_other_versions(RateLimitedLog& log);
+    void report_crowds(RateLimitedLog& log);
+    void forget_participant(const ParticipantId& who);
 
     std::int32_t writers_; ///< Readers of what DDS itself publishes; they end with the participant.
     std::int32_t participants_;
+    std::int32_t writer_news_; ///< The same, emptied by report().
+    std::int32_t participant_news_;
     ParticipantId own_{};
     std::uint64_t own_epoch_;
     std::mutex mutex_;
     std::map<std::uint64_t, ParticipantId> known_;
     std::set<ParticipantId> reported_;
+    std::map<std::string, Crowd> crowds_;       ///< By the name of the process.
+    std::map<ParticipantId, std::string> here_; ///< And that of its process.
+    std::size_t told_at_{kMultitude};
     Refusals refusals_;
 };
 

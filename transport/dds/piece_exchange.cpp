@@ -86,12 +86,13 @@ bool PieceExchange::is_let_in(std::uint64_t host_epoch) const
     return host != hosts_.end() && host->is_let_in;
 }
 
-void PieceExchange::tell_objects_are_here(std::uint64_t host_epoch)
+void PieceExchange::tell_objects_are_here(std::uint64_t host_epoch, bool hears_motion)
 {
     Host& host = host_of(host_epoch);
-    if (host.objects != Objects::are_here)
+    const Objects objects = hears_motion ? Objects::are_here : Objects::hear_no_motion;
+    if (host.objects != objects)
     {
-        host.objects = Objects::are_here;
+        host.objects = objects;
         host.last_sent = {};
     }
 }
@@ -191,12 +192,13 @@ void PieceExchange::hand_over(std::span<const std::byte> payload, Host& host, st
         {
             if (receiver->model() == piece->key.model)
             {
-                receiver->receive(key, piece->bytes);
+                receiver->receive(host.epoch, key, piece->bytes);
             }
         }
     }
     host.credit.on_sample(sent, pieces);
     host.awaits_pieces = false;
+    host.write_offs = 0;
     host.last_progress = Clock::now();
 }
 
@@ -207,6 +209,10 @@ void PieceExchange::keep_credit(Host& host)
     {
         host.credit.write_off();
         host.last_progress = now;
+        if (++host.write_offs > 1) // It may be deaf to our writers, by a forged packet.
+        {
+            static_cast<void>(wanted_->try_renew(now));
+        }
     }
     const bool is_half_used = host.credit.granted() >= host.granted_sent + kCreditPieces / 2;
     if (!host.wishes.empty() || is_half_used || now - host.last_sent >= kRenewal)

@@ -22,12 +22,18 @@
 namespace tactus::dds
 {
 
+/// When nothing came of a host for so long though it was asked, others that serve the same are
+/// asked, so many at the same time: most may be strangers that never answer.
+inline constexpr std::chrono::milliseconds kSilence{300};
+inline constexpr std::size_t kHostsAtOnce = 64;
+
 /// Gets the pieces of one model. The bytes are not verified, and valid only during the call.
 class PieceReceiver
 {
 public:
     [[nodiscard]] virtual const ContentHash& model() const = 0;
-    virtual void receive(ContentKey key, std::span<const std::byte> bytes) = 0;
+    virtual void receive(std::uint64_t host_epoch, ContentKey key,
+                         std::span<const std::byte> bytes) = 0;
 
 protected:
     ~PieceReceiver() = default;
@@ -57,8 +63,9 @@ public:
     /// The host's objects are wanted; it says when they may be read, which is_let_in() tells.
     void ask_for_objects(std::uint64_t host_epoch);
     [[nodiscard]] bool is_let_in(std::uint64_t host_epoch) const;
-    /// Makes room for the next one.
-    void tell_objects_are_here(std::uint64_t host_epoch);
+    /// Makes room for the next one. `hears_motion` false: asks the host for another writer of
+    /// motion, whose readers a forged packet can make deaf.
+    void tell_objects_are_here(std::uint64_t host_epoch, bool hears_motion);
     /// They aren't wanted any more; who wants them again waits again.
     void leave_objects(std::uint64_t host_epoch);
 
@@ -76,6 +83,7 @@ private:
         not_wanted,
         waits,
         are_here,
+        hear_no_motion,
     };
     struct Host
     {
@@ -84,6 +92,7 @@ private:
         std::vector<HostPiece> wishes;
         std::uint32_t generation{0};
         std::uint64_t granted_sent{0}; ///< As last told to the host.
+        std::uint32_t write_offs{0};   ///< Since the last sample came.
         bool awaits_pieces{false};     ///< Something was asked for since the last sample came.
         bool is_let_in{false};
         Objects objects{Objects::not_wanted};

@@ -45,6 +45,9 @@ std::string text_of(Refused reason, std::uint32_t number)
         return "a wish for a piece that there is not";
     case Refused::telemetry:
         return "telemetry with a name or numbers that are none, or of too many controllers";
+    case Refused::rate:
+        return "more pieces asked for in a second than a host takes in of one controller or "
+               "process";
     case Refused::not_served:
     case Refused::controller:
         break;
@@ -57,9 +60,9 @@ std::string text_of(Refused reason, std::uint32_t number)
 const std::array<const char*, kRefusedKinds>& refused_names() noexcept
 {
     static constexpr std::array<const char*, kRefusedKinds> names{
-        "identity",        "object_number", "model_number", "object_name",
-        "object_material", "object_pose",   "not_served",   "model_name",
-        "model_room",      "controller",    "wish",         "telemetry"};
+        "identity",    "object_number", "model_number", "object_name", "object_material",
+        "object_pose", "not_served",    "model_name",   "model_room",  "controller",
+        "wish",        "telemetry",     "rate"};
     return names;
 }
 

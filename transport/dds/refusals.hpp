@@ -36,8 +36,9 @@ enum class Refused : std::uint8_t
     controller,  ///< Its name is none, or there are too many.
     wish,        ///< For a piece that there isn't.
     telemetry,   ///< Or a front: names or numbers that are none, or too many to watch.
+    rate,        ///< More pieces asked for in a second than a host takes in.
 };
-inline constexpr std::size_t kRefusedKinds = 12;
+inline constexpr std::size_t kRefusedKinds = 13;
 
 /// What of one participant was refused.
 struct PeerRefusals

@@ -31,6 +31,9 @@ constexpr auto kCompleteMax = std::chrono::seconds(2);
 constexpr auto kServedMax = std::chrono::seconds(2);
 /// What a host says of its objects after so long, it says after what it said before.
 constexpr auto kDispute = std::chrono::milliseconds(40);
+/// A host with objects is heard every 20 ms; one that isn't for so long is asked for another
+/// writer.
+constexpr auto kMotionLost = std::chrono::milliseconds(300);
 
 } // namespace
 
@@ -58,13 +61,14 @@ void SceneReader::poll(std::span<const std::uint64_t> hosts, const Take& take)
     for (const std::uint64_t epoch : hosts)
     {
         Host& host = hosts_[epoch];
+        watch(epoch, host);
         if (!host.motion.is_valid())
         {
             join(epoch, host);
             continue;
         }
         take_records(epoch, host, take);
-        take_motion(host, take);
+        take_motion(epoch, host, take);
         look_at_strangers(epoch, host, take);
         if (!host.is_complete && Clock::now() - host.since > kCompleteMax)
         {
@@ -72,7 +76,9 @@ void SceneReader::poll(std::span<const std::uint64_t> hosts, const Take& take)
         }
         if (host.is_complete)
         {
-            exchange_.tell_objects_are_here(epoch);
+            drop_unconfirmed(host, take);
+            exchange_.tell_objects_are_here(epoch, host.objects.empty() ||
+                                                       Clock::now() - host.heard < kMotionLost);
         }
     }
 }
@@ -112,11 +118,48 @@ void SceneReader::join(std::uint64_t epoch, Host& host)
     }
     host.records = std::move(records).value();
     host.motion = std::move(motion).value();
-    host.since = Clock::now();
+    host.since = host.heard = Clock::now();
+}
+
+/// What a host that was gone says when it is back is read by other readers: those that there were
+/// don't tell what it removed meanwhile.
+void SceneReader::watch(std::uint64_t epoch, Host& host)
+{
+    const bool was_gone = std::exchange(host.is_gone, !exchange_.catalogue().has_host(epoch));
+    if (!was_gone || host.is_gone || !host.motion.is_valid())
+    {
+        return;
+    }
+    host.records = {};
+    host.motion = {};
+    host.motion_writer = 0;
+    host.disputed.clear();
+    host.strangers.clear();
+    host.is_complete = false;
+    for (const auto& [number, object] : host.objects)
+    {
+        host.unconfirmed.insert(number);
+    }
+    exchange_.leave_objects(epoch);
+}
+
+void SceneReader::drop_unconfirmed(Host& host, const Take& take)
+{
+    for (const std::uint32_t number : std::exchange(host.unconfirmed, {}))
+    {
+        remove(host, number, take);
+    }
 }
 
 void SceneReader::take_records(std::uint64_t epoch, Host& host, const Take& take)
 {
+    std::map<std::uint64_t, bool> writers; // Asked once a call.
+    const auto is_there = [&](std::uint64_t writer)
+    {
+        const auto [known, is_new] = writers.try_emplace(writer, false);
+        known->second = is_new ? domain_.participants().is_writing(writer) : known->second;
+        return known->second;
+    };
     take_each<tactus_v4_ObjectRecord>(
         host.records.handle, kRecordsPerPoll,
         [&](const tactus_v4_ObjectRecord& record, const dds_sample_info_t& info)
@@ -138,6 +181,10 @@ void SceneReader::take_records(std::uint64_t epoch, Host& host, const Take& take
             }
             else if (domain_.participants().is_host(info.publication_handle, epoch))
             {
+                if (!is_there(info.publication_handle))
+                {
+                    return; // It is gone, not the object.
+                }
                 host.disputed.erase(record.object);
                 host.strangers.erase(record.object);
                 remove(host, record.object, take);
@@ -168,6 +215,7 @@ std::optional<Refused> SceneReader::take_record(Host& host, const tactus_v4_Obje
     {
         return Refused::object_material;
     }
+    host.unconfirmed.erase(record.object);
     const auto known = host.objects.find(record.object);
     if (known != host.objects.end() && known->second.generation == record.generation)
     {
@@ -201,7 +249,26 @@ std::optional<Refused> SceneReader::take_record(Host& host, const tactus_v4_Obje
     return std::nullopt;
 }
 
-void SceneReader::take_motion(Host& host, const Take& take)
+/// A packet in a writer's name that tells of a much later sample makes Cyclone take all others of
+/// that writer for old.
+void SceneReader::hear(std::uint64_t epoch, Host& host, std::uint64_t writer)
+{
+    const auto now = Clock::now();
+    const auto silent = std::chrono::duration_cast<std::chrono::milliseconds>(now - host.heard);
+    const bool is_other = host.motion_writer != 0 && host.motion_writer != writer;
+    if (is_other && silent >= kMotionLost)
+    {
+        ++motion_regained_;
+        log_.write(fmt::format("motion of host {:016x} was lost for {} ms though it was there, by "
+                               "a forged packet or a long stall; another writer tells of it",
+                               epoch, silent.count()));
+    }
+    host.heard = now;
+    host.motion_writer = writer;
+    host.was_heard = true;
+}
+
+void SceneReader::take_motion(std::uint64_t epoch, Host& host, const Take& take)
 {
     host.was_heard = false;
     take_each<tactus_v4_Motion>(
@@ -212,7 +279,7 @@ void SceneReader::take_motion(Host& host, const Take& take)
             {
                 return;
             }
-            host.was_heard = true;
+            hear(epoch, host, info.publication_handle);
             for (std::uint32_t i = 0; i < motion.moved._length; ++i)
             {
                 const tactus_v4_MovedObject& moved = motion.moved._buffer[i];
@@ -229,8 +296,7 @@ void SceneReader::take_motion(Host& host, const Take& take)
                 }
             }
             settle_disputed(host, motion.objects, take);
-            host.is_complete =
-                host.is_complete || host.objects.size() + host.strangers.size() >= motion.objects;
+            host.is_complete = host.is_complete || host.known() >= motion.objects;
         });
 }
 
@@ -310,6 +376,7 @@ bool SceneReader::try_move(SeenObject& object, std::uint64_t serial, const tactu
 void SceneReader::remove(Host& host, std::uint32_t number, const Take& take)
 {
     const auto known = host.objects.find(number);
+    host.unconfirmed.erase(number);
     if (known != host.objects.end())
     {
         const SeenObject last = std::move(known->second);

@@ -15,6 +15,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -58,8 +59,9 @@ enum class SceneNews : std::uint8_t
 /// The controller's side of objects: those of the hosts that it follows, checked. A host lets in a
 /// few controllers at a time, so the objects come a little later than the host is followed. What is
 /// older than what is here, or no pose, is counted and passed over. An object of a model that its
-/// host doesn't serve isn't there: it comes when the host serves it. One thread, that of the
-/// exchange; no call waits.
+/// host doesn't serve isn't there: it comes when the host serves it. The objects of a host that is
+/// gone stay as they are; when it is back what it doesn't show any more goes. One thread, that of
+/// the exchange; no call waits.
 class SceneReader
 {
 public:
@@ -85,6 +87,9 @@ public:
     [[nodiscard]] const std::map<std::uint32_t, SeenObject>&
     objects(std::uint64_t host_epoch) const;
 
+    /// How often a host's motion was lost though the host was there, and came by another writer.
+    [[nodiscard]] std::uint64_t motion_regained() const noexcept { return motion_regained_; }
+
     /// Hosts whose objects can't be read; a line each, of the last poll.
     [[nodiscard]] const std::string& fault() const noexcept { return fault_; }
 
@@ -106,17 +111,31 @@ private:
         std::map<std::uint32_t, Stranger> strangers; ///< By number: none that is an object.
         /// Of which somebody said that they went, perhaps another program, and when.
         std::map<std::uint32_t, Clock::time_point> disputed;
+        /// Here from before the host was gone, and not told of since it is back.
+        std::set<std::uint32_t> unconfirmed;
         std::uint64_t seen_catalogue{0};
         bool was_heard{false};
         bool is_complete{false};
+        bool is_gone{false};
         Clock::time_point since{};
+        Clock::time_point heard{};      ///< Its motion, or that it may be.
+        std::uint64_t motion_writer{0}; ///< Handle of the last one.
+
+        /// As far as the host has told of them.
+        [[nodiscard]] std::size_t known() const
+        {
+            return objects.size() - unconfirmed.size() + strangers.size();
+        }
     };
 
     void join(std::uint64_t epoch, Host& host);
+    void watch(std::uint64_t epoch, Host& host);
+    static void drop_unconfirmed(Host& host, const Take& take);
     void take_records(std::uint64_t epoch, Host& host, const Take& take);
     [[nodiscard]] std::optional<Refused>
     take_record(Host& host, const tactus_v4_ObjectRecord& record, const Take& take);
-    void take_motion(Host& host, const Take& take);
+    void take_motion(std::uint64_t epoch, Host& host, const Take& take);
+    void hear(std::uint64_t epoch, Host& host, std::uint64_t writer);
     static void settle_disputed(Host& host, std::uint32_t objects, const Take& take);
     void look_at_strangers(std::uint64_t epoch, Host& host, const Take& take);
     static bool try_move(SeenObject& object, std::uint64_t serial, const tactus_v4_Placement& to);
@@ -126,6 +145,7 @@ private:
     PieceExchange& exchange_;
     RateLimitedLog log_;
     std::map<std::uint64_t, Host> hosts_;
+    std::uint64_t motion_regained_{0};
     std::string fault_;
 };
 

@@ -11,6 +11,14 @@
 namespace tactus::dds
 {
 
+namespace
+{
+
+/// Longer than a lost datagram takes to be sent again.
+constexpr auto kOverdue = std::chrono::seconds(1);
+
+} // namespace
+
 Result<Subscription, Refusal> Subscription::create(const Domain& domain,
                                                    const ControllerId& controller,
                                                    std::string controller_name, std::uint64_t seen)
@@ -26,6 +34,33 @@ Result<Subscription, Refusal> Subscription::create(const Domain& domain,
     subscription.controller_name_ = std::move(controller_name);
     subscription.sent_ = seen;
     return subscription;
+}
+
+void Subscription::set_credit(const Credit& credit) noexcept
+{
+    const std::uint64_t seen = std::min(credit.seen, sent_);
+    lost_ = seen - std::min(credit.received, seen);
+    credit_.seen = std::max(credit_.seen, seen);
+    credit_.granted =
+        std::max(credit_.granted, std::min(credit.granted, credit_.seen + kCreditPieces));
+    credit_.received = std::max(credit_.received, credit.received);
+}
+
+bool Subscription::try_heal(Backoff::Clock::time_point now)
+{
+    if (lost_ <= given_up_)
+    {
+        given_up_ = lost_; // Late ones have come.
+        overdue_since_ = now;
+        return false;
+    }
+    if (now - overdue_since_ < kOverdue || !writers_.try_renew(now))
+    {
+        return false;
+    }
+    given_up_ = lost_;
+    overdue_since_ = now;
+    return true;
 }
 
 bool Subscription::send_one(std::uint64_t host_epoch, std::span<const ModelPieces> models,
@@ -63,7 +98,7 @@ bool Subscription::write(std::uint64_t host_epoch, std::uint64_t pieces, bool le
     sample.lets_in = lets_in;
     const auto length = static_cast<std::uint32_t>(payload.size());
     sample.payload = {length, length, reinterpret_cast<std::uint8_t*>(payload.data()), false};
-    return writers_.write(&sample, &probe);
+    return writers_.write(&sample, &probe, payload.size());
 }
 
 std::uint64_t Subscription::fill(std::span<const ModelPieces> models, PieceBuffers& room,

@@ -53,13 +53,13 @@ public:
 
     /// Pieces that there are.
     void wish(const HostPiece& piece, std::uint32_t generation) { wishes_.add(piece, generation); }
-    /// Requests may come in another order than they were sent in: the counts only grow.
-    void set_credit(const Credit& credit) noexcept
-    {
-        credit_.seen = std::max(credit_.seen, credit.seen);
-        credit_.granted = std::max(credit_.granted, credit.granted);
-        credit_.received = std::max(credit_.received, credit.received);
-    }
+    /// Requests may come in another order than they were sent in: the counts only grow. Nobody has
+    /// seen more than was sent, nor grants more than kCreditPieces beyond what it has seen.
+    void set_credit(const Credit& credit) noexcept;
+    /// Makes new writers where pieces are missing for a second that the controller says were sent
+    /// and never came: who forged a packet in a writer's name has made its readers deaf to it.
+    /// True when it did so, which is less often each time.
+    bool try_heal(Backoff::Clock::time_point now);
 
     /// Whether send_one() would find something to do, were the controller's reader there.
     [[nodiscard]] bool has_work() const noexcept
@@ -93,6 +93,9 @@ private:
     WriterLanes writers_;
     WishQueue wishes_;
     Credit credit_;
+    std::uint64_t lost_{0}; ///< Pieces that were sent and didn't come, as it last said.
+    std::uint64_t given_up_{UINT64_MAX}; ///< Those of them that nothing is done about any more.
+    Backoff::Clock::time_point overdue_since_{};
     std::uint64_t sent_{0};
     std::uint64_t pieces_sent_{0};
     std::uint64_t bytes_sent_{0};

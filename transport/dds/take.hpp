@@ -28,15 +28,19 @@ template <std::size_t Size>
     return info.instance_state != DDS_ALIVE_INSTANCE_STATE && !info.valid_data;
 }
 
+/// Samples that take_each() takes by one call.
+inline constexpr std::uint32_t kTakenAtOnce = 16;
+
 /// Takes up to `samples_max` samples and calls `visit(const Sample&, const dds_sample_info_t&)` for
 /// each. The samples are Cyclone's own, on loan: a buffer of ours would be silently truncated to
 /// or, with `_release` set, freed by Cyclone. In a sample without valid_data only key fields are
-/// set.
+/// set. Returns how many it took.
 template <typename Sample, typename Visit>
-void take_each(std::int32_t reader, std::size_t samples_max, Visit&& visit)
+std::size_t take_each(std::int32_t reader, std::size_t samples_max, Visit&& visit)
 {
-    constexpr std::uint32_t batch = 16;
-    for (std::size_t taken = 0; taken < samples_max; taken += batch)
+    constexpr std::uint32_t batch = kTakenAtOnce;
+    std::size_t taken = 0;
+    while (taken < samples_max)
     {
         std::array<void*, batch> samples{}; // All null: asks for a loan.
         std::array<dds_sample_info_t, batch> infos{};
@@ -49,12 +53,14 @@ void take_each(std::int32_t reader, std::size_t samples_max, Visit&& visit)
         if (count > 0)
         {
             dds_return_loan(reader, samples.data(), count);
+            taken += static_cast<std::size_t>(count);
         }
         if (count < static_cast<std::int32_t>(batch))
         {
-            return;
+            break;
         }
     }
+    return taken;
 }
 
 } // namespace tactus::dds

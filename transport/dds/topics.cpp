@@ -259,11 +259,17 @@ std::string controller_partition(const std::string& name, const ControllerId& id
     return name + "." + hash_text(id);
 }
 
-bool is_matched(const Endpoint& writer)
+std::uint32_t readers_of(const Endpoint& writer)
 {
     dds_publication_matched_status_t status = {};
-    return dds_get_publication_matched_status(writer.handle, &status) == DDS_RETCODE_OK &&
-           status.current_count > 0;
+    return dds_get_publication_matched_status(writer.handle, &status) == DDS_RETCODE_OK
+               ? status.current_count
+               : 0;
+}
+
+bool is_matched(const Endpoint& writer)
+{
+    return readers_of(writer) > 0;
 }
 
 bool has_publisher(const Endpoint& reader)

@@ -58,7 +58,9 @@ inline constexpr const char* kAnyPartition = "*";
 /// Where one controller gets its pieces.
 [[nodiscard]] std::string controller_partition(const std::string& name, const ControllerId& id);
 
-/// Whether a reader or writer has anybody on the other side.
+/// How many a writer has on the other side.
+[[nodiscard]] std::uint32_t readers_of(const Endpoint& writer);
+/// Whether a reader or writer has anybody there.
 [[nodiscard]] bool is_matched(const Endpoint& writer);
 [[nodiscard]] bool has_publisher(const Endpoint& reader);
 

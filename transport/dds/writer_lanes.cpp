@@ -24,7 +24,7 @@ Result<WriterLanes, Refusal> WriterLanes::create(const Domain& domain, Topic top
         return first.error();
     }
     WriterLanes lanes(domain, topic, partition);
-    lanes.lanes_.push_back({std::move(first).value(), true, true});
+    lanes.lanes_.push_back({std::move(first).value(), true, true, 0});
     return lanes;
 }
 
@@ -33,7 +33,7 @@ std::size_t WriterLanes::open() const
     return static_cast<std::size_t>(std::ranges::count_if(lanes_, &Lane::is_open));
 }
 
-bool WriterLanes::write(const void* sample, const void* probe)
+bool WriterLanes::write(const void* sample, const void* probe, std::size_t bytes)
 {
     open_next(probe);
     ++written_;
@@ -41,16 +41,45 @@ bool WriterLanes::write(const void* sample, const void* probe)
     {
         turn_ = (turn_ + 1) % lanes_.size();
         Lane& lane = lanes_[turn_];
-        if (turn_ == 0 || (lane.is_open && dds::is_matched(lane.writer)))
-        {
-            break;
-        }
-        if (lane.is_open) // It has lost its reader.
+        if (lane.is_open && turn_ != 0 && !dds::is_matched(lane.writer)) // It lost its reader.
         {
             lane.is_open = lane.is_probed = false;
         }
+        if (lane.is_open && has_room(lane))
+        {
+            lane.unacked_bytes += bytes;
+            return dds_write(lane.writer.handle, sample) == DDS_RETCODE_OK;
+        }
     }
-    return dds_write(lanes_[turn_].writer.handle, sample) == DDS_RETCODE_OK;
+    return false;
+}
+
+bool WriterLanes::has_room(Lane& lane)
+{
+    if (lane.unacked_bytes > kUnackedMax &&
+        dds_wait_for_acks(lane.writer.handle, 0) == DDS_RETCODE_OK)
+    {
+        lane.unacked_bytes = 0;
+    }
+    return lane.unacked_bytes <= kUnackedMax;
+}
+
+bool WriterLanes::try_renew(Backoff::Clock::time_point now)
+{
+    if (!renewals_.is_due(now))
+    {
+        return false;
+    }
+    renewals_.begin(now);
+    auto first = make_writer(*domain_, topic_, partition_);
+    if (!first)
+    {
+        return false;
+    }
+    lanes_.clear();
+    lanes_.push_back({std::move(first).value(), true, true, 0});
+    turn_ = written_ = 0;
+    return true;
 }
 
 /// Brings the first one that isn't open a step further.
@@ -64,7 +93,7 @@ void WriterLanes::open_next(const void* probe)
         {
             if (auto writer = make_writer(*domain_, topic_, partition_))
             {
-                lanes_.push_back({std::move(writer).value(), false, false});
+                lanes_.push_back({std::move(writer).value(), false, false, 0});
             }
         }
         return;

@@ -724,5 +724,32 @@ TEST_F(DdsObjects, come_to_many_controllers_a_few_at_a_time)
     EXPECT_LE(joining_max, 2);
 }
 
+TEST_F(DdsObjects, motion_that_is_not_heard_comes_by_another_writer)
+{
+    const auto number = host->objects().show(object_called("a", some_pose()));
+    ASSERT_TRUE(number);
+    ASSERT_TRUE(step_until([&] { return follower->scene().was_heard(host->epoch()); }));
+    ASSERT_TRUE(step_until([&] { return follower->scene().is_complete(host->epoch()); }));
+    EXPECT_EQ(host->counters().renewed, 0U);
+    // As the scene's reader says it when it has heard none for 300 ms.
+    ASSERT_TRUE(step_until(
+        [&]
+        {
+            follower->client().exchange().tell_objects_are_here(host->epoch(), false);
+            follower->client().exchange().step();
+            return host->counters().renewed > 0;
+        }));
+    EXPECT_FALSE(host->objects().try_renew_motion(std::chrono::steady_clock::now()));
+    step_for(500ms); // The first writer is gone by then.
+    ASSERT_TRUE(host->objects().move(number.value(), some_pose(0.5)));
+    EXPECT_TRUE(step_until(
+        [&]
+        {
+            const SeenObject* object = seen(number.value());
+            return object != nullptr && object->shown.pose.translation_m[0] == 0.5;
+        }));
+    EXPECT_EQ(host->counters().renewed, 1U);
+}
+
 } // namespace
 } // namespace tactus::dds

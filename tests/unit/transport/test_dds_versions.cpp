@@ -16,6 +16,7 @@
 #include <dds/dds.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <chrono>
 #include <cstring>
 #include <functional>
@@ -342,6 +343,81 @@ TEST_F(DdsVersions, a_controller_is_served_under_its_own_id_and_a_valid_name_onl
     wanted = request(own, "stranger");
     ASSERT_EQ(dds_write(writer.handle, &wanted), DDS_RETCODE_OK);
     EXPECT_TRUE(step_until([&] { return host->subscribers().size() == 2; }));
+}
+
+TEST_F(DdsVersions, nobody_gets_more_pieces_than_a_window_beyond_what_it_has_seen)
+{
+    ASSERT_NO_FATAL_FAILURE(connect());
+    const ControllerId own = stranger.participants().own();
+    const Endpoint reader =
+        make_reader(stranger, Topic::chunks, controller_partition("stranger", own)).value();
+    const Endpoint writer = heard_writer(Topic::wanted, "stranger");
+    std::array<tactus_v4_PieceName, 1> names{{{0, 2, 0}}};
+    tactus_v4_Wanted wanted = request(own, "stranger");
+    wanted.seen = 0;
+    wanted.granted = std::uint64_t{1} << 63U;
+    wanted.pieces = {1, 1, names.data(), false};
+    const auto sent = [&]
+    {
+        for (const DdsHost::Subscriber& each : host->subscribers())
+        {
+            if (each.controller == "stranger")
+            {
+                return each.pieces_sent;
+            }
+        }
+        return std::uint64_t{0};
+    };
+    ASSERT_TRUE(step_until(
+        [&]
+        {
+            dds_write(writer.handle, &wanted);
+            return sent() >= kCreditPieces;
+        }));
+    for (int i = 0; i < 10; ++i)
+    {
+        const std::uint64_t requests = host->counters().requests;
+        dds_write(writer.handle, &wanted);
+        ASSERT_TRUE(step_until([&] { return host->counters().requests > requests; }));
+    }
+    EXPECT_EQ(sent(), kCreditPieces);
+    wanted.seen = UINT64_MAX; // More than was sent.
+    ASSERT_TRUE(step_until(
+        [&]
+        {
+            dds_write(writer.handle, &wanted);
+            return sent() > kCreditPieces;
+        }));
+    EXPECT_LE(sent(), 3 * kCreditPieces) << "a request at a time";
+    EXPECT_TRUE(is_served());
+}
+
+TEST_F(DdsVersions, who_asks_for_too_much_in_a_second_is_counted_by_name_and_others_are_served)
+{
+    ASSERT_NO_FATAL_FAILURE(connect());
+    const ControllerId own = stranger.participants().own();
+    const Endpoint writer = heard_writer(Topic::wanted, "stranger");
+    std::vector<tactus_v4_PieceName> names(kMaxWishes, {0, 2, 0});
+    tactus_v4_Wanted wanted = request(own, "stranger");
+    wanted.pieces = {kMaxWishes, kMaxWishes, names.data(), false};
+    const auto refused = [&]
+    {
+        const auto list = host->domain().participants().refusals().list();
+        return list.empty() ? 0 : list[0].counts.at(static_cast<std::size_t>(Refused::rate));
+    };
+    ASSERT_TRUE(test::eventually(
+        [&]
+        {
+            for (int i = 0; i < 16; ++i) // As many as a reader keeps.
+            {
+                dds_write(writer.handle, &wanted);
+            }
+            host->step();
+            return refused() > 0;
+        }));
+    EXPECT_TRUE(is_served());
+    EXPECT_TRUE(step_until(
+        [&] { return host_lines.find("more pieces asked for in a second") != std::string::npos; }));
 }
 
 } // namespace

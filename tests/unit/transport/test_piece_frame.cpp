@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -128,6 +129,56 @@ TEST(WishQueue, forgets_the_oldest_generation_when_full_and_generations_may_wrap
     EXPECT_EQ(sut.front().key.number, 3U);
     sut.pop_front();
     EXPECT_EQ(sut.front().key.number, 2U);
+}
+
+/// Whatever is asked for in whatever order, against a list that is kept in order.
+TEST(WishQueue, is_in_the_order_of_a_list_that_is_searched)
+{
+    constexpr std::size_t kCapacity = 40;
+    struct Wish
+    {
+        std::uint32_t number;
+        std::uint32_t generation;
+    };
+    std::mt19937 random(20260731);
+    WishQueue sut(kCapacity);
+    std::vector<Wish> list;
+    std::uint64_t forgotten = 0;
+    for (int i = 0; i < 20'000; ++i)
+    {
+        if (!list.empty() && random() % 4 == 0)
+        {
+            ASSERT_EQ(sut.front().key.number, list.front().number) << i;
+            sut.pop_front();
+            list.erase(list.begin());
+            continue;
+        }
+        const Wish wish{static_cast<std::uint32_t>(random() % 60),
+                        static_cast<std::uint32_t>(i / 50) +
+                            static_cast<std::uint32_t>(random() % 4) - 10};
+        sut.add({0, {ContentKind::chunk, wish.number}}, wish.generation);
+        std::erase_if(list, [&](const Wish& known) { return known.number == wish.number; });
+        list.insert(std::ranges::find_if(list,
+                                         [&](const Wish& known) {
+                                             return static_cast<std::int32_t>(known.generation -
+                                                                              wish.generation) < 0;
+                                         }),
+                    wish);
+        if (list.size() > kCapacity)
+        {
+            list.pop_back();
+            ++forgotten;
+        }
+        ASSERT_EQ(sut.size(), list.size()) << i;
+    }
+    EXPECT_GT(forgotten, 0U);
+    EXPECT_EQ(sut.forgotten(), forgotten);
+    for (const Wish& wish : list)
+    {
+        EXPECT_EQ(sut.front().key.number, wish.number);
+        sut.pop_front();
+    }
+    EXPECT_TRUE(sut.empty());
 }
 
 } // namespace

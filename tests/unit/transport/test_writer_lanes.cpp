@@ -121,6 +121,70 @@ TEST_F(Lanes, an_older_request_that_comes_late_takes_no_credit_back)
     EXPECT_TRUE(sut.has_work());
 }
 
+TEST_F(Lanes, lose_what_a_reader_that_does_not_answer_would_make_them_keep)
+{
+    auto sut = WriterLanes::create(*host_, Topic::chunks, kPartition).value();
+    tactus_v4_Pieces sample = {};
+    constexpr std::size_t bytes = WriterLanes::kUnackedMax / 2 + 1;
+    for (int i = 0; i < 10; ++i)
+    {
+        EXPECT_TRUE(sut.write(&sample, &sample, bytes)) << "without a reader all is answered";
+    }
+    const Endpoint in = reader(kPartition);
+    ASSERT_TRUE(eventually([&] { return sut.is_matched(); }));
+    bool is_full = false;
+    for (int i = 0; i < 100'000 && !is_full; ++i) // Its answers take a moment.
+    {
+        is_full = !sut.write(&sample, &sample, bytes);
+    }
+    EXPECT_TRUE(is_full);
+    EXPECT_TRUE(eventually([&] { return sut.write(&sample, &sample, bytes); }));
+}
+
+TEST_F(Lanes, that_are_renewed_are_one_other_writer_and_not_at_once_again)
+{
+    auto sut = WriterLanes::create(*host_, Topic::chunks, kPartition).value();
+    const Endpoint in = reader(kPartition);
+    tactus_v4_Pieces sample = {};
+    sample.host_epoch = host_->participants().own_epoch();
+    const auto comes = [&](std::uint64_t count)
+    {
+        sample.sent = count;
+        return eventually([&] { return sut.is_matched(); }) && sut.write(&sample, &sample) &&
+               eventually(
+                   [&]
+                   {
+                       take_from(in);
+                       return counts_.contains(count);
+                   });
+    };
+    ASSERT_TRUE(comes(1));
+    const auto now = Backoff::Clock::now();
+    EXPECT_TRUE(sut.try_renew(now));
+    EXPECT_FALSE(sut.try_renew(now));
+    ASSERT_TRUE(comes(2));
+    EXPECT_EQ(writers_.size(), 2U);
+    EXPECT_EQ(sut.open(), 1U);
+    EXPECT_TRUE(sut.try_renew(now + std::chrono::seconds(1)));
+    EXPECT_FALSE(sut.try_renew(now + std::chrono::seconds(2))) << "less often each time";
+}
+
+TEST_F(Lanes, are_renewed_where_pieces_stay_away_for_a_second)
+{
+    auto sut = Subscription::create(*host_, ControllerId{1}, "controller", 100).value();
+    const auto start = Backoff::Clock::now();
+    sut.set_credit({100, 228, 80}); // From before: nobody knows why.
+    EXPECT_FALSE(sut.try_heal(start));
+    EXPECT_FALSE(sut.try_heal(start + std::chrono::seconds(2)));
+    sut.set_credit({100, 228, 70});
+    EXPECT_FALSE(sut.try_heal(start + std::chrono::milliseconds(2'900)));
+    sut.set_credit({100, 228, 80}); // They came late.
+    EXPECT_FALSE(sut.try_heal(start + std::chrono::milliseconds(3'100)));
+    sut.set_credit({100, 228, 70});
+    EXPECT_TRUE(sut.try_heal(start + std::chrono::milliseconds(4'200)));
+    EXPECT_FALSE(sut.try_heal(start + std::chrono::seconds(10))) << "these were given up";
+}
+
 } // namespace
 
 } // namespace tactus::dds
