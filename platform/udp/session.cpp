@@ -38,13 +38,15 @@ Session::describe(const DescribeDatagram& datagram, const Endpoint& from, Monoto
     const bool is_known = from == peer_.endpoint && address.instance == peer_.instance;
     if (is_taken(now) && !is_known)
     {
+        rival_ = is_settled_ ? rival_ : Rival{from, now};
         return DatagramFault::foreign;
     }
     if (address.instance == peer_.instance && address.sequence <= last_sequence_)
     {
         return DatagramFault::stale;
     }
-    if (info_ && *info_ != datagram.info)
+    const bool is_fixed = is_settled_ || peer_.is_attached;
+    if (is_fixed && info_ && *info_ != datagram.info)
     {
         return DatagramFault::other_device;
     }
@@ -61,13 +63,20 @@ Session::describe(const DescribeDatagram& datagram, const Endpoint& from, Monoto
 /// By the device that is attached, or was not long ago and had sent samples.
 bool Session::is_taken(MonotonicTime now) const noexcept
 {
-    return peer_.is_attached || (last_time_ns_ >= 0 && now - heard_ <= place_);
+    return peer_.is_attached || (is_settled_ && last_time_ns_ >= 0 && now - heard_ <= place_);
+}
+
+bool Session::is_proven(Duration time, MonotonicTime now) const noexcept
+{
+    const bool is_alone = !rival_ || now - rival_->heard > kRivalry;
+    return peer_.is_attached && samples_ >= kProof && now - begun_ >= time && is_alone;
 }
 
 void Session::begin(const Peer& peer, MonotonicTime now) noexcept
 {
     peer_ = peer;
-    heard_ = now;
+    heard_ = begun_ = now;
+    samples_ = 0;
     has_samples_ = false;
     last_time_ns_ = -1;
 }
@@ -108,6 +117,7 @@ Session::sample(const SampleDatagram& datagram, const Endpoint& from, MonotonicT
     }
     last_sequence_ = address.sequence;
     heard_ = now;
+    samples_ = std::min(samples_ + 1, kProof);
     peer_.is_attached = true;
     return sampled;
 }

@@ -50,12 +50,26 @@ struct Sampled
 /// another controller, is refused. A device that comes back within its session goes on with it, and
 /// one that has sent samples keeps its place for a while: nobody takes it from a driver that only
 /// stumbled. With a seal nobody is heard who hasn't the key.
+///
+/// Until settle() nobody has a place to keep: a device that falls silent is forgotten with all that
+/// it said of itself, and the next one may be quite another.
 class Session
 {
 public:
     /// How far apart the device's time and ours may drift until they are set against each other
     /// anew.
     static constexpr Duration kClockDrift = milliseconds(100);
+    /// A device describes itself every 100 ms: who did so this long ago is still there.
+    static constexpr Duration kRivalry = milliseconds(250);
+    /// Samples that a device has to send before it is settled on.
+    static constexpr int kProof = 20;
+
+    /// Who described itself while another one was attached.
+    struct Rival
+    {
+        Endpoint endpoint;
+        MonotonicTime heard;
+    };
 
     /// `secret` is the first session's number; later ones count up from there. `place`: for so long
     /// after its last sample a device keeps its place. `seal` is lent; null: all are believed.
@@ -73,11 +87,24 @@ public:
     /// True once: when the device has been silent for too long.
     [[nodiscard]] bool lapse(MonotonicTime now) noexcept;
 
+    /// Whether the device that is attached has been there for so long, has sent kProof samples, and
+    /// nobody else wants to be it.
+    [[nodiscard]] bool is_proven(Duration time, MonotonicTime now) const noexcept;
+    /// From now on no device with other limits is let in.
+    void settle() noexcept
+    {
+        is_settled_ = true;
+        has_samples_ = false; // Nobody has read any yet.
+        rival_.reset();
+    }
+    /// The last one before settle(); none without any.
+    [[nodiscard]] const std::optional<Rival>& rival() const noexcept { return rival_; }
+
     /// The last one that was attached.
     [[nodiscard]] const Peer& peer() const noexcept { return peer_; }
     /// Of the last datagram that was accepted.
     [[nodiscard]] std::uint64_t answers() const noexcept { return last_sequence_; }
-    /// What the first device said of itself, in its own coordinates; none before that.
+    /// What the device said of itself, in its own coordinates; none before that.
     [[nodiscard]] const std::optional<DeviceInfo>& info() const noexcept { return info_; }
 
 private:
@@ -94,6 +121,10 @@ private:
     Duration place_;
     const Seal* seal_;
     std::optional<DeviceInfo> info_;
+    bool is_settled_{false}; ///< On a device with these limits.
+    std::optional<Rival> rival_;
+    MonotonicTime begun_; ///< The session.
+    int samples_{0};      ///< In the session, up to kProof.
     Peer peer_;
     std::uint64_t last_sequence_{0};
     MonotonicTime heard_;           ///< The last sample, or the start of the session.

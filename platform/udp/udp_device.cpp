@@ -35,6 +35,10 @@ std::string find_bad_option(const UdpDeviceOptions& options)
     {
         return "udp device: the time that a device keeps its place must be in range 0..3600 s";
     }
+    if (options.proof < Duration{} || options.proof > Options::kWaitMax)
+    {
+        return "udp device: the time that a device has to prove itself must be in range 0..3600 s";
+    }
     if (options.transport_delay < Duration{} || options.transport_delay > Options::kDelayMax)
     {
         return "udp device: the transport delay must be in range 0..100 ms";
@@ -58,12 +62,21 @@ std::span<const std::byte> part_of(const Buffer& buffer, std::size_t bytes) noex
     return std::span(buffer).first(bytes);
 }
 
-Refusal nobody_came(const udp::Socket& socket, Duration wait, std::uint64_t refused,
-                    std::optional<DatagramFault> last)
+Refusal nobody_came(const udp::Socket& socket, const udp::Session& session, Duration wait,
+                    std::uint64_t refused, std::optional<DatagramFault> last)
 {
+    const std::string within = " within " + std::to_string(wait / milliseconds(1)) + " ms";
+    if (session.peer().is_attached && session.rival())
+    {
+        return {"udp device: more than one device describes itself to " +
+                udp::text_of(socket.endpoint()) + ", from " +
+                udp::text_of(session.peer().endpoint) + " and from " +
+                udp::text_of(session.rival()->endpoint) + ", and none gave way" + within +
+                "; a key tells them apart (docs/udp-device.md)"};
+    }
     std::string line = "udp device: no device described itself to " +
-                       udp::text_of(socket.endpoint()) + " within " +
-                       std::to_string(wait / milliseconds(1)) + " ms";
+                       udp::text_of(socket.endpoint()) +
+                       (session.info() ? " and sent samples" : "") + within;
     if (last)
     {
         line += " (" + std::to_string(refused) +
@@ -72,12 +85,34 @@ Refusal nobody_came(const udp::Socket& socket, Duration wait, std::uint64_t refu
     return {std::move(line)};
 }
 
-/// Returns when the session has a device.
-std::optional<Refusal> await_device(const udp::Socket& socket, udp::Session& session,
-                                    const UdpDeviceOptions& options)
+bool send_to(const udp::Socket& socket, const udp::ForceDatagram& datagram, const udp::Endpoint& to,
+             const udp::Seal* seal) noexcept
 {
+    const udp::Datagram plain = encode(datagram);
+    return socket.send(seal != nullptr ? sealed(plain, *seal) : plain, to);
+}
+
+/// Tells the one that is attached its session, by which it may send samples.
+void answer(const udp::Socket& socket, const udp::Session& session, std::uint64_t sequence,
+            const udp::Seal* seal) noexcept
+{
+    const udp::Peer& peer = session.peer();
+    udp::ForceDatagram datagram;
+    datagram.address = {peer.instance, peer.session, sequence};
+    datagram.version = peer.version;
+    datagram.answers = session.answers();
+    static_cast<void>(send_to(socket, datagram, peer.endpoint, seal)); // It is repeated.
+}
+
+/// Returns when the session has settled on a device; `sequence` is the last datagram's to it.
+std::optional<Refusal> await_device(const udp::Socket& socket, udp::Session& session,
+                                    const UdpDeviceOptions& options, std::uint64_t& sequence)
+{
+    constexpr Duration kAnswerEvery = milliseconds(5);
     const MonotonicTime start = options.clock->now();
     const MonotonicTime end = start + options.wait;
+    MonotonicTime asked = start;
+    MonotonicTime answered = start;
     Buffer buffer{};
     std::uint64_t refused = 0;
     std::optional<DatagramFault> last;
@@ -85,22 +120,35 @@ std::optional<Refusal> await_device(const udp::Socket& socket, udp::Session& ses
     {
         const auto received = socket.receive(buffer);
         const MonotonicTime now = options.clock->now();
+        bool is_due = now - answered >= kAnswerEvery;
         if (received)
         {
             const auto result =
                 session.receive(part_of(buffer, received->bytes), received->from, now);
-            if (std::holds_alternative<udp::Described>(result))
-            {
-                return std::nullopt;
-            }
-            last = std::get<DatagramFault>(result); // Samples are refused before a description.
-            ++refused;
+            const auto* refusal = std::get_if<DatagramFault>(&result);
+            is_due |= refusal == nullptr;
+            refused += refusal != nullptr ? 1U : 0U;
+            last = refusal != nullptr ? *refusal : last;
         }
-        if (now >= end || (options.goes_on && !options.goes_on()))
+        static_cast<void>(session.lapse(now));
+        const bool is_attached = session.peer().is_attached;
+        if (is_attached && (options.proof == Duration{} || session.is_proven(options.proof, now)))
         {
-            return nobody_came(socket, std::min(now - start, options.wait), refused, last);
+            session.settle();
+            return std::nullopt;
         }
-        socket.wait(std::min(end - now, UdpDeviceOptions::kAskEvery));
+        if (is_attached && is_due)
+        {
+            answered = now;
+            answer(socket, session, ++sequence, options.seal);
+        }
+        const bool is_to_ask = now - asked >= UdpDeviceOptions::kAskEvery || now == start;
+        asked = is_to_ask ? now : asked;
+        if (now >= end || (is_to_ask && options.goes_on && !options.goes_on()))
+        {
+            return nobody_came(socket, session, std::min(now - start, options.wait), refused, last);
+        }
+        socket.wait(std::min(end - now, is_attached ? kAnswerEvery : UdpDeviceOptions::kAskEvery));
     }
 }
 
@@ -136,13 +184,14 @@ Result<std::unique_ptr<UdpDevice>, Refusal> UdpDevice::create(udp::Socket socket
         return secret.error();
     }
     udp::Session session(secret.value(), options.times.silence, options.place, options.seal);
-    if (auto nobody = await_device(socket, session, options))
+    std::uint64_t sequence = 0;
+    if (auto nobody = await_device(socket, session, options, sequence))
     {
         return std::move(*nobody);
     }
     const DeviceInfo info = with_delay(*session.info(), options.transport_delay);
     std::unique_ptr<UdpDevice> device(
-        new UdpDevice(std::move(socket), std::move(session), info, options));
+        new UdpDevice(std::move(socket), std::move(session), sequence, info, options));
     auto thread = RtThread::start(options.thread, [raw = device.get()] { raw->run(); });
     if (!thread)
     {
@@ -152,12 +201,13 @@ Result<std::unique_ptr<UdpDevice>, Refusal> UdpDevice::create(udp::Socket socket
     return device;
 }
 
-UdpDevice::UdpDevice(udp::Socket socket, udp::Session session, const DeviceInfo& info,
-                     const UdpDeviceOptions& options)
+UdpDevice::UdpDevice(udp::Socket socket, udp::Session session, std::uint64_t sequence,
+                     const DeviceInfo& info, const UdpDeviceOptions& options)
     : RemoteDevice(info, options.frame, options.times, *options.clock)
     , socket_(std::move(socket))
     , poll_(options.poll)
     , seal_(options.seal)
+    , sequence_(sequence)
     , session_(std::move(session))
 {
     counts_.described = 1;
@@ -224,8 +274,10 @@ bool UdpDevice::receive_one(std::span<const std::byte> bytes, const udp::Endpoin
     if (const auto* refusal = std::get_if<DatagramFault>(&result))
     {
         ++counts_.refused.at(static_cast<std::size_t>(*refusal));
+        counts_.others += *refusal == DatagramFault::other_device ? 1U : 0U;
         return false;
     }
+    counts_.others = 0;
     if (const auto* sampled = std::get_if<udp::Sampled>(&result))
     {
         ++counts_.samples;
@@ -275,8 +327,7 @@ void UdpDevice::send(const udp::Peer& peer, std::uint64_t sequence, const Device
 
 bool UdpDevice::send(const udp::ForceDatagram& datagram, const udp::Endpoint& to) const noexcept
 {
-    const udp::Datagram plain = encode(datagram);
-    return socket_.send(seal_ != nullptr ? sealed(plain, *seal_) : plain, to);
+    return send_to(socket_, datagram, to, seal_);
 }
 
 /// `answers` is 0: what was accepted last only the I/O thread knows.

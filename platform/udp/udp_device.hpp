@@ -46,6 +46,9 @@ struct UdpDeviceOptions
     RemoteTimes times;
     /// A device that has fallen silent keeps its place for so long, up to kWaitMax.
     Duration place{milliseconds(3'000)};
+    /// Whose limits a run takes must have sent samples for so long before, up to kWaitMax, with
+    /// nobody else who wants to be the device. 0: the first one that describes itself is believed.
+    Duration proof{milliseconds(300)};
     /// By the key that the driver has; lent, it outlives the device; null: whoever speaks is
     /// believed.
     const udp::Seal* seal{nullptr};
@@ -64,6 +67,9 @@ struct UdpTraffic
     std::uint64_t forces{0};    ///< Sent by the I/O thread.
     std::uint64_t unsent{0};    ///< Those of them that the system refused.
     std::array<std::uint64_t, udp::kDatagramFaults> refused{}; ///< By udp::DatagramFault.
+    /// Descriptions of another device since the last datagram that was accepted: its own has gone,
+    /// and given its place back.
+    std::uint64_t others{0};
 };
 
 /// A device that another program drives, over the datagrams of docs/udp-device.md. The socket
@@ -71,9 +77,10 @@ struct UdpTraffic
 class UdpDevice final : public RemoteDevice
 {
 public:
-    /// Waits until a device has described itself, on the calling thread. Refuses options out of
-    /// range, what udp::Socket::open() and RtThread::start() refuse, and that nobody came within
-    /// the time or before the wait was ended. A null clock is a bug (asserted).
+    /// Waits until a device has described and proved itself, on the calling thread. Refuses options
+    /// out of range, what udp::Socket::open() and RtThread::start() refuse, and that nobody came
+    /// within the time or before the wait was ended, or more than one. A null clock is a bug
+    /// (asserted).
     [[nodiscard]] static Result<std::unique_ptr<UdpDevice>, Refusal>
     create(const UdpDeviceOptions& options);
     /// The same with a socket that is open already; the options' address and port aren't read.
@@ -103,8 +110,8 @@ private:
     /// Taken in at one go, so that a flood doesn't keep the forces back.
     static constexpr int kDatagramsMax = 64;
 
-    UdpDevice(udp::Socket socket, udp::Session session, const DeviceInfo& info,
-              const UdpDeviceOptions& options);
+    UdpDevice(udp::Socket socket, udp::Session session, std::uint64_t sequence,
+              const DeviceInfo& info, const UdpDeviceOptions& options);
 
     void run() noexcept;
     [[nodiscard]] bool receive_all() noexcept;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -40,7 +41,11 @@ DeviceInfo desk()
 class UdpDeviceTest : public testing::Test
 {
 protected:
-    UdpDeviceTest() { options.clock = &clock; }
+    UdpDeviceTest()
+    {
+        options.clock = &clock;
+        options.proof = Duration{};
+    }
 
     /// From here on `peer` is the device of `sut`.
     void attach()
@@ -150,6 +155,59 @@ TEST_F(UdpDeviceTest, says_that_nobody_came_and_what_was_refused)
                                         "magic)"),
               std::string::npos)
         << rubbish.error().text;
+}
+
+TEST_F(UdpDeviceTest, takes_the_limits_of_who_proves_to_be_there_not_of_who_was_first)
+{
+    options.proof = milliseconds(50);
+    DeviceInfo lie = desk();
+    lie.limits.force_max_n = 1'000.0;
+    UdpPeer liar(controller, 12);
+    liar.describe(lie);
+    std::atomic<bool> is_done{false};
+    std::thread driver(
+        [&]
+        {
+            while (!is_done)
+            {
+                peer.receive(milliseconds(2)) ? peer.sample(sample_at(0.01))
+                                              : peer.describe(desk());
+            }
+        });
+    auto device = UdpDevice::create(std::move(socket), options);
+    is_done = true;
+    driver.join();
+    ASSERT_TRUE(device) << device.error().text;
+    EXPECT_EQ(device.value()->info().limits.force_max_n, desk().limits.force_max_n);
+}
+
+TEST_F(UdpDeviceTest, believes_nobody_while_two_say_to_be_the_device)
+{
+    options.times = test::patient_times();
+    options.proof = milliseconds(50);
+    options.wait = milliseconds(600);
+    UdpPeer liar(controller, 12);
+    std::atomic<bool> is_done{false};
+    std::thread both(
+        [&]
+        {
+            while (!is_done)
+            {
+                for (UdpPeer* each : {&liar, &peer})
+                {
+                    each->receive(milliseconds(2)) ? each->sample(sample_at(0.01))
+                                                   : each->describe(desk());
+                }
+            }
+        });
+    const auto device = UdpDevice::create(std::move(socket), options);
+    is_done = true;
+    both.join();
+    ASSERT_FALSE(device);
+    EXPECT_NE(device.error().text.find("more than one device describes itself to 127.0.0.1:"),
+              std::string::npos)
+        << device.error().text;
+    EXPECT_EQ(device.error().text.find('\n'), std::string::npos);
 }
 
 TEST_F(UdpDeviceTest, stops_waiting_when_it_is_told_to)

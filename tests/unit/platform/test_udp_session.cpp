@@ -151,6 +151,7 @@ TEST_F(UdpSession, keeps_the_place_of_a_device_that_has_sent_samples)
 {
     sut = Session(kSecret, milliseconds(20), milliseconds(3'000));
     EXPECT_TRUE(is_described(describe(1)));
+    sut.settle();
     EXPECT_TRUE(is_sampled(sample(2)));
     be_silent();
     EXPECT_TRUE(is(describe(1, 10, kElsewhere), DatagramFault::foreign));
@@ -167,6 +168,54 @@ TEST_F(UdpSession, keeps_the_place_of_a_device_that_has_sent_samples)
     be_silent();
     now = now + milliseconds(2'980);
     EXPECT_TRUE(is_described(describe(1, 11, kHome))) << "later than that";
+}
+
+/// Who was first with a lie has nothing of it once it is silent.
+TEST_F(UdpSession, forgets_a_device_that_falls_silent_before_it_was_settled_on)
+{
+    sut = Session(kSecret, milliseconds(20), milliseconds(3'000));
+    const DeviceInfo truth = info;
+    info.limits.force_max_n = 1'000.0;
+    EXPECT_TRUE(is_described(describe(1, 10, kElsewhere)));
+    EXPECT_TRUE(is_sampled(sample(2, kSecret, 10, kElsewhere)));
+    info = truth;
+    EXPECT_TRUE(is(describe(1), DatagramFault::foreign));
+    be_silent();
+    EXPECT_TRUE(is_described(describe(2)));
+    EXPECT_EQ(sut.info()->limits.force_max_n, truth.limits.force_max_n);
+    sut.settle();
+    be_silent();
+    info.limits.force_max_n = 1'000.0;
+    EXPECT_TRUE(is(describe(1, 10, kElsewhere), DatagramFault::other_device));
+}
+
+TEST_F(UdpSession, believes_a_device_that_samples_for_a_while_and_alone)
+{
+    constexpr Duration kTime = milliseconds(300);
+    const auto go_on = [&](int times)
+    {
+        for (int i = 0; i < times; ++i)
+        {
+            now = now + milliseconds(10);
+            EXPECT_TRUE(is_sampled(sample(sut.answers() + 1)));
+        }
+    };
+    EXPECT_TRUE(is_described(describe(1)));
+    EXPECT_FALSE(sut.is_proven(Duration{}, now)) << "it has only described itself";
+    go_on(29);
+    EXPECT_FALSE(sut.is_proven(kTime, now)) << "too short";
+    go_on(1);
+    EXPECT_TRUE(sut.is_proven(kTime, now));
+    EXPECT_TRUE(is(describe(1, 10, kElsewhere), DatagramFault::foreign));
+    ASSERT_TRUE(sut.rival());
+    EXPECT_EQ(sut.rival()->endpoint, kElsewhere);
+    EXPECT_FALSE(sut.is_proven(kTime, now)) << "there are two";
+    go_on(25);
+    EXPECT_FALSE(sut.is_proven(kTime, now));
+    go_on(1);
+    EXPECT_TRUE(sut.is_proven(kTime, now)) << "the other one has gone";
+    be_silent();
+    EXPECT_FALSE(sut.is_proven(kTime, now));
 }
 
 /// A tag that the test can make: the sum of the bytes, and a secret.
@@ -259,6 +308,7 @@ TEST_F(UdpSession, refuses_a_session_that_is_played_again)
 TEST_F(UdpSession, lets_no_other_device_in)
 {
     EXPECT_TRUE(is_described(describe(1)));
+    sut.settle();
     be_silent();
     info.limits.force_max_n += 1.0;
     EXPECT_TRUE(is(describe(1, 10), DatagramFault::other_device));

@@ -52,6 +52,7 @@ public:
     {
         UdpDeviceOptions options;
         options.times = patient_times();
+        options.proof = Duration{};
         options.frame = frame;
         options.clock = &clock_;
         peer_.describe(hand_.info());
