@@ -253,8 +253,9 @@ private:
         Object object;
         object.model = ModelId{shown == 0 ? 0U : shown + 1};
         object.extent = extent_in_model(*cramping_models()[shown]);
-        constexpr std::array<double, 4> kScales{0.5, 3.0, kPoseScaleMin, kPoseScaleMax};
-        object.scale = random_.one_in(12) ? kScales[random_.below(kScales.size())] : 1.0;
+        constexpr std::array<double, 4> kObjectScales{0.5, 3.0, kPoseScaleMin, kPoseScaleMax};
+        object.scale =
+            random_.one_in(12) ? kObjectScales[random_.below(kObjectScales.size())] : 1.0;
         object.place_m = scene_turn_ * place_m;
         object.rotation = scene_turn_ * rotation;
         objects_.push_back(object);
