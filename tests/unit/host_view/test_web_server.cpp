@@ -171,7 +171,7 @@ TEST_F(WebServerTest, gives_up_a_request_without_end)
         lines += fmt::format("X-{}: {}\r\n", i, std::string(100, 'x'));
     }
     std::size_t kilobytes = 0;
-    for (; kilobytes < 100'000 && !connection.is_closed(); kilobytes += 10)
+    for (; kilobytes < 100'000 && !connection.is_closed(); kilobytes += 11)
     {
         connection.send(lines);
     }

@@ -41,11 +41,15 @@ public:
         // The other side may have had enough already.
         static_cast<void>(::send(socket_, text.data(), text.size(), MSG_NOSIGNAL));
     }
-    /// Whether the other side has closed it, and has sent nothing that isn't read yet.
+    /// Whether the other side has closed it; what has come before is lost.
     [[nodiscard]] bool is_closed() const
     {
-        char byte = 0;
-        const ssize_t count = ::recv(socket_, &byte, 1, MSG_PEEK | MSG_DONTWAIT);
+        char bytes[4096];
+        ssize_t count = 1;
+        while (count > 0)
+        {
+            count = ::recv(socket_, static_cast<char*>(bytes), sizeof(bytes), MSG_DONTWAIT);
+        }
         return count == 0 || (count < 0 && errno != EAGAIN && errno != EWOULDBLOCK);
     }
     void end_sending() const { ::shutdown(socket_, SHUT_WR); }
