@@ -2,10 +2,7 @@
 // Copyright the Tactus authors.
 
 /// Force and torque of rigid tools at rest on encoded models, streamed and refined by whole frames,
-/// beside those of a brute-force search over the source's faces (rest_oracle.hpp). On one face or
-/// edge they are those of the springs; on curved surfaces a place that held before may still hold
-/// while the tool has slid by a twentieth of its radius, which turns the force by as much of a
-/// facet's angle.
+/// beside those of a brute-force search over the source's faces (rest_oracle.hpp).
 
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/property/frame_checks.hpp"
@@ -151,7 +148,7 @@ TEST_F(RigidRest, a_box_and_a_capsule_on_a_plate_and_over_its_edge)
         }
     }
     tell("a plate");
-    EXPECT_LT(errors.force, 2e-3);
+    EXPECT_LT(errors.force, 5e-4);
     EXPECT_LT(errors.torque, 5e-3);
 }
 
@@ -271,7 +268,7 @@ TEST_F(RigidRest, a_cylinder_on_a_cylinder)
         }
     }
     tell("a cylinder");
-    EXPECT_LT(errors.force, 0.015);
+    EXPECT_LT(errors.force, 5e-3);
     EXPECT_LT(errors.torque, 0.015);
 }
 
