@@ -5,6 +5,7 @@
 #include "host_tools/cli/progress.hpp"
 #include "host_tools/cli/stop_signals.hpp"
 #include "platform/allocation_counter.hpp"
+#include "platform/hrtc/failed_run.hpp"
 #include "platform/hrtc/machine.hpp"
 #include "platform/posix/service_notify.hpp"
 #include "platform/system_call_trap.hpp"
@@ -139,6 +140,10 @@ LoopParts SessionRun::loop_parts()
 {
     Controller& controller = parts_.controller;
     const bool has_topics = parts_.topics != nullptr;
+    if (parts_.recorder == nullptr)
+    {
+        last_inputs_.emplace(controller.tools().size());
+    }
     return {.frame = &controller.frame(),
             .tools = controller.tools(),
             .timer = &time_.timer(),
@@ -146,6 +151,7 @@ LoopParts SessionRun::loop_parts()
             .budgets = controller.budgets(),
             .governor = governor_ ? &*governor_ : nullptr,
             .tap = parts_.recorder != nullptr ? &parts_.recorder->tap() : nullptr,
+            .last_inputs = last_inputs_ ? &*last_inputs_ : nullptr,
             .frames = parts_.options.frames(),
             .is_virtual = time_.is_virtual(),
             .hosts_gone = &transport_.hosts_gone(),
@@ -318,11 +324,43 @@ void SessionRun::end_after_failure()
 {
     if (loop_.has_failed() || AssertionBrake::has_failed())
     {
-        finish_recording(); // Up to the frame that failed.
+        const std::string advice = keep_failed_frame();
         finish_trace();
         std::fflush(nullptr);
-        AssertionBrake::end_process();
+        AssertionBrake::end_process(advice);
     }
+}
+
+/// Of a recording all up to the frame that failed, and that one where it is the haptic thread's.
+/// Returns how it fails again; empty where frames have nothing to do with it.
+std::string SessionRun::keep_failed_frame()
+{
+    const bool is_frames = loop_.has_failed() && loop_.has_failed_itself();
+    const std::optional<GivenFrame> failed = is_frames ? loop_.failed_frame() : std::nullopt;
+    if (parts_.recorder != nullptr)
+    {
+        if (failed)
+        {
+            parts_.recorder->add_failed(*failed);
+        }
+        finish_recording();
+        return failed && done_.recording && done_.recording->lost_from == kNoFrame
+                   ? fmt::format("'hrtc --replay {}' runs it again", parts_.options.record_path)
+                   : std::string();
+    }
+    if (!is_frames)
+    {
+        return {};
+    }
+    const auto kept = write_last_inputs(*last_inputs_, failed, parts_.controller.setup());
+    if (!kept)
+    {
+        return kept.error().text;
+    }
+    return fmt::format(
+        "'--device replay:{}' gives the hand's last {} frames again; only a run with "
+        "--record can be replayed as it was",
+        kept.value().path, kept.value().frames);
 }
 
 FinishedRun SessionRun::finish()

@@ -77,6 +77,7 @@ private:
     void tell_of_strangers();
     void tell_of_guardian();
     void end_after_failure();
+    [[nodiscard]] std::string keep_failed_frame();
     void finish_recording();
     void finish_trace();
     void note_topics();
@@ -89,7 +90,8 @@ private:
     std::optional<BudgetGovernor> governor_;
     PoseDoor door_;
     TelemetryTap telemetry_;
-    std::optional<FrontTap> front_; ///< None with --no-front.
+    std::optional<FrontTap> front_;         ///< None with --no-front.
+    std::optional<LastInputs> last_inputs_; ///< None with --record.
     TransportRounds transport_;
     std::optional<TransportThread> transport_thread_;
     HapticLoop loop_;

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "platform/hrtc/assertion_brake.hpp"
+#include "platform/hrtc/replay_file.hpp"
 #include "platform/hrtc/session.hpp"
 #include "platform/recording/recording.hpp"
+#include "platform/recording/replay.hpp"
 #include "platform/wrapped_device.hpp"
 #include "rt_core/base/assert.hpp"
+#include "tests/shared/temporary_folder.hpp"
 #include "tests/shared/test_model.hpp"
 
 #include <gtest/gtest.h>
@@ -15,6 +18,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <fcntl.h>
 #include <filesystem>
@@ -52,6 +56,7 @@ enum class Bug : std::uint8_t
     none,
     haptic,
     haptic_and_fade, ///< And another one while the forces fade.
+    frame,           ///< The haptic thread's, of what the frame is given.
     main,
     supervisor,
     other,
@@ -101,7 +106,29 @@ struct Plan
     bool stderr_is_full{false};
     bool main_hangs{false}; ///< It never comes to end the process.
     std::string record_path{};
+    std::string folder{};    ///< Where it runs; empty: in one that goes afterwards.
+    std::string recording{}; ///< Not empty: its device gives the hand of this one.
 };
+
+/// Kernels of which one fails as soon as a proxy has come to a surface, so by what a frame is given
+/// and nothing else.
+const Kernels& failing_kernels()
+{
+    static const Kernels failing = []
+    {
+        Kernels kernels = portable_kernels();
+        kernels.planes_below =
+            [](const PlaneTable& table, const PlaneQuestion& question, PlaneHit* hits) noexcept
+        {
+            const PlaneCounts counts = portable_kernels().planes_below(table, question, hits);
+            const bool is_far_from_surfaces = counts.hits == 0;
+            TACTUS_ASSERT(is_far_from_surfaces);
+            return counts;
+        };
+        return kernels;
+    }();
+    return failing;
+}
 
 /// In the child process: makes the bug happen, and tells of brakes and releases.
 class FailingDevice final : public WrappedDevice
@@ -187,6 +214,7 @@ private:
             pthread_kill(main_, SIGUSR1);
             break;
         case Bug::none:
+        case Bug::frame:
         case Bug::supervisor:
         case Bug::other:
             break;
@@ -248,7 +276,15 @@ void run_session(const Plan& plan, const std::string& model, int events)
                     }
                 });
     install_assertion_brake();
+    std::filesystem::current_path(plan.folder);
     Options options;
+    options.kernels = plan.bug == Bug::frame ? &failing_kernels() : nullptr;
+    if (!plan.recording.empty())
+    {
+        options.devices.resize(1);
+        options.devices[0].kind = DeviceKind::replay;
+        options.devices[0].recording = plan.recording;
+    }
     options.transport = TransportKind::file;
     options.models = {model};
     options.objects.resize(1);
@@ -337,8 +373,10 @@ std::string read_to_end(int pipe)
 }
 
 /// Nobody reads the child's stderr before the brake that its bug leads to.
-Ended run_in_child(const Plan& plan)
+Ended run_in_child(Plan plan)
 {
+    const tactus::test::TemporaryFolder own("failed-run");
+    plan.folder = plan.folder.empty() ? own.path().string() : plan.folder;
     const std::string model = tactus::test::small_model(0).path;
     Pipe errors;
     Pipe events;
@@ -364,6 +402,7 @@ Ended run_in_child(const Plan& plan)
 }
 
 constexpr std::string_view kLine = "hrtc: internal error: kThereIsNoBug (";
+constexpr std::string_view kFrameLine = "hrtc: internal error: is_far_from_surfaces (";
 constexpr std::string_view kSecondLine = "hrtc: internal error: kThereIsNoSecondBug (";
 
 void expect_nothing_printed(const Event& brake)
@@ -396,6 +435,64 @@ TEST(AssertionBrake, the_recording_is_kept_up_to_the_frame_that_failed)
     const auto recording = Recording::read(path);
     ASSERT_TRUE(recording) << recording.error().text;
     EXPECT_EQ(recording.value().frame_count(), kFailAt - 1);
+}
+
+Recording read_recording(const std::string& path)
+{
+    auto recording = Recording::read(path);
+    TACTUS_ASSERT(recording);
+    return std::move(recording).value();
+}
+
+TEST(AssertionBrake, a_recorded_frame_that_failed_fails_again_in_its_replay)
+{
+    const std::string path = testing::TempDir() + "failed_frame.rec";
+    const Ended ended = run_in_child({.bug = Bug::frame, .record_path = path});
+    EXPECT_EQ(ended.code, kExitCode);
+    EXPECT_TRUE(ended.text.starts_with(kFrameLine)) << ended.text;
+    EXPECT_NE(ended.text.find("\nhrtc: 'hrtc --replay " + path + "' runs it again\n"),
+              std::string::npos)
+        << ended.text;
+
+    const Recording recording = read_recording(path);
+    EXPECT_TRUE(recording.has_failed());
+    ASSERT_GT(recording.frame_count(), 1U);
+    const auto sound = replay(recording, &portable_kernels());
+    ASSERT_TRUE(sound);
+    ASSERT_TRUE(sound.value().difference);
+    EXPECT_EQ(sound.value().difference->frame, recording.frame_count() - 1);
+    EXPECT_EQ(sound.value().difference->text, "it failed in the run, not here");
+    EXPECT_FALSE(replay(recording, &failing_kernels(), {.runs_failed = false}).value().difference);
+    const auto fail_again = [&]
+    {
+        install_assertion_brake();
+        std::_Exit(replay_file(path, &failing_kernels(), {},
+                               [](const std::string& line)
+                               { std::fprintf(stderr, "%s\n", line.c_str()); }));
+    };
+    EXPECT_EXIT(fail_again(), testing::ExitedWithCode(kExitCode),
+                "failed_frame.rec: frame [0-9]+ failed in the run and runs now\nhrtc: internal "
+                "error: is_far_from_surfaces \\(.*\n$");
+}
+
+TEST(AssertionBrake, without_a_recording_the_hands_last_frames_are_kept_and_fail_again)
+{
+    const tactus::test::TemporaryFolder kept("kept-inputs");
+    const std::string folder = kept.path().string();
+    const Ended ended = run_in_child({.bug = Bug::frame, .folder = folder});
+    EXPECT_EQ(ended.code, kExitCode);
+    EXPECT_TRUE(ended.text.starts_with(kFrameLine)) << ended.text;
+    const std::size_t begin = ended.text.find("hrtc-failed-");
+    ASSERT_NE(begin, std::string::npos) << ended.text;
+    const std::string name = ended.text.substr(begin, ended.text.find('\'', begin) - begin);
+    const Recording recording = read_recording(folder + "/" + name);
+    EXPECT_FALSE(recording.keeps_run());
+    EXPECT_FALSE(replay(recording)) << "the state before the first frame isn't there";
+
+    const Ended again =
+        run_in_child({.bug = Bug::frame, .folder = folder, .recording = folder + "/" + name});
+    EXPECT_EQ(again.code, kExitCode);
+    EXPECT_TRUE(again.text.starts_with(kFrameLine)) << again.text;
 }
 
 TEST(AssertionBrake, a_second_bug_ends_the_fade_and_both_are_printed_in_order)
