@@ -127,7 +127,7 @@ refuse_file start.rec 'at byte *: the file is cut short: '
 refuse_file cut.rec 'at byte *: the file is cut short: 36 bytes are needed here and 35 are left'
 refuse_file long.rec 'at byte *: the end section is followed by 1 bytes; nothing may follow it'
 refuse_file bent.rec 'at byte *: section of kind 2 and * bytes is damaged: its checksum'
-refuse_file newer.rec 'at byte 8: format version 255 is unknown; this program reads 11'
+refuse_file newer.rec 'at byte 8: format version 255 is unknown; this program reads 12'
 refuse 2 'no?where.rec: cannot be opened' --replay $'no\nwhere.rec'
 
 # A recording that can't be stored does not disturb the run, and is told at its end.
