@@ -245,10 +245,13 @@ ToolOutput Tool::finish(ToolOutput output, double clear_m) noexcept
     output.sample_fault = watch_.fault();
     output.clear_m = std::max(clear_m, 0.0);
     output.lost_object = lost_object_;
-    output.object_way_m = motion_.object_way_m;
-    output.object_turn_rad = motion_.object_turn_rad;
-    output.carried_m = motion_.carried_m;
-    output.carried_rad = motion_.carried_rad;
+    if (!lost_object_) // A jump is no motion that is believed.
+    {
+        output.object_way_m = motion_.object_way_m;
+        output.object_turn_rad = motion_.object_turn_rad;
+        output.carried_m = motion_.carried_m;
+        output.carried_rad = motion_.carried_rad;
+    }
     lost_object_ = false;
     output.squeezed = output.squeezed || leapt_by_;
     leapt_by_ = false;
