@@ -81,12 +81,13 @@ void SafeState::fade(ToolForce& force, double elapsed_s, ForceOff cause) noexcep
     let_out(force, cause);
 }
 
+/// What fades is from before the cause, so the fade itself is no part of it.
 void SafeState::follow(const ToolForce& sent) noexcept
 {
-    if (gain_ > 0.0)
+    if (gain_ > 0.0 && !is_fading_)
     {
-        base_n_ = sent.push.force_n / gain_;
-        base_nm_ = sent.turn.force_n / gain_;
+        base_n_ = (sent.push.force_n - damping_n_) / gain_;
+        base_nm_ = (sent.turn.force_n - damping_nm_) / gain_;
     }
 }
 
@@ -96,13 +97,14 @@ void SafeState::let_out(ToolForce& force, ForceOff causes) noexcept
     // On the way back in free air there is nothing to soften.
     const double share =
         causes == ForceOff::none && feels_nothing ? 0.0 : 4.0 * gain_ * (1.0 - gain_);
-    const Vec3 damping_n = shortened(-share * limits_.damping_n_s_per_m * velocity_m_per_s_,
-                                     kDampingForceShare * limits_.force_max_n);
-    const Vec3 damping_nm = shortened(-share * limits_.damping_nm_s_per_rad * turning_rad_per_s_,
-                                      kDampingForceShare * limits_.torque_max_nm);
+    damping_n_ = shortened(-share * limits_.damping_n_s_per_m * velocity_m_per_s_,
+                           kDampingForceShare * limits_.force_max_n);
+    damping_nm_ = shortened(-share * limits_.damping_nm_s_per_rad * turning_rad_per_s_,
+                            kDampingForceShare * limits_.torque_max_nm);
+    is_fading_ = !is_trusted(causes);
     state_ = next_state(causes);
-    force.push.force_n = shortened(gain_ * base_n_ + damping_n, limits_.force_max_n);
-    force.turn.force_n = shortened(gain_ * base_nm_ + damping_nm, limits_.torque_max_nm);
+    force.push.force_n = shortened(gain_ * base_n_ + damping_n_, limits_.force_max_n);
+    force.turn.force_n = shortened(gain_ * base_nm_ + damping_nm_, limits_.torque_max_nm);
     force.state = state_;
     force.causes = causes;
 }

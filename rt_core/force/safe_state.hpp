@@ -72,12 +72,10 @@ public:
     /// - `elapsed_s` >= 0; `cause` is not none (asserted).
     void fade(ToolForce& force, double elapsed_s, ForceOff cause) noexcept TACTUS_NONBLOCKING;
 
-    /// This went out in place of what step() has just let out: it is what fades.
+    /// This went out in place of what step() has just let out: it is what fades if a cause comes.
     void follow(const ToolForce& sent) noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] SafetyState state() const noexcept { return state_; }
-    /// What goes out is the frame's, and no gain holds any of it back.
-    [[nodiscard]] bool is_whole() const noexcept { return is_following_ && gain_ >= 1.0; }
     /// Share of the force that goes out, 0 .. 1.
     [[nodiscard]] double gain() const noexcept { return gain_; }
 
@@ -106,6 +104,9 @@ private:
     Vec3 velocity_m_per_s_{0.0, 0.0, 0.0};  ///< Zero when it isn't known.
     Vec3 turning_rad_per_s_{0.0, 0.0, 0.0}; ///< Likewise.
     bool is_too_fast_{false};
+    bool is_fading_{false};          ///< What the last frame let out, from before a cause.
+    Vec3 damping_n_{0.0, 0.0, 0.0};  ///< Of what it let out.
+    Vec3 damping_nm_{0.0, 0.0, 0.0}; ///< Likewise.
 };
 
 } // namespace tactus

@@ -49,8 +49,13 @@ public:
         , sim_(HandAndDevice::create({trial.device, trial.hand, trial.period_s, trial.start_m})
                    .value())
         , conditioner_({trial.device, trial.period_s, 0.0, trial.controls_passivity})
+        , pipeline_(pipeline_of(trial))
         , late_n_(trial.wall_delay_periods + 1, 0.0)
     {
+        for (int i = 0; i < 1'000; ++i) // Until its gain is whole.
+        {
+            static_cast<void>(piped(Vec3(0.0, 0.0, 0.0), sim_.measured_m(), 0.0));
+        }
     }
 
     [[nodiscard]] WallFigures run()
@@ -96,11 +101,15 @@ private:
         {
             return wished;
         }
-        const double claimed = trial_.claimed_stiffness_n_per_m;
-        const SpringForce out = condition(
-            conditioner_,
-            {wished, measured, claimed > 0.0 ? claimed : trial_.stiffness_n_per_m,
-             std::max(0.0, -measured.x()), 1, std::abs(trial_.surface_damping_n_s_per_m)});
+        const double claimed = trial_.claimed_stiffness_n_per_m > 0.0
+                                   ? trial_.claimed_stiffness_n_per_m
+                                   : trial_.stiffness_n_per_m;
+        const SpringForce out =
+            trial_.is_piped
+                ? piped(wished, measured, claimed)
+                : condition(conditioner_, {wished, measured, claimed, std::max(0.0, -measured.x()),
+                                           1, std::abs(trial_.surface_damping_n_s_per_m)});
+        figures_.held_periods += has_action(out.actions, ForceAction::change_limited) ? 1U : 0U;
         const double true_work_j = sim_.energy().force_work_j;
         figures_.observer_error_j =
             std::max(figures_.observer_error_j, std::abs(out.work_j - true_work_j));
@@ -108,6 +117,29 @@ private:
         figures_.damping_max_n_s_per_m =
             std::max(figures_.damping_max_n_s_per_m, out.damping_n_s_per_m);
         return out.force_n;
+    }
+
+    static PipelineSetup pipeline_of(const WallTrial& trial)
+    {
+        PipelineSetup setup = pipeline_setup({}, trial.device, trial.period_s, 10.0);
+        setup.conditioner.controls_passivity = trial.controls_passivity;
+        setup.limits.damping_n_s_per_m = 0.0;
+        return setup;
+    }
+    SpringForce piped(const Vec3& wished, const Vec3& measured, double stiffness)
+    {
+        ToolState tool;
+        tool.position_m = measured;
+        ToolOutput output;
+        output.force_n = wished;
+        output.proxy_m = Vec3(std::max(0.0, measured.x()), measured.y(), measured.z());
+        output.stiffness_n_per_m = stiffness;
+        output.in_contact = wished != Vec3(0.0, 0.0, 0.0);
+        const double damping = std::abs(trial_.surface_damping_n_s_per_m);
+        return pipeline_
+            .step(tool, output, {}, {},
+                  {.elapsed_s = trial_.period_s, .surface_damping_n_s_per_m = damping})
+            .push;
     }
 
     void watch_contact(double measured_x_m)
@@ -156,6 +188,7 @@ private:
     WallTrial trial_;
     HandAndDevice sim_;
     ForceConditioner conditioner_;
+    ForcePipeline pipeline_;
     std::vector<double> late_n_;
     double last_x_m_{0.0};
     double speed_before_{0.0};

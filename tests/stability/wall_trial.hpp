@@ -3,7 +3,7 @@
 #pragma once
 
 #include "platform/simulated/hand_and_device.hpp"
-#include "rt_core/force/force_conditioner.hpp"
+#include "rt_core/force/force_pipeline.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -23,6 +23,8 @@ struct WallTrial
     /// False: the wall's force goes out as it is.
     bool is_conditioned{true};
     bool controls_passivity{true};
+    /// With all stages of a ForcePipeline behind the conditioner, too, whose gain is whole.
+    bool is_piped{false};
     /// What the wall says of itself to the conditioner; 0: the truth.
     double claimed_stiffness_n_per_m{0.0};
     double duration_s{2.0};
@@ -42,6 +44,7 @@ struct WallFigures
     double observer_error_j{0.0};
     double surplus_max_j{0.0};
     double damping_max_n_s_per_m{0.0};
+    std::uint32_t held_periods{0}; ///< In which ChangeLimit acted.
     std::uint32_t contacts{0};
     /// Of each contact from its first sample in the wall to its first outside: work of the motors
     /// less what the device's damping and friction have lost, less K (v T + q)^2 / 2 and the

@@ -282,7 +282,7 @@ TEST_F(ToolPortTest, a_held_button_parts_hand_and_tool_without_a_force)
     device().buttons = 8;
     for (int i = 1; i <= 60; ++i)
     {
-        device().hand = turned_place(Vec3(0.001 * i, 0.0, 0.0), 0.6, 0.8);
+        device().hand = turned_place(Vec3(0.0005 * i, 0.0, 0.0), 0.6, 0.8);
         EXPECT_EQ(step(pushed_).causes, ForceOff::clutch);
         EXPECT_EQ(sut_->read(1).position_m, held.position_m);
         EXPECT_EQ(sut_->read(1).rotation, held.rotation);
@@ -298,7 +298,7 @@ TEST_F(ToolPortTest, a_held_button_parts_hand_and_tool_without_a_force)
     const Mat3 way = to_rotation({0.0, 0.0, -0.6, 0.8});
     device().hand = HandPlace{};
     EXPECT_LT((sut_->read(1).rotation - way * held.rotation).norm(), 1e-14);
-    EXPECT_LT((sut_->read(1).position_m - held.position_m - Vec3(-0.06, 0.0, 0.0)).norm(), 1e-14);
+    EXPECT_LT((sut_->read(1).position_m - held.position_m - Vec3(-0.03, 0.0, 0.0)).norm(), 1e-14);
 }
 
 /// What surfaces do is the same to the last bit, the passivity observer's part too.

@@ -437,6 +437,32 @@ TEST(ForcePipeline, a_force_that_the_last_stage_holds_back_fades_from_what_went_
     }
 }
 
+/// The damping of a fade grows no faster than the law lets it, and adds nothing up.
+TEST(ForcePipeline, a_fast_hand_fades_its_force_and_gets_none_for_its_speed)
+{
+    PipedTool tool(piped(kOmegaClass));
+    tool.press(0.0);
+    tool.steps(200);
+    for (int i = 1; i <= 100; ++i)
+    {
+        tool.press(1e-4 * std::min(i, 60));
+        tool.steps(1);
+    }
+    const double before_n = tool.sent_n().norm();
+    ASSERT_GT(before_n, 2.0);
+    tool.device.velocity_m_per_s = Vec3(0.0, 0.0, -10.0);
+    for (int i = 1; i <= 60; ++i)
+    {
+        const ToolForce& force = tool.step();
+        EXPECT_TRUE(has_cause(force.causes, ForceOff::velocity));
+        const double gain = std::max(0.0, 1.0 - i * kPeriod_s / kFadeTime_s);
+        const double damping_n =
+            std::min(4.0 * gain * (1.0 - gain) * 0.5 * 1.7 * 10.0, kDampingForceShare * 12.0);
+        EXPECT_LE(force.push.force_n.norm(), gain * before_n + damping_n + 1e-9) << i;
+    }
+    EXPECT_EQ(tool.sent_n(), Vec3(0.0, 0.0, 0.0));
+}
+
 TEST(ForcePipeline, tells_each_change_of_state_and_causes_once)
 {
     PipedTool tool(piped(kOmegaClass));
