@@ -52,11 +52,13 @@ public:
     void begin(std::size_t objects, const TestModel& model, const FaceTree& tree)
     {
         trails_.assign(objects, ProxyTrail(model, tree));
+        are_joined_.assign(objects, true);
     }
 
     /// The last frame of the rig, of its only tool.
-    void judge(const FrameRig& rig, const ToolOutput& tool, const char* activity)
+    void judge(const FrameRig& rig, const FrameOutput& output, const char* activity)
     {
+        const ToolOutput& tool = output.tools[0];
         activity_ = activity;
         ++figures_.crossings.trials;
         figures_.in_contact += tool.in_contact ? 1 : 0;
@@ -72,10 +74,15 @@ public:
             {
                 flag(figures_.crossings, found.moved->text());
             }
-            if (found.carried)
+            if (found.carried && are_joined_[object])
             {
                 judge_run_over(*found.carried, tool);
             }
+        }
+        are_joined_.assign(trails_.size(), true);
+        for (const PairOutput& pair : output.pairs)
+        {
+            are_joined_[pair.object] = pair.is_joined;
         }
         const double force = tool.force_n.norm();
         if (!(force <= kForceMax_n + kForceRounding_n) || !tool.proxy_m.allFinite())
@@ -108,6 +115,7 @@ private:
 
     std::uint64_t seed_;
     std::vector<ProxyTrail> trails_;
+    std::vector<bool> are_joined_; ///< In the last frame: what came round the tool lets it out.
     PopThroughFigures figures_;
     std::uint64_t frame_{0};
     std::string activity_;
@@ -146,7 +154,7 @@ PopThroughFigures run_pop_through_trial(const PopThroughTrial& trial)
         const Moment moment = motion.next();
         rig.place_object(moment.pose);
         const FrameOutput output = rig.step(moment.goal_m, trial.hardship.budgets);
-        judge.judge(rig, output.tools[0], motion.activity());
+        judge.judge(rig, output, motion.activity());
     }
     return judge.figures();
 }
@@ -222,7 +230,7 @@ public:
         jaws_.open_to(half_gap_m, rig_);
         const FrameOutput output = rig_.step(Vec3(0.0, 0.0, 0.0));
         const ToolOutput& tool = output.tools[0];
-        judge_.judge(rig_, tool, activity);
+        judge_.judge(rig_, output, activity);
         squeezed_s_ = tool.squeezed ? squeezed_s_ + kPeriod_s : 0.0;
         if (tool.squeezed != has_fault(output.faults, FrameFault::proxy_squeezed))
         {
