@@ -70,7 +70,13 @@ BaseFetch::State BaseFetch::check()
 {
     if (content_hash(parts_.bytes()) != header_.fields().base_hash)
     {
-        return state_ = State::refused;
+        if (!model_.link->distrust({ContentKind::base, 0}))
+        {
+            return state_ = State::refused;
+        }
+        parts_ = PartIntake(ContentKind::base, header_.fields().base_bytes);
+        session_ = 0; // Asked again at once.
+        return state_;
     }
     model_.base = std::move(parts_.bytes());
     return state_ = State::done;

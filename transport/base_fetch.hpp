@@ -16,8 +16,8 @@
 namespace tactus
 {
 
-/// Fetches a model's base mesh over its link, part by part: a host that goes in the middle is no
-/// loss where another one serves the model.
+/// Fetches a model's base mesh over its link, part by part: a host that goes in the middle, is
+/// silent or sends what is wrong is no loss where another one serves the model.
 class BaseFetch final : private PieceSink
 {
 public:
@@ -25,7 +25,7 @@ public:
     {
         under_way,
         done,    ///< The model's `base` is whole and has the hash that its header names.
-        refused, ///< For good: it has another one.
+        refused, ///< For good: it has another one, and nobody else sends any.
     };
 
     /// The model must outlive it, and its header be as ServedModel says; one with a base mesh is

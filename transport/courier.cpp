@@ -269,6 +269,10 @@ void Courier::adopt_base(Side& side)
         refuse(side, is_true ? side.counters.refused_content : side.counters.refused_hash, key,
                is_true ? refusal_text(parsed.error())
                        : "does not have the hash that the header names");
+        if (!is_true)
+        {
+            static_cast<void>(side.link.distrust(key));
+        }
         side.base = {};
         give_cells_back(side);
         return;
@@ -309,6 +313,7 @@ void Courier::adopt_index_page(Side& side, IndexPageId page, std::span<const std
     {
         refuse(side, side.counters.refused_hash, key,
                "does not have the hash that the header names");
+        static_cast<void>(side.link.distrust(key));
         return;
     }
     if (bank_.free_index_pages() == 0)
@@ -346,6 +351,7 @@ void Courier::adopt_chunk(Side& side, ChunkId chunk, std::span<const std::byte> 
     {
         refuse(side, side.counters.refused_hash, key,
                "does not have the hash that its index page names");
+        static_cast<void>(side.link.distrust(key));
         return;
     }
     if (bank_.free_pages() == 0)

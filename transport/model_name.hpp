@@ -13,6 +13,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 // Any thread, but not the haptic one: calls allocate, and work on their arguments alone.
 namespace tactus
@@ -32,18 +33,34 @@ namespace tactus
                        });
 }
 
-/// Which model is meant: by name, or by name and hash. Without a hash the first one seen is taken.
+/// Whether a server may be called so: 1 to 80 bytes of [A-Za-z0-9._:-]. It is called by its
+/// machine, MACHINE or MACHINE:PROCESS, or with DDS Security by its certificate, cert:HEX.
+[[nodiscard]] constexpr bool is_valid_server(std::string_view server) noexcept
+{
+    constexpr std::size_t kMaxServerBytes = 80;
+    return !server.empty() && server.size() <= kMaxServerBytes &&
+           std::all_of(server.begin(), server.end(),
+                       [](char c) {
+                           return c == ':' || is_valid_name({&c, 1});
+                       });
+}
+
+/// Which model or scene is meant: by name, or by name and hash or server. Without those the first
+/// server that answers says it.
 struct ModelSelector
 {
-    std::string name;
-    std::optional<ContentHash> hash;
+    std::string name; ///< Empty: any.
+    std::optional<ContentHash> hash{};
+    std::string server{}; ///< Empty: any.
 };
 
-/// Reads NAME or NAME@HASH, HASH being 32 hexadecimal digits. Other texts are refused in one line.
+/// Reads NAME, NAME@HASH or NAME@SERVER, HASH being 32 hexadecimal digits. Other texts are refused
+/// in one line.
 [[nodiscard]] inline Result<ModelSelector, Refusal> parse_selector(std::string_view text)
 {
     const std::size_t at = text.find('@');
-    ModelSelector selector{std::string(text.substr(0, at)), std::nullopt};
+    ModelSelector selector;
+    selector.name = text.substr(0, at);
     if (!is_valid_name(selector.name))
     {
         return Refusal{"name '" + printable(selector.name) +
@@ -51,14 +68,24 @@ struct ModelSelector
     }
     if (at != std::string_view::npos)
     {
-        selector.hash = parse_hash(text.substr(at + 1));
-        if (!selector.hash)
+        const std::string_view pin = text.substr(at + 1);
+        selector.hash = parse_hash(pin);
+        if (!selector.hash && !is_valid_server(pin))
         {
-            return Refusal{"hash '" + printable(text.substr(at + 1)) +
-                           "' is not 32 hexadecimal digits"};
+            return Refusal{"'" + printable(pin) +
+                           "' behind @ is neither a hash of 32 hexadecimal digits nor a server, "
+                           "MACHINE[:PROCESS] or cert:HEX"};
         }
+        selector.server = selector.hash ? "" : pin;
     }
     return selector;
 }
+
+/// Which servers may take the place of one that is gone.
+struct Failover
+{
+    bool any{false};
+    std::vector<std::string> servers{}; ///< As in NAME@SERVER.
+};
 
 } // namespace tactus

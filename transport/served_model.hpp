@@ -26,6 +26,7 @@ struct ServedModel
     std::vector<std::byte> header;
     std::vector<std::byte> base; ///< Coded; empty until it was fetched (base_fetch.hpp).
     std::unique_ptr<ChunkLink> link;
+    std::uint64_t host_epoch{0}; ///< Of the host that sent the header; 0: it is from a file.
 };
 
 /// Verifies the base mesh's hash against the header (SpmRefusal::wrong_checksum), then parses it

@@ -5,6 +5,7 @@
 #include "host_tools/cli/stop_signals.hpp"
 #include "host_tools/scene/placed_models.hpp"
 #include "host_tools/spm_publish/host_metrics.hpp"
+#include "host_tools/spm_publish/namesakes.hpp"
 #include "host_tools/spm_publish/options.hpp"
 #include "host_tools/spm_publish/pose_script.hpp"
 #include "host_tools/spm_publish/serving_report.hpp"
@@ -51,6 +52,7 @@ struct Extras
     std::unique_ptr<dds::TelemetryReader> controllers; ///< Where somebody wants to know of them.
     std::optional<Watch> watch;
     std::optional<HostMetrics> metrics;
+    Namesakes* namesakes{nullptr}; ///< None where they can't be looked for.
 };
 
 /// Puts a scene's models in the place of its file, and tells of its objects.
@@ -305,6 +307,10 @@ void serve(dds::DdsHost& host, ServingReport& report, Extras& extras,
         {
             extras.metrics->update(host, *extras.controllers);
         }
+        if (extras.namesakes != nullptr)
+        {
+            extras.namesakes->update();
+        }
         report.update(host);
     }
 }
@@ -353,13 +359,18 @@ int run(int argc, char** argv)
     }
     stop_on_signals();
     ServingReport report;
-    auto host = dds::DdsHost::create(
-        options.domain, std::move(models).value(),
-        [&report](const std::string& text) { report.print_line(text, LogLevel::warning); },
-        options.scene);
+    const Log warn = [&report](const std::string& text)
+    { report.print_line(text, LogLevel::warning); };
+    auto host = dds::DdsHost::create(options.domain, std::move(models).value(), warn, options.scene,
+                                     dds::Party::both);
     if (!host)
     {
         return line.fail(host.error().text);
+    }
+    auto namesakes = Namesakes::create(*host.value(), options.scene, warn);
+    if (!namesakes) // A certificate may not allow it.
+    {
+        warn("other servers of these names are not looked for: " + namesakes.error().text);
     }
     auto extras = make_extras(options, *host.value(), std::move(props), std::move(poses).value());
     if (!extras)
@@ -371,6 +382,7 @@ int run(int argc, char** argv)
         return line.fail(refusal->text);
     }
     print_models(report, *host.value(), options.scene, options.domain);
+    extras.value().namesakes = namesakes ? &namesakes.value() : nullptr;
     serve(*host.value(), report, extras.value(), options.seconds);
     const auto counters = host.value()->counters();
     report.print_line(fmt::format("ended; {} chunks, {:.1f} KB sent", counters.pieces_sent,

@@ -145,8 +145,13 @@ private:
     void receive(ContentKey key, std::span<const std::byte> bytes) override
     {
         const std::lock_guard lock(mutex_);
-        if (!wanted_.contains(key) || !is_sound(key, bytes))
+        if (!wanted_.contains(key))
         {
+            return;
+        }
+        if (!is_sound(key, bytes))
+        {
+            static_cast<void>(served_.link->distrust(key));
             return;
         }
         pieces_[key].assign(bytes.begin(), bytes.end());
@@ -197,12 +202,17 @@ private:
 /// For one model.
 struct ModelFetcher::Search
 {
-    dds::Catalogue::Offer offer;             ///< Once it is published.
-    std::unique_ptr<dds::HeaderFetch> fetch; ///< Until the header is here.
-    ServedModel served;                      ///< From then on until the base mesh is.
+    Search(dds::PieceExchange& exchange, dds::Catalogue& catalogue, const ContentHash& hash)
+        : header(exchange, catalogue, {.name = "", .hash = hash})
+    {
+    }
+
+    dds::HeaderSearch header; ///< Until there is `served`.
+    bool is_announced{false}; ///< To the shelf.
+    std::string objection;    ///< That was told last.
+    ServedModel served;       ///< From then on until the base mesh is.
     std::unique_ptr<BaseFetch> base;
     std::shared_ptr<FetchedModel> model; ///< In the end.
-    std::uint64_t refused_epoch{0};      ///< A host whose pieces were damaged.
 };
 
 Result<std::unique_ptr<ModelFetcher>, Refusal> ModelFetcher::create(const dds::Domain& domain,
@@ -244,7 +254,7 @@ void ModelFetcher::look_for(const ContentHash& hash)
 {
     if (!searches_.contains(hash) && searches_.size() < kMaxModels && !shelf_.has(hash))
     {
-        searches_[hash] = std::make_unique<Search>();
+        searches_[hash] = std::make_unique<Search>(*exchange_, catalogue_, hash);
     }
 }
 
@@ -264,7 +274,7 @@ bool ModelFetcher::is_busy() const
                                {
                                    const Search& search = *each.second;
                                    return search.model != nullptr ? search.model->is_busy()
-                                                                  : search.offer.header_bytes != 0;
+                                                                  : search.is_announced;
                                });
 }
 
@@ -286,44 +296,43 @@ void ModelFetcher::step(const ContentHash& hash, Search& search)
         else if (state == BaseFetch::State::refused)
         {
             log_(fmt::format("model '{}' has a base mesh of another hash than its header names",
-                             search.offer.name));
-            const std::uint64_t epoch = search.offer.host_epoch;
-            search = Search{};
-            search.refused_epoch = epoch;
+                             search.served.name));
+            search.base.reset();
+            search.served = {};
+            search.header.refuse(search.header.offer());
         }
     }
-    else if (search.fetch != nullptr)
+    else
     {
         take_header(hash, search);
-    }
-    else if (const auto* offer = catalogue_.find(hash);
-             offer != nullptr && offer->host_epoch != search.refused_epoch)
-    {
-        search.offer = *offer;
-        search.fetch = std::make_unique<dds::HeaderFetch>(*exchange_, catalogue_, *offer);
-        shelf_.announce(hash);
     }
 }
 
 void ModelFetcher::take_header(const ContentHash& hash, Search& search)
 {
-    const auto state = search.fetch->step();
-    if (state == dds::HeaderFetch::State::done)
+    using State = dds::HeaderSearch::State;
+    const State state = search.header.step();
+    if (state == State::under_way && !search.is_announced)
     {
-        search.served.name = search.offer.name;
+        search.is_announced = true;
+        shelf_.announce(hash);
+    }
+    else if (state == State::done)
+    {
+        search.served.name = search.header.offer().name;
         search.served.hash = hash;
-        search.served.header = std::move(search.fetch->header());
-        search.fetch.reset();
+        search.served.header = std::move(search.header.header());
         search.served.link =
-            std::make_unique<dds::DdsLink>(*exchange_, catalogue_, search.offer, log_);
+            std::make_unique<dds::DdsLink>(*exchange_, catalogue_, search.header.offer(), log_);
         search.base = std::make_unique<BaseFetch>(search.served);
     }
-    else if (state == dds::HeaderFetch::State::refused)
+    else if (state == State::refused)
     {
-        log_(fmt::format("model '{}' {}", search.offer.name, search.fetch->objection()));
-        const std::uint64_t epoch = search.offer.host_epoch;
-        search = Search{};
-        search.refused_epoch = epoch;
+        search.is_announced = false;
+        if (std::exchange(search.objection, search.header.objection()) != search.objection)
+        {
+            log_(fmt::format("model '{}' {}", search.header.offer().name, search.objection));
+        }
     }
 }
 

@@ -11,6 +11,7 @@
 #include "platform/remote/pose_door.hpp"
 #include "platform/rt_thread.hpp"
 #include "platform/time.hpp"
+#include "transport/dds/authority.hpp"
 #include "transport/dds/dds_client.hpp"
 #include "transport/dds/refusals.hpp"
 #include "transport/dds/scene_reader.hpp"
@@ -35,11 +36,13 @@ struct FinishedRun
     Duration period;
     std::time_t started{0}; ///< Calendar time.
     SafetyRecord safety;
-    bool host_was_lost{false};                  ///< Some model's host went away during the run.
-    std::vector<PoseUse> pose_uses{};           ///< One an object; none from files.
-    std::vector<dds::PoseCounts> pose_counts{}; ///< One a model; none with --ignore-poses.
-    SceneNewsCounts scene_news{};               ///< Of a host's scene.
-    std::vector<dds::PeerRefusals> refused{};   ///< Of others on the domain.
+    bool host_was_lost{false};        ///< Some model's host went away during the run.
+    bool has_other_device{false};     ///< It ended: another one came in a tool's device's place.
+    std::vector<PoseUse> pose_uses{}; ///< One an object; none from files.
+    std::vector<dds::PoseCounts> pose_counts{};    ///< One a model; none with --ignore-poses.
+    SceneNewsCounts scene_news{};                  ///< Of a host's scene.
+    std::vector<dds::PeerRefusals> refused{};      ///< Of others on the domain.
+    std::vector<dds::ServerEvent> server_events{}; ///< None from files.
     std::uint64_t telemetry_sent{0};
     std::uint64_t fronts_sent{0};
     std::optional<RecordingResult> recording{};

@@ -4,17 +4,19 @@
 
 #include "rt_core/base/assert.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace tactus::hrtc
 {
 
-Result<std::unique_ptr<HostTopics>, Refusal> HostTopics::create(dds::DdsClient& client,
-                                                                const Controller& controller,
-                                                                std::unique_ptr<SceneKeeper> keeper,
-                                                                bool shows_front)
+Result<std::unique_ptr<HostTopics>, Refusal>
+HostTopics::create(dds::DdsClient& client, const Controller& controller,
+                   std::span<dds::Authority> authorities, std::unique_ptr<SceneKeeper> keeper,
+                   bool shows_front)
 {
-    std::unique_ptr<HostTopics> topics(new HostTopics(client, controller, std::move(keeper)));
+    std::unique_ptr<HostTopics> topics(
+        new HostTopics(client, controller, authorities, std::move(keeper)));
     std::vector<ModelIdentity> identities;
     for (std::size_t i = 0; i < controller.models().size() && i < kMaxShownModels; ++i)
     {
@@ -42,9 +44,10 @@ Result<std::unique_ptr<HostTopics>, Refusal> HostTopics::create(dds::DdsClient& 
 }
 
 HostTopics::HostTopics(const dds::DdsClient& client, const Controller& controller,
-                       std::unique_ptr<SceneKeeper> keeper)
+                       std::span<dds::Authority> authorities, std::unique_ptr<SceneKeeper> keeper)
     : client_(client)
     , controller_(controller)
+    , authorities_(authorities)
     , keeper_(std::move(keeper))
     , seen_(controller.models().size())
 {
@@ -67,6 +70,10 @@ void HostTopics::connect(PoseDoor& door, const TelemetryTap& tap, FrontTap* fron
 
 void HostTopics::step(MonotonicTime now)
 {
+    for (dds::Authority& authority : authorities_)
+    {
+        authority.step();
+    }
     if (keeper_ != nullptr)
     {
         keeper_->step(now);
@@ -95,6 +102,17 @@ std::vector<dds::PoseCounts> HostTopics::pose_counts() const
 SceneNewsCounts HostTopics::scene_news() const
 {
     return keeper_ != nullptr ? keeper_->news() : SceneNewsCounts{};
+}
+
+std::vector<dds::ServerEvent> HostTopics::server_events() const
+{
+    std::vector<dds::ServerEvent> events;
+    for (const dds::Authority& authority : authorities_)
+    {
+        events.insert(events.end(), authority.events().begin(), authority.events().end());
+    }
+    std::ranges::stable_sort(events, {}, &dds::ServerEvent::time);
+    return events;
 }
 
 void HostTopics::send_telemetry(MonotonicTime now)

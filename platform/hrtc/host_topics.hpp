@@ -9,11 +9,13 @@
 #include "platform/hrtc/telemetry_tap.hpp"
 #include "platform/remote/pose_door.hpp"
 #include "platform/time.hpp"
+#include "transport/dds/authority.hpp"
 #include "transport/dds/dds_client.hpp"
 #include "transport/dds/telemetry.hpp"
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace tactus::hrtc
@@ -27,11 +29,12 @@ public:
     /// How often the controller's state is sent.
     static constexpr Duration kTelemetryPeriod = milliseconds(10);
 
-    /// `client` and `controller` must outlive it. What hosts show is passed over without `keeper`,
-    /// what is refined is told unless `shows_front` is false.
+    /// `client`, `controller` and `authorities`, those of the keeper, must outlive it. What hosts
+    /// show is passed over without `keeper`, what is refined is told unless `shows_front` is false.
     [[nodiscard]] static Result<std::unique_ptr<HostTopics>, Refusal>
     create(dds::DdsClient& client, const Controller& controller,
-           std::unique_ptr<SceneKeeper> keeper, bool shows_front);
+           std::span<dds::Authority> authorities, std::unique_ptr<SceneKeeper> keeper,
+           bool shows_front);
 
     /// Between these and the haptic thread; all live as long as the run. `front` may be null where
     /// shows_front() is false.
@@ -51,6 +54,8 @@ public:
     {
         return client_.domain().participants().refusals().list();
     }
+    /// What became of the servers whose word counts, in order.
+    [[nodiscard]] std::vector<dds::ServerEvent> server_events() const;
     [[nodiscard]] std::uint64_t telemetry_sent() const noexcept { return telemetry_->sent(); }
     [[nodiscard]] std::uint64_t fronts_sent() const noexcept
     {
@@ -66,7 +71,7 @@ private:
     };
 
     HostTopics(const dds::DdsClient& client, const Controller& controller,
-               std::unique_ptr<SceneKeeper> keeper);
+               std::span<dds::Authority> authorities, std::unique_ptr<SceneKeeper> keeper);
 
     void send_telemetry(MonotonicTime now);
     void add_transport_side(std::size_t model, ModelTelemetry& telemetry, MonotonicTime now);
@@ -74,6 +79,7 @@ private:
 
     const dds::DdsClient& client_;
     const Controller& controller_;
+    std::span<dds::Authority> authorities_;
     std::unique_ptr<SceneKeeper> keeper_; ///< May be none.
     std::unique_ptr<dds::TelemetryWriter> telemetry_;
     std::unique_ptr<FrontSender> front_; ///< Likewise.

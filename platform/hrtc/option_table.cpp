@@ -26,13 +26,13 @@ void declare_scene(CommandLine& line, Options& options, RawOptions& raw)
                     "FILE and --scene FILE")
         .not_in_file();
     line.add_option("--model", raw.models,
-                    "Model to touch: NAME or NAME@HASH as published, or a file; repeatable, the "
-                    "same one for several objects that show it")
+                    "Model to touch: NAME, NAME@HASH or NAME@SERVER as published, or a file; "
+                    "repeatable, the same one for several objects that show it")
         .repeatable();
     line.add_option("--scene", options.scene,
-                    "Instead of --model: all objects of the host whose scene has this name, as "
-                    "they come, move and go; or those of a glTF file, each with its model beside "
-                    "the file, as spm_build writes it");
+                    "Instead of --model: all objects of the host whose scene has this name, NAME "
+                    "or NAME@SERVER, as they come, move and go; or those of a glTF file, each with "
+                    "its model beside the file, as spm_build writes it");
     line.add_option("--place", raw.places,
                     "Where the object stands, one for each --model in order, and more for further "
                     "objects that show the last one: X,Y,Z in m "
@@ -199,8 +199,9 @@ void declare_force(CommandLine& line, Options& options)
                     "Speed of the hand, in m/s, above which its force fades [the device's own]")
         .number_between(0.01, 100.0);
     line.add_option("--object-speed", options.object_speed_m_per_s,
-                    "In m/s, the most that is believed of an object that a tool touches: it is "
-                    "carried no faster, and the force fades while its host moves it farther")
+                    "In m/s, the most that is believed of an object that a tool touches or may "
+                    "within 20 ms: it is carried no faster, and the force fades while its host "
+                    "moves it farther")
         .number_between(0.001, 100.0)
         .show_default();
     line.add_option("--follow-speed", options.follow_speed_m_per_s,
@@ -221,6 +222,13 @@ void declare_transport(CommandLine& line, Options& options, RawOptions& raw)
     line.add_option("--name", options.name,
                     "With DDS: the controller's name, 1 to 63 characters of A-Z a-z 0-9 . _ -, "
                     "that hosts show and by which rights can be given [hrtc-PID]");
+    line.add_option("--failover", raw.failover,
+                    "Which server may take the place of the one that was taken at the start, when "
+                    "that is gone: SERVER, as in NAME@SERVER, is its machine, MACHINE or "
+                    "MACHINE:PROCESS, or with DDS Security its certificate, cert:HEX, as lines and "
+                    "reports name it; any: any that offers the same; repeatable [none; with DDS "
+                    "Security one with the same certificate]")
+        .repeatable();
     line.add_flag("--ignore-poses", raw.ignores_poses,
                   "Leave the objects where --place or --scene put them at the start, whatever "
                   "their hosts say");

@@ -29,6 +29,7 @@ struct RawOptions
     std::vector<std::string> device_faults;
     std::vector<std::string> motions;
     std::optional<std::string> transport;
+    std::vector<std::string> failover;
     std::string prediction{prediction_name(Prediction::automatic)};
     std::optional<std::string> kernels;
     std::optional<int> cpu;

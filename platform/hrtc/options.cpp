@@ -150,12 +150,15 @@ std::string check_models(Options& options, const RawOptions& raw)
         {
             return "--scene: takes the place of --model, --place and --material";
         }
-        if (raw.transport == "file" || is_valid_name(options.scene))
+        if (raw.transport == "file")
         {
             return "";
         }
-        return fmt::format("--scene: '{}' is not 1 to 63 characters of A-Z a-z 0-9 . _ -",
-                           printable(options.scene));
+        const auto selector = parse_selector(options.scene);
+        return !selector               ? "--scene: " + selector.error().text
+               : selector.value().hash ? "--scene: a hash is of models; a scene has a NAME or "
+                                         "NAME@SERVER"
+                                       : "";
     }
     if (raw.models.empty())
     {
@@ -495,6 +498,33 @@ std::string check_names(const CommandLine& line, const Options& options)
     return {};
 }
 
+/// Empty when all is well.
+std::string take_failover(Options& options, const RawOptions& raw)
+{
+    if (!raw.failover.empty() && options.transport == TransportKind::file)
+    {
+        return "--failover: files have no server that could be gone";
+    }
+    for (const std::string& server : raw.failover)
+    {
+        if (!is_valid_server(server))
+        {
+            return fmt::format("--failover: '{}' is no server, MACHINE[:PROCESS] or cert:HEX, nor "
+                               "any",
+                               printable(server));
+        }
+        if (server == "any")
+        {
+            options.failover.any = true;
+        }
+        else
+        {
+            options.failover.servers.push_back(server);
+        }
+    }
+    return {};
+}
+
 /// Memory and work of a frame. Empty when all is well.
 std::string check_budgets(const CommandLine& line, Options& options)
 {
@@ -609,6 +639,10 @@ std::string check_together(const CommandLine& line, Options& options, RawOptions
         std::ranges::find(kPredictionNames, raw.prediction) - kPredictionNames.begin());
     options.transport = raw.transport == "file" ? TransportKind::file : TransportKind::dds;
     if (const std::string fault = check_virtual_time(options, raw); !fault.empty())
+    {
+        return fault;
+    }
+    if (std::string fault = take_failover(options, raw); !fault.empty())
     {
         return fault;
     }

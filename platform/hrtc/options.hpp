@@ -54,10 +54,11 @@ struct HandChoice
 /// Everything that the command line says; checked, in SI.
 struct Options
 {
-    std::vector<std::string> models; ///< NAME[@HASH], or paths with the file transport; each once.
+    /// NAME, NAME@HASH or NAME@SERVER, or paths with the file transport; each once.
+    std::vector<std::string> models;
     std::vector<PlacedObject> objects; ///< By their numbers; each model is shown by one at least.
     /// Not empty: models and objects are this file's, or with DDS those of the host whose scene has
-    /// this name; see scene_choice.hpp.
+    /// this name, or NAME@SERVER; see scene_choice.hpp.
     std::string scene;
     std::uint32_t objects_max{0}; ///< Room for so many; 0: as many as there are.
     std::size_t tools{1};
@@ -70,6 +71,7 @@ struct Options
     TransportKind transport{TransportKind::dds};
     std::uint32_t domain{0};
     std::string name;         ///< Of the controller, with DDS; empty: hrtc-PID.
+    Failover failover;        ///< With DDS.
     bool follows_poses{true}; ///< Objects move as the hosts say.
     bool shows_front{true};   ///< With DDS: tells which records are split.
     double wait_s{10.0};      ///< For a model that nobody publishes yet, or a device.
@@ -93,7 +95,7 @@ struct Options
     double angular_stiffness_nm_per_rad{0.0};  ///< 0: as the stiffness and the tool's size make it.
     double smooth_m{0.0};                      ///< 0: facets are felt.
     std::optional<double> speed_limit_m_per_s; ///< None: the device's own.
-    double object_speed_m_per_s{0.5};          ///< Believed of an object that is touched.
+    double object_speed_m_per_s{0.5};          ///< Believed of an object near a tool.
     std::optional<std::uint32_t> clutch_button; ///< Of every device.
     /// Of a silent loop, until the supervisor brakes. None: as the kernel can promise.
     std::optional<std::uint32_t> supervisor_periods;

@@ -490,6 +490,7 @@ Json make_report(const Options& options, const Controller& controller, const Fin
             {"pools", pools_of(record)},
             {"cache", cache_of(record)},
             {"wire", wire_of(record)},
+            {"servers", servers_of(run)},
             {"refused", refused_of(run.refused)},
             {"deadline", deadlines_of(run)},
             {"realtime",

@@ -8,6 +8,9 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
+#include <cstdint>
+#include <utility>
 
 namespace tactus::hrtc
 {
@@ -106,6 +109,31 @@ Json safety_of(const FinishedRun& run)
             {"begun", begun},
             {"events", events},
             {"events_left_out", safety.left_out()}};
+}
+
+Json servers_of(const FinishedRun& run)
+{
+    const auto& safety = run.safety.events();
+    const MonotonicTime start = safety.empty() ? MonotonicTime{} : safety.front().time;
+    std::array<std::uint64_t, dds::kServerNewsKinds> counts{};
+    Json events = Json::array();
+    for (const dds::ServerEvent& event : run.server_events)
+    {
+        const auto kind = static_cast<std::size_t>(event.news);
+        ++counts.at(kind);
+        const MonotonicTime time{std::chrono::nanoseconds(event.time.time_since_epoch()).count()};
+        events.push_back({{"time_s", to_seconds(time - start)},
+                          {"event", dds::server_news_names().at(kind)},
+                          {"name", event.what},
+                          {"server", event.server}});
+    }
+    Json json = Json::object();
+    for (std::size_t kind = 0; kind < counts.size(); ++kind)
+    {
+        json[dds::server_news_names().at(kind)] = counts.at(kind);
+    }
+    json["events"] = std::move(events);
+    return json;
 }
 
 } // namespace tactus::hrtc

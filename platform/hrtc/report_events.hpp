@@ -15,4 +15,8 @@ struct FinishedRun;
 /// What it says of the force that was off, when and why.
 [[nodiscard]] nlohmann::ordered_json safety_of(const FinishedRun& run);
 
+/// What it says of the servers whose word counts: what became of them, and when; before the loop
+/// below 0 s.
+[[nodiscard]] nlohmann::ordered_json servers_of(const FinishedRun& run);
+
 } // namespace tactus::hrtc

@@ -226,6 +226,20 @@ void add_refused(const Json& peers, SummaryFacts& facts)
     }
 }
 
+/// A line when a server went, was replaced, or there was a second one of its name.
+void add_servers(const Json& servers, SummaryFacts& facts)
+{
+    const auto count = [&](const char* key) { return servers[key].get<std::uint64_t>(); };
+    if (count("lost") + count("replaced") + count("not_followed") + count("namesake") > 0)
+    {
+        facts.emplace_back("servers",
+                           fmt::format("lost {}, back {}, replaced {}; others that offered the "
+                                       "same {}, not followed {}; the report names them",
+                                       count("lost"), count("back"), count("replaced"),
+                                       count("namesake"), count("not_followed")));
+    }
+}
+
 /// How the models came, and what of them is here.
 void add_models(const Json& report, SummaryFacts& facts)
 {
@@ -253,6 +267,7 @@ void add_models(const Json& report, SummaryFacts& facts)
                         arrival["p50"].get<double>(), arrival["p99"].get<double>(),
                         arrival["max"].get<double>()));
     }
+    add_servers(report["servers"], facts);
     add_refused(report["refused"], facts);
 }
 

@@ -26,31 +26,22 @@ namespace
 
 constexpr std::chrono::milliseconds kPause{2};
 
-/// What the host shows by now, as far as it serves the models. None yet: why.
-std::optional<std::string> take_objects(Options& options, std::vector<HostObject>& shown,
-                                        const dds::Catalogue& catalogue, dds::SceneReader& reader)
+/// Hosts that are asked at the same time; only strangers could be so many.
+constexpr std::size_t kMaxCandidates = 256;
+
+/// What the host shows, as far as it serves the models.
+void take_objects(Options& options, ShownScene& scene, const dds::Catalogue& catalogue,
+                  const dds::SceneReader& reader)
 {
-    const auto host = catalogue.find_scene(options.scene);
-    if (!host)
-    {
-        return fmt::format("is not shown on domain {} (scenes there: {})", options.domain,
-                           catalogue.scene_names());
-    }
-    reader.poll({&*host, 1}, [](dds::SceneNews /*news*/, const dds::SeenObject& /*object*/) {});
-    if (!reader.is_complete(*host))
-    {
-        return fmt::format("is there on domain {}, but not all its objects have come{}{}",
-                           options.domain, reader.fault().empty() ? "" : "; ", reader.fault());
-    }
-    const std::vector<const dds::Catalogue::Offer*> offers = catalogue.offers_of(*host);
+    const std::vector<const dds::Catalogue::Offer*> offers = catalogue.offers_of(scene.host_epoch);
     options.models.clear();
     for (const dds::Catalogue::Offer* offer : offers)
     {
         options.models.push_back(offer->name + "@" + hash_text(offer->hash));
     }
     options.objects.clear();
-    shown.clear();
-    for (const auto& [number, object] : reader.objects(*host))
+    scene.objects.clear();
+    for (const auto& [number, object] : reader.objects(scene.host_epoch))
     {
         const auto offer =
             std::ranges::find(offers, object.shown.model, &dds::Catalogue::Offer::hash);
@@ -58,14 +49,47 @@ std::optional<std::string> take_objects(Options& options, std::vector<HostObject
         {
             options.objects.push_back({static_cast<std::size_t>(offer - offers.begin()),
                                        to_similarity(object.shown.pose), object.shown.material});
-            shown.push_back({*host, number});
+            scene.objects.push_back({scene.host_epoch, number});
         }
     }
-    return options.objects.empty()
-               ? std::optional(fmt::format("shows no object of a model that its host serves on "
-                                           "domain {}",
-                                           options.domain))
-               : std::nullopt;
+}
+
+/// Of the first host that has shown all by now. None yet: why.
+std::optional<std::string> try_take(Options& options, const ModelSelector& selector,
+                                    ShownScene& scene, const dds::Catalogue& catalogue,
+                                    dds::SceneReader& reader)
+{
+    std::vector<std::uint64_t> hosts;
+    for (const dds::Catalogue::Offer* offer : catalogue.servers_of_scene(selector))
+    {
+        if (hosts.size() < kMaxCandidates)
+        {
+            hosts.push_back(offer->host_epoch);
+        }
+    }
+    reader.poll(hosts, [](dds::SceneNews /*news*/, const dds::SeenObject& /*object*/) {});
+    for (const std::uint64_t host : hosts)
+    {
+        if (reader.is_complete(host) && !reader.objects(host).empty())
+        {
+            scene.host_epoch = host;
+            take_objects(options, scene, catalogue, reader);
+            if (!options.objects.empty())
+            {
+                return std::nullopt;
+            }
+        }
+    }
+    if (hosts.empty())
+    {
+        return fmt::format("is not shown on domain {} (scenes there: {})", options.domain,
+                           catalogue.scene_names());
+    }
+    return std::ranges::all_of(hosts, [&](std::uint64_t host) { return reader.is_complete(host); })
+               ? fmt::format("shows no object of a model that its host serves on domain {}",
+                             options.domain)
+               : fmt::format("is there on domain {}, but not all its objects have come{}{}",
+                             options.domain, reader.fault().empty() ? "" : "; ", reader.fault());
 }
 
 std::optional<Refusal> check_counts(const Options& options)
@@ -111,11 +135,13 @@ Result<ShownScene, Refusal> take_shown_scene(Options& options, dds::DdsClient& c
     using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
     const std::chrono::duration<double> longest(options.wait_s);
-    ShownScene scene{options.scene, {}};
+    const ModelSelector selector = parse_selector(options.scene).value();
+    client.catalogue().ask_for_scene(selector.name);
+    ShownScene scene{selector.name, 0, {}};
     for (;;)
     {
         client.exchange().step();
-        const auto missing = take_objects(options, scene.objects, client.catalogue(), reader);
+        const auto missing = try_take(options, selector, scene, client.catalogue(), reader);
         if (!missing)
         {
             break;

@@ -29,6 +29,7 @@ struct HostObject
 struct ShownScene
 {
     std::string name;
+    std::uint64_t host_epoch{0};
     std::vector<HostObject> objects; ///< In the order of Options::objects.
 };
 
@@ -36,10 +37,10 @@ struct ShownScene
 /// Returns why it can't be used.
 [[nodiscard]] std::optional<Refusal> take_scene_file(Options& options);
 
-/// Waits, at most Options::wait_s and as long as `goes_on`, until the host whose scene the options
-/// name has shown all its objects to `reader`, and one at least is there. Puts its objects in their
-/// places and all models that it serves, so that later objects find theirs. Returns why there are
-/// none.
+/// Waits, at most Options::wait_s and as long as `goes_on`, until a host whose scene the options
+/// name has shown all its objects to `reader`, and one at least is there: the first that has, and
+/// of those that have the one that was seen first. Puts its objects in their places and all models
+/// that it serves, so that later objects find theirs. Returns why there are none.
 [[nodiscard]] Result<ShownScene, Refusal> take_shown_scene(Options& options, dds::DdsClient& client,
                                                            dds::SceneReader& reader,
                                                            const std::function<bool()>& goes_on);

@@ -47,8 +47,9 @@ class SceneKeeper
 {
 public:
     /// `reader` has followed the scene's host, if there is a scene. `authorities` are the scene's,
-    /// or one a model; they are stepped elsewhere. They and the controller must outlive it. `log` gets a line for what can't be touched, and one for each object that is
-    /// felt otherwise than its server says.
+    /// or one a model; they are stepped elsewhere. They and the controller must outlive it. `log`
+    /// gets a line for what can't be touched, and one for each object that is felt otherwise than
+    /// its server says.
     SceneKeeper(std::span<const dds::Authority> authorities,
                 std::unique_ptr<dds::SceneReader> reader, const Controller& controller,
                 ShownScene scene, Log log);

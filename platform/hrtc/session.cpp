@@ -183,7 +183,6 @@ void tell_of_unguarded(const Options& options)
             log_line(fmt::format("tool {}: {} has no guard; when hrtc is killed, its own watchdog "
                                  "ends the force, or nothing does",
                                  tool, choice.library));
-            continue;
         }
     }
 }
@@ -242,8 +241,8 @@ Result<std::unique_ptr<Session>, Refusal> Session::open(const Options& options)
     if (auto error = session->assemble())
     {
         return *error;
-    tell_of_unguarded(session->options_);
     }
+    tell_of_unguarded(session->options_);
     return session;
 }
 
@@ -287,7 +286,15 @@ std::optional<Refusal> Session::take_scene()
         return shown.error();
     }
     scene_ = std::move(shown).value();
+    pin({scene_.name}, true, scene_.host_epoch);
     return std::nullopt;
+}
+
+/// From now on this host's word counts for the name.
+void Session::pin(const ModelSelector& name, bool is_scene, std::uint64_t host_epoch)
+{
+    authorities_.emplace_back(client_->catalogue(), name, is_scene, options_.failover, log_line)
+        .pin(host_epoch);
 }
 
 /// The controller from the models, and the topics beside it.
@@ -297,6 +304,13 @@ std::optional<Refusal> Session::assemble()
     if (!models)
     {
         return models.error();
+    }
+    for (const ServedModel& model : models.value())
+    {
+        if (client_ != nullptr && options_.scene.empty())
+        {
+            pin({model.name, model.hash}, false, model.host_epoch);
+        }
     }
     auto controller = Controller::create(options_, std::move(models).value(), log_line,
                                          [] { return !is_stop_requested(); });
@@ -310,11 +324,11 @@ std::optional<Refusal> Session::assemble()
         std::unique_ptr<SceneKeeper> keeper;
         if (options_.follows_poses)
         {
-            keeper = std::make_unique<SceneKeeper>(client_->catalogue(), std::move(reader_),
-                                                   *controller_, scene_, log_line);
+            keeper = std::make_unique<SceneKeeper>(authorities_, std::move(reader_), *controller_,
+                                                   scene_, log_line);
         }
-        auto topics =
-            HostTopics::create(*client_, *controller_, std::move(keeper), options_.shows_front);
+        auto topics = HostTopics::create(*client_, *controller_, authorities_, std::move(keeper),
+                                         options_.shows_front);
         if (!topics)
         {
             return failure(topics.error().text);

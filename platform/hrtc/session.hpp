@@ -10,12 +10,15 @@
 #include "platform/hrtc/messages.hpp"
 #include "platform/hrtc/options.hpp"
 #include "platform/hrtc/scene_choice.hpp"
+#include "transport/dds/authority.hpp"
 #include "transport/dds/dds_client.hpp"
 #include "transport/dds/scene_reader.hpp"
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace tactus::hrtc
 {
@@ -42,13 +45,15 @@ private:
 
     [[nodiscard]] std::optional<Refusal> connect();
     [[nodiscard]] std::optional<Refusal> take_scene();
+    void pin(const ModelSelector& name, bool is_scene, std::uint64_t host_epoch);
     [[nodiscard]] std::optional<Refusal> assemble();
 
+    std::unique_ptr<Guardian> guardian_; ///< Outlives the devices; none where none needs it.
     Options options_;
     std::unique_ptr<dds::DdsClient> client_;   ///< Lives as long as the links of its models.
     std::unique_ptr<dds::SceneReader> reader_; ///< Until the topics have it; none unless needed.
     ShownScene scene_;                         ///< Of a host; empty otherwise.
-    std::unique_ptr<Guardian> guardian_; ///< Outlives the devices; none where none needs it.
+    std::vector<dds::Authority> authorities_;  ///< Of the scene, or one a model; none from files.
     std::unique_ptr<Controller> controller_;
     std::unique_ptr<HostTopics> topics_; ///< None from files.
 };

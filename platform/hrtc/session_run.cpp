@@ -443,6 +443,7 @@ void SessionRun::note_topics()
         done_.pose_counts = parts_.topics->pose_counts();
         done_.scene_news = parts_.topics->scene_news();
         done_.refused = parts_.topics->refused();
+        done_.server_events = parts_.topics->server_events();
         done_.telemetry_sent = parts_.topics->telemetry_sent();
         done_.fronts_sent = parts_.topics->fronts_sent();
     }

@@ -18,8 +18,10 @@ namespace tactus::dds
 namespace
 {
 
-/// Offers that a controller remembers; a domain with more shows the first ones.
-constexpr std::size_t kMaxOffers = 4'096;
+/// Samples taken in one refresh; the rest waits in the reader for the next one.
+constexpr std::size_t kEntriesPerRefresh = 4'096;
+/// Hosts whose offers are all kept; beyond them one that is gone is forgotten.
+constexpr std::size_t kMaxKeptHosts = 64;
 constexpr std::size_t kMaxNamesShown = 20;
 
 ContentHash hash_from(const std::uint8_t (&bytes)[16]) // NOLINT: idlc's type.
@@ -27,6 +29,14 @@ ContentHash hash_from(const std::uint8_t (&bytes)[16]) // NOLINT: idlc's type.
     ContentHash hash{};
     std::memcpy(hash.data(), bytes, hash.size());
     return hash;
+}
+
+std::vector<const Catalogue::Offer*> first_of_each(std::vector<const Catalogue::Offer*> offers)
+{
+    std::set<std::uint64_t> hosts;
+    std::erase_if(offers, [&](const Catalogue::Offer* offer)
+                  { return !hosts.insert(offer->host_epoch).second; });
+    return offers;
 }
 
 std::string list_of(const std::vector<std::string>& names)
@@ -45,26 +55,78 @@ std::string list_of(const std::vector<std::string>& names)
 
 } // namespace
 
-Result<Catalogue, Refusal> Catalogue::create(const Domain& domain, Log log)
+Result<Catalogue, Refusal> Catalogue::create(const Domain& domain, Log log, std::size_t room)
 {
     auto reader = make_reader(domain, Topic::catalogue, "");
     if (!reader)
     {
         return reader.error();
     }
-    return Catalogue(domain.participants(), std::move(reader).value(), std::move(log));
+    return Catalogue(domain.participants(), std::move(reader).value(), std::move(log), room);
 }
 
-Catalogue::Catalogue(Participants& participants, Endpoint reader, Log log)
-    : participants_(&participants), reader_(std::move(reader)), log_(std::move(log))
+Catalogue::Catalogue(Participants& participants, Endpoint reader, Log log, std::size_t room)
+    : participants_(&participants), reader_(std::move(reader)), log_(std::move(log)), room_(room)
 {
+}
+
+void Catalogue::ask_for(const ModelSelector& model)
+{
+    const bool is_new_name = !model.name.empty() && asked_names_.insert(model.name).second;
+    const bool is_new_hash = model.hash && asked_hashes_.insert(*model.hash).second;
+    if (is_new_name || is_new_hash)
+    {
+        count_again();
+    }
+}
+
+void Catalogue::ask_for_scene(const std::string& name)
+{
+    if (asked_scenes_.insert(name).second)
+    {
+        count_again();
+    }
+}
+
+void Catalogue::keep(std::uint64_t host_epoch)
+{
+    if (!kept_hosts_.insert(host_epoch).second)
+    {
+        return;
+    }
+    if (kept_hosts_.size() > kMaxKeptHosts)
+    {
+        const auto gone = std::ranges::find_if(kept_hosts_, [&](std::uint64_t epoch)
+                                               { return epoch != host_epoch && !has_host(epoch); });
+        kept_hosts_.erase(gone != kept_hosts_.end() ? gone : kept_hosts_.begin());
+    }
+    count_again();
+}
+
+/// Other offers are asked for than before.
+void Catalogue::count_again()
+{
+    shares_.clear();
+    for (const auto& [key, offer] : offers_)
+    {
+        Share& share = shares_[key.first];
+        ++(is_asked(offer) ? share.asked : share.others);
+    }
+    ++version_;
+}
+
+bool Catalogue::is_asked(const Offer& offer) const
+{
+    return asked_names_.contains(offer.name) || asked_hashes_.contains(offer.hash) ||
+           (!offer.scene.empty() && asked_scenes_.contains(offer.scene)) ||
+           kept_hosts_.contains(offer.host_epoch);
 }
 
 void Catalogue::refresh()
 {
     participants_->report(log_);
     take_each<tactus_v4_CatalogueEntry>(
-        reader_.handle, kMaxOffers,
+        reader_.handle, kEntriesPerRefresh,
         [this](const tactus_v4_CatalogueEntry& entry, const dds_sample_info_t& info)
         {
             const std::string name(text_of(entry.name));
@@ -98,25 +160,29 @@ void Catalogue::refresh()
     look_at_disputed();
 }
 
-/// A host that leaves or falls silent takes its offers with it. Anybody can dispose of an instance,
-/// past the filter: that is no news, but what DDS tells of the instance isn't either from then on.
+/// A host that leaves takes its offers with it. One that only falls silent keeps them until its
+/// lease ends: who floods the thread that receives makes others fall silent. Anybody can dispose of
+/// an instance, past the filter: that is no news, but what DDS tells of the instance isn't either
+/// from then on.
 void Catalogue::on_end(std::uint32_t model, std::uint64_t host_epoch, std::uint64_t writer)
 {
-    if (participants_->is_host(writer, host_epoch))
+    if (!participants_->is_host(writer, host_epoch))
     {
-        remove(model, host_epoch);
+        participants_->refuse(writer, Refused::identity);
+    }
+    else if (!participants_->is_writing(writer))
+    {
+        remove({host_epoch, model});
         return;
     }
-    participants_->refuse(writer, Refused::identity);
     dispute(model, host_epoch);
 }
 
 void Catalogue::dispute(std::uint32_t model, std::uint64_t host_epoch)
 {
-    for (Offer& offer : offers_)
+    if (const auto offer = offers_.find({host_epoch, model}); offer != offers_.end())
     {
-        const bool is_it = offer.model == model && offer.host_epoch == host_epoch;
-        offer.is_disputed = offer.is_disputed || is_it;
+        offer->second.is_disputed = true;
     }
 }
 
@@ -130,70 +196,102 @@ void Catalogue::look_at_disputed()
         return;
     }
     looked_ = now;
-    version_ +=
-        std::erase_if(offers_,
-                      [this](const Offer& offer)
-                      {
-                          return offer.is_disputed && !(participants_->is_writing(offer.writer) &&
-                                                        participants_->is_here(offer.host));
-                      });
+    std::vector<Key> gone;
+    for (const auto& [key, offer] : offers_)
+    {
+        if (offer.is_disputed &&
+            !(participants_->is_writing(offer.writer) && participants_->is_here(offer.host)))
+        {
+            gone.push_back(key);
+        }
+    }
+    std::ranges::for_each(gone, [this](const Key& key) { remove(key); });
+}
+
+std::vector<const Catalogue::Offer*> Catalogue::select(const ModelSelector& selector,
+                                                       bool by_scene) const
+{
+    std::map<std::uint64_t, bool> called; // Asked once a host.
+    const auto is_called = [&](const Offer& offer)
+    {
+        const auto [known, is_new] = called.try_emplace(offer.host_epoch, false);
+        known->second =
+            is_new ? participants_->is_called(offer.host, selector.server) : known->second;
+        return known->second;
+    };
+    std::vector<const Offer*> found;
+    for (const auto& [key, offer] : offers_)
+    {
+        const std::string& name = by_scene ? offer.scene : offer.name;
+        if ((selector.name.empty() || name == selector.name) &&
+            (!selector.hash || offer.hash == *selector.hash) &&
+            (selector.server.empty() || is_called(offer)))
+        {
+            found.push_back(&offer);
+        }
+    }
+    std::ranges::sort(found, {}, &Offer::arrival);
+    return found;
+}
+
+std::vector<const Catalogue::Offer*> Catalogue::offers(const ModelSelector& selector) const
+{
+    return select(selector, false);
+}
+
+std::vector<const Catalogue::Offer*> Catalogue::servers_of(const ModelSelector& selector) const
+{
+    return first_of_each(select(selector, false));
+}
+
+std::vector<const Catalogue::Offer*>
+Catalogue::servers_of_scene(const ModelSelector& selector) const
+{
+    return first_of_each(select(selector, true));
 }
 
 const Catalogue::Offer* Catalogue::find(const ModelSelector& selector) const
 {
-    const auto at = std::find_if(offers_.begin(), offers_.end(),
-                                 [&](const Offer& offer) {
-                                     return offer.name == selector.name &&
-                                            (!selector.hash || offer.hash == *selector.hash);
-                                 });
-    return at == offers_.end() ? nullptr : &*at;
-}
-
-const Catalogue::Offer* Catalogue::find(const ContentHash& hash) const
-{
-    const auto at = std::ranges::find(offers_, hash, &Offer::hash);
-    return at == offers_.end() ? nullptr : &*at;
+    const std::vector<const Offer*> found = offers(selector);
+    return found.empty() ? nullptr : found.front();
 }
 
 const Catalogue::Offer* Catalogue::find(const ContentHash& hash, std::uint64_t host_epoch) const
 {
-    const auto at = std::find_if(offers_.begin(), offers_.end(),
-                                 [&](const Offer& offer)
-                                 { return offer.hash == hash && offer.host_epoch == host_epoch; });
-    return at == offers_.end() ? nullptr : &*at;
+    for (auto at = offers_.lower_bound({host_epoch, 0});
+         at != offers_.end() && at->first.first == host_epoch; ++at)
+    {
+        if (at->second.hash == hash)
+        {
+            return &at->second;
+        }
+    }
+    return nullptr;
 }
 
 bool Catalogue::has_host(std::uint64_t host_epoch) const
 {
-    return std::ranges::find(offers_, host_epoch, &Offer::host_epoch) != offers_.end();
-}
-
-std::optional<std::uint64_t> Catalogue::find_scene(const std::string& name) const
-{
-    const auto at = std::ranges::find(offers_, name, &Offer::scene);
-    return at == offers_.end() ? std::nullopt : std::optional(at->host_epoch);
+    const auto at = offers_.lower_bound({host_epoch, 0});
+    return at != offers_.end() && at->first.first == host_epoch;
 }
 
 std::vector<const Catalogue::Offer*> Catalogue::offers_of(std::uint64_t host_epoch) const
 {
-    std::vector<const Offer*> offers;
-    for (const Offer& offer : offers_)
+    std::vector<const Offer*> found;
+    for (auto at = offers_.lower_bound({host_epoch, 0});
+         at != offers_.end() && at->first.first == host_epoch; ++at)
     {
-        if (offer.host_epoch == host_epoch)
-        {
-            offers.push_back(&offer);
-        }
+        found.push_back(&at->second);
     }
-    std::ranges::sort(offers, {}, &Offer::model);
-    return offers;
+    return found;
 }
 
 std::string Catalogue::names() const
 {
     std::vector<std::string> names;
-    for (const Offer& offer : offers_)
+    for (const Offer* offer : offers({}))
     {
-        names.push_back(offer.name);
+        names.push_back(offer->name);
     }
     return list_of(names);
 }
@@ -201,51 +299,92 @@ std::string Catalogue::names() const
 std::string Catalogue::scene_names() const
 {
     std::vector<std::string> names;
-    for (const Offer& offer : offers_)
+    std::set<std::string> listed;
+    for (const Offer* offer : offers({}))
     {
-        if (!offer.scene.empty() && std::ranges::find(names, offer.scene) == names.end())
+        if (!offer->scene.empty() && listed.insert(offer->scene).second)
         {
-            names.push_back(offer.scene);
+            names.push_back(offer->scene);
         }
     }
     return list_of(names);
 }
 
 /// False when there is no room.
-bool Catalogue::try_add(const Offer& offer)
+bool Catalogue::try_add(Offer offer)
 {
-    const bool is_known =
-        std::any_of(offers_.begin(), offers_.end(),
-                    [&](const Offer& known)
-                    {
-                        return known.name == offer.name && known.model == offer.model &&
-                               known.host_epoch == offer.host_epoch && known.hash == offer.hash;
-                    });
-    if (is_known)
+    const Key key{offer.host_epoch, offer.model};
+    const auto known = offers_.find(key);
+    if (known != offers_.end() && known->second.name == offer.name &&
+        known->second.hash == offer.hash && known->second.scene == offer.scene)
     {
         return true; // Written anew every second.
     }
-    remove(offer.model, offer.host_epoch);
-    if (offers_.size() == kMaxOffers)
+    remove(key);
+    const bool asked = is_asked(offer);
+    if (offers_.size() >= room_ && !try_make_room(offer.host_epoch, asked))
     {
         return false;
     }
-    const Offer* first = find(ModelSelector{offer.name, std::nullopt});
-    if (first != nullptr && first->hash != offer.hash)
-    {
-        log_.write(fmt::format("warning: model '{}' is published with two hashes, {} (seen first, "
-                               "used unless pinned by NAME@HASH) and {}",
-                               offer.name, hash_text(first->hash), hash_text(offer.hash)));
-    }
-    offers_.push_back(offer);
-    ++version_;
+    Share& share = shares_[offer.host_epoch];
+    ++(asked ? share.asked : share.others);
+    offer.arrival = ++arrivals_;
+    offers_.emplace(key, std::move(offer));
+    version_ += asked || (asked_names_.empty() && asked_hashes_.empty() && asked_scenes_.empty());
     return true;
 }
 
-void Catalogue::remove(std::uint32_t model, std::uint64_t host_epoch)
+/// What isn't asked for goes before what is, and of the host that has the most of it.
+bool Catalogue::try_make_room(std::uint64_t host_epoch, bool for_asked)
 {
-    version_ += std::erase_if(offers_, [&](const Offer& offer)
-                              { return offer.model == model && offer.host_epoch == host_epoch; });
+    const auto share = shares_.find(host_epoch);
+    const Share own = share == shares_.end() ? Share{} : share->second;
+    return for_asked ? try_take_from_largest(false, 0) || try_take_from_largest(true, own.asked + 1)
+                     : try_take_from_largest(false, own.others + 1); // Two alike don't take turns.
+}
+
+/// The last offer of the host that has the most, if those are more than `more_than`; false without
+/// one.
+bool Catalogue::try_take_from_largest(bool asked, std::size_t more_than)
+{
+    const auto count = [&](const auto& entry)
+    { return kept_hosts_.contains(entry.first) ? 0 : entry.second.of(asked); };
+    const auto largest = std::ranges::max_element(shares_, {}, count);
+    if (largest == shares_.end() || count(*largest) <= more_than)
+    {
+        return false;
+    }
+    const std::uint64_t epoch = largest->first;
+    for (auto at = offers_.upper_bound({epoch, UINT32_MAX}); at != offers_.begin();)
+    {
+        --at;
+        if (is_asked(at->second) == asked)
+        {
+            const Offer lost = at->second;
+            remove(at->first);
+            participants_->refuse(lost.writer, Refused::model_room, lost.model);
+            return true;
+        }
+    }
+    return false;
+}
+
+void Catalogue::remove(const Key& key)
+{
+    const auto at = offers_.find(key);
+    if (at == offers_.end())
+    {
+        return;
+    }
+    const bool asked = is_asked(at->second);
+    const auto share = shares_.find(key.first);
+    --(asked ? share->second.asked : share->second.others);
+    if (share->second.asked == 0 && share->second.others == 0)
+    {
+        shares_.erase(share);
+    }
+    offers_.erase(at);
+    version_ += asked || (asked_names_.empty() && asked_hashes_.empty() && asked_scenes_.empty());
 }
 
 } // namespace tactus::dds

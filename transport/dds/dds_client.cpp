@@ -5,11 +5,10 @@
 #include "transport/base_fetch.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/dds/dds_link.hpp"
-#include "transport/dds/header_fetch.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <list>
 #include <thread>
 #include <utility>
 
@@ -25,15 +24,6 @@ constexpr auto kPause = std::chrono::milliseconds(1);
 constexpr auto kQuiet = std::chrono::seconds(2);
 
 } // namespace
-
-/// For one model.
-struct DdsClient::Search
-{
-    ModelSelector selector;
-    Catalogue::Offer offer;             ///< Once there is a fetch.
-    std::unique_ptr<HeaderFetch> fetch; ///< Once it is published.
-    bool is_done{false};
-};
 
 Result<std::unique_ptr<DdsClient>, Refusal> DdsClient::create(std::uint32_t domain,
                                                               std::string controller_name, Log log)
@@ -76,54 +66,70 @@ DdsClient::find_headers(std::span<const ModelSelector> selectors, std::chrono::m
                         const std::function<bool()>& go_on)
 {
     using Clock = std::chrono::steady_clock;
-    std::vector<Search> searches;
+    std::list<HeaderSearch> searches;
     for (const ModelSelector& selector : selectors)
     {
-        searches.emplace_back().selector = selector;
+        searches.emplace_back(*exchange_, catalogue_, selector);
     }
     const auto start = Clock::now();
     bool has_said = false;
-    for (auto open = searches.begin(); open != searches.end();)
+    for (;;)
     {
         exchange_->step();
-        for (Search& search : searches)
+        const HeaderSearch* open = nullptr; // The first whose header isn't here.
+        auto open_state = HeaderSearch::State::done;
+        for (HeaderSearch& search : searches)
         {
-            if (const auto refusal = step(search))
+            const auto state = search.step();
+            if (state == HeaderSearch::State::refused)
             {
-                return *refusal;
+                return Refusal{fmt::format("model '{}' from domain {} {}", search.offer().name,
+                                           domain_.id(), search.objection())};
+            }
+            if (state != HeaderSearch::State::done && open == nullptr)
+            {
+                open = &search;
+                open_state = state;
             }
         }
-        open = std::ranges::find(searches, false, &Search::is_done);
-        const auto waited = Clock::now() - start;
-        if (open == searches.end())
+        if (open == nullptr)
         {
             break;
         }
+        const bool is_published = open_state == HeaderSearch::State::under_way;
+        const auto waited = Clock::now() - start;
         if (waited >= timeout || (go_on && !go_on()))
         {
             const std::chrono::duration<double> seconds = waited;
-            return not_found(*open, fmt::format("waited {:.3g} s", seconds.count()));
+            return not_found(*open, is_published, fmt::format("waited {:.3g} s", seconds.count()));
         }
-        if (!has_said && log_ && waited > kQuiet && open->fetch == nullptr)
+        if (!has_said && log_ && waited > kQuiet && !is_published)
         {
-            log_(fmt::format("waiting for model '{}' on domain {}", open->selector.name,
+            log_(fmt::format("waiting for model '{}' on domain {}", open->selector().name,
                              domain_.id()));
             has_said = true;
         }
         std::this_thread::sleep_for(kPause);
     }
     std::vector<ServedModel> models;
-    for (Search& search : searches)
+    for (HeaderSearch& search : searches)
     {
-        ServedModel& model = models.emplace_back();
-        model.name = search.offer.name;
-        model.hash = search.offer.hash;
-        model.header = std::move(search.fetch->header());
-        model.link =
-            std::make_unique<DdsLink>(*exchange_, catalogue_, search.offer,
-                                      [this](const std::string& text) { links_log_.write(text); });
+        models.push_back(served(search));
     }
     return models;
+}
+
+ServedModel DdsClient::served(HeaderSearch& search)
+{
+    ServedModel model;
+    model.name = search.offer().name;
+    model.hash = search.offer().hash;
+    model.host_epoch = search.offer().host_epoch;
+    model.header = std::move(search.header());
+    model.link =
+        std::make_unique<DdsLink>(*exchange_, catalogue_, search.offer(),
+                                  [this](const std::string& text) { links_log_.write(text); });
+    return model;
 }
 
 Result<ServedModel, Refusal> DdsClient::find(const ModelSelector& selector,
@@ -142,43 +148,26 @@ Result<ServedModel, Refusal> DdsClient::find(const ModelSelector& selector,
     return std::move(models.value().front());
 }
 
-/// What is to be done for it now; a refusal ends all.
-std::optional<Refusal> DdsClient::step(Search& search)
+Refusal DdsClient::not_found(const HeaderSearch& search, bool is_published,
+                             const std::string& waited) const
 {
-    if (search.fetch == nullptr)
-    {
-        const Catalogue::Offer* offer = catalogue_.find(search.selector);
-        if (offer == nullptr)
-        {
-            return std::nullopt;
-        }
-        search.offer = *offer;
-        search.fetch = std::make_unique<HeaderFetch>(*exchange_, catalogue_, *offer);
-    }
-    const auto state = search.fetch->step();
-    search.is_done = state == HeaderFetch::State::done;
-    if (state == HeaderFetch::State::refused)
-    {
-        return Refusal{fmt::format("model '{}' from domain {} {}", search.offer.name, domain_.id(),
-                                   search.fetch->objection())};
-    }
-    return std::nullopt;
-}
-
-Refusal DdsClient::not_found(const Search& search, const std::string& waited) const
-{
-    const ModelSelector& selector = search.selector;
-    if (search.fetch != nullptr)
+    const ModelSelector& selector = search.selector();
+    if (is_published)
     {
         return {fmt::format("model '{}' is published on domain {}, but its header did not come "
                             "({})",
                             selector.name, domain_.id(), waited)};
     }
-    const std::string pin = selector.hash ? "@" + hash_text(*selector.hash) : "";
-    const Catalogue::Offer* other = catalogue_.find(ModelSelector{selector.name, std::nullopt});
+    const std::string pin = selector.hash             ? "@" + hash_text(*selector.hash)
+                            : selector.server.empty() ? ""
+                                                      : "@" + selector.server;
+    const Catalogue::Offer* other = catalogue_.find({selector.name});
     return {fmt::format("model '{}{}' is not published on domain {} ({}; published there: {}{})",
                         selector.name, pin, domain_.id(), waited, catalogue_.names(),
-                        other != nullptr ? ", with hash " + hash_text(other->hash) : "")};
+                        other != nullptr
+                            ? fmt::format(", with hash {} by {}", hash_text(other->hash),
+                                          catalogue_.participants().name_of(other->host))
+                            : "")};
 }
 
 } // namespace tactus::dds

@@ -5,6 +5,7 @@
 #include "platform/base/refusal.hpp"
 #include "transport/dds/catalogue.hpp"
 #include "transport/dds/domain.hpp"
+#include "transport/dds/header_fetch.hpp"
 #include "transport/dds/piece_exchange.hpp"
 #include "transport/log.hpp"
 #include "transport/model_name.hpp"
@@ -14,7 +15,6 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,11 +32,12 @@ public:
     [[nodiscard]] static Result<std::unique_ptr<DdsClient>, Refusal>
     create(std::uint32_t domain, std::string controller_name, Log log);
 
-    /// Waits until all these models are published and their headers came, verified. What it
-    /// returns, in the order of the selectors, has no base meshes: bring_bases() fetches them, or a
-    /// courier those of guests. Waits at most `timeout`, or until `go_on` (asked every few
-    /// milliseconds) returns false; then it is refused, as it is at once where a header is damaged.
-    /// The client must outlive the models' links.
+    /// Waits until all these models are published and their headers came, verified, each from the
+    /// first of its servers that answers. What it returns, in the order of the selectors, has no
+    /// base meshes: bring_bases() fetches them, or a courier those of guests. Waits at most
+    /// `timeout`, or until `go_on` (asked every few milliseconds) returns false; then it is
+    /// refused, as it is after a second where every server's header is damaged. The client must
+    /// outlive the models' links.
     [[nodiscard]] Result<std::vector<ServedModel>, Refusal>
     find_headers(std::span<const ModelSelector> selectors, std::chrono::milliseconds timeout,
                  const std::function<bool()>& go_on = {});
@@ -46,6 +47,7 @@ public:
                                                     const std::function<bool()>& go_on = {});
 
     [[nodiscard]] const Catalogue& catalogue() const noexcept { return catalogue_; }
+    [[nodiscard]] Catalogue& catalogue() noexcept { return catalogue_; }
     /// For a SceneReader. Polling a link steps it; without links call its step().
     [[nodiscard]] PieceExchange& exchange() noexcept { return *exchange_; }
     /// For further topics of the same controller; lives as long as the client.
@@ -53,12 +55,11 @@ public:
     [[nodiscard]] const std::string& controller_name() const noexcept { return controller_name_; }
 
 private:
-    struct Search;
-
     DdsClient(Domain domain, Catalogue catalogue, std::string controller_name, Log log);
 
-    [[nodiscard]] std::optional<Refusal> step(Search& search);
-    [[nodiscard]] Refusal not_found(const Search& search, const std::string& waited) const;
+    [[nodiscard]] ServedModel served(HeaderSearch& search);
+    [[nodiscard]] Refusal not_found(const HeaderSearch& search, bool is_published,
+                                    const std::string& waited) const;
 
     Domain domain_; ///< First, so that it is left last.
     Catalogue catalogue_;

@@ -7,10 +7,25 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace tactus::dds
 {
+
+namespace
+{
+
+/// Between two looks for what doesn't come.
+constexpr auto kLookEvery = std::chrono::milliseconds(20);
+/// What nobody has asked for again for so long isn't wanted any more.
+constexpr auto kForgotten = std::chrono::seconds(2);
+/// So long another host may come where all that are there have sent what is wrong.
+constexpr auto kAnotherAfter = std::chrono::seconds(1);
+/// Hosts that are remembered as wrong, as passed, and as those that sent something.
+constexpr std::size_t kMaxRemembered = 256;
+
+} // namespace
 
 DdsLink::DdsLink(PieceExchange& exchange, Catalogue& catalogue, const Catalogue::Offer& offer,
                  Log log)
@@ -22,10 +37,103 @@ DdsLink::DdsLink(PieceExchange& exchange, Catalogue& catalogue, const Catalogue:
 
 void DdsLink::request(std::span<const ContentKey> keys, std::uint32_t generation)
 {
-    if (state_ == LinkState::connected) // Else asked again by the courier in the next session.
+    if (state_ != LinkState::connected)
     {
-        exchange_.ask(offer_.host_epoch, offer_.model, keys, generation);
+        return; // Asked again by the courier in the next session.
     }
+    const auto now = Clock::now();
+    for (const ContentKey key : keys)
+    {
+        const auto [asked, is_new] =
+            asked_.try_emplace({key.kind, key.number}, Asked{now, now, now, generation});
+        asked->second.last = now;
+        asked->second.generation = generation;
+    }
+    exchange_.ask(offer_.host_epoch, offer_.model, keys, generation);
+}
+
+bool DdsLink::distrust(ContentKey key)
+{
+    const auto now = Clock::now();
+    distrusted_since_ = distrusted_.empty() ? now : distrusted_since_;
+    if (key.kind == ContentKind::base)
+    {
+        // Where several sent parts of it none is blamed: the next time all are of one.
+        if (base_from_.size() == 1)
+        {
+            distrust_host(*base_from_.begin());
+        }
+        base_from_.clear();
+        std::erase_if(asked_,
+                      [](const auto& entry) { return entry.first.first == ContentKind::base; });
+        return is_trusted(offer_.host_epoch) || now - distrusted_since_ < kAnotherAfter;
+    }
+    distrust_host(handed_over_from_);
+    const auto at = asked_.find({key.kind, key.number});
+    if (at != asked_.end() && at->second.has_come)
+    {
+        at->second = {now, at->second.last, now, at->second.generation};
+        if (is_trusted(offer_.host_epoch)) // Else when it is wished for again.
+        {
+            exchange_.ask(offer_.host_epoch, offer_.model, {&key, 1}, at->second.generation);
+        }
+    }
+    return true;
+}
+
+void DdsLink::distrust_host(std::uint64_t host)
+{
+    if (is_trusted(host) && distrusted_.size() < kMaxRemembered)
+    {
+        distrusted_.push_back(host);
+    }
+    if (host == offer_.host_epoch)
+    {
+        const auto hosts = others();
+        const auto next = std::ranges::find_if(hosts, [this](const Catalogue::Offer* offer)
+                                               { return is_trusted(offer->host_epoch); });
+        if (next != hosts.end())
+        {
+            put_first(**next);
+        }
+    }
+}
+
+bool DdsLink::is_trusted(std::uint64_t host) const
+{
+    return std::ranges::find(distrusted_, host) == distrusted_.end();
+}
+
+/// All hosts but the one that is asked first: from the one after the last that was asked on, all
+/// round, and those that are trusted, if there is one.
+std::vector<const Catalogue::Offer*> DdsLink::others() const
+{
+    auto hosts = catalogue_.servers_of({.name = "", .hash = offer_.hash});
+    std::erase_if(hosts, [this](const Catalogue::Offer* offer)
+                  { return offer->host_epoch == offer_.host_epoch; });
+    const auto trusts = [this](const Catalogue::Offer* offer)
+    { return is_trusted(offer->host_epoch); };
+    if (std::ranges::any_of(hosts, trusts) || is_trusted(offer_.host_epoch))
+    {
+        std::erase_if(hosts, [&](const Catalogue::Offer* offer) { return !trusts(offer); });
+    }
+    const auto after = std::ranges::find_if(hosts, [this](const Catalogue::Offer* offer)
+                                            { return offer->arrival > last_arrival_; });
+    std::rotate(hosts.begin(), after, hosts.end());
+    return hosts;
+}
+
+/// Hosts beyond the limit have the last number together.
+std::uint32_t DdsLink::number_of(std::uint64_t host)
+{
+    const auto at = std::ranges::find(senders_, host);
+    if (at == senders_.end() && senders_.size() < kMaxRemembered)
+    {
+        senders_.push_back(host);
+        return static_cast<std::uint32_t>(senders_.size() - 1);
+    }
+    return static_cast<std::uint32_t>(
+        std::min<std::ptrdiff_t>(at - senders_.begin(), kMaxRemembered - 1));
 }
 
 void DdsLink::poll(PieceSink& sink)
@@ -40,22 +148,108 @@ void DdsLink::poll(PieceSink& sink)
         seen_catalogue_ = catalogue_.version();
         follow_host();
     }
+    if (state_ == LinkState::connected && Clock::now() - looked_ >= kLookEvery)
+    {
+        ask_others();
+    }
     PieceReader reader(arrived_);
     for (auto piece = reader.next(); piece; piece = reader.next())
     {
-        sink.receive({static_cast<ContentKind>(piece->key.kind), piece->key.number}, piece->bytes);
+        const ContentKey key{static_cast<ContentKind>(piece->key.kind), piece->key.number};
+        handed_over_from_ = senders_[piece->key.revision];
+        sink.receive(key, piece->bytes);
+        const auto asked = asked_.find({key.kind, key.number});
+        if (asked != asked_.end() && asked->second.has_come) // It wasn't distrusted.
+        {
+            asked_.erase(asked);
+        }
     }
     arrived_.clear();
 }
 
-void DdsLink::receive(ContentKey key, std::span<const std::byte> bytes)
+/// What doesn't come for kSilence.
+void DdsLink::ask_others()
 {
-    if (key.kind != ContentKind::header)
+    const auto now = Clock::now();
+    looked_ = now;
+    std::erase_if(asked_, [&](const auto& entry) { return now - entry.second.last >= kForgotten; });
+    std::vector<ContentKey> keys;
+    std::uint32_t generation = 0;
+    for (auto& [id, asked] : asked_)
     {
-        append_piece(arrived_, {offer_.hash, 0, static_cast<std::uint32_t>(key.kind), key.number},
-                     bytes);
-        bytes_received_ += kFrameBytes + bytes.size();
+        if (!asked.has_come && now - asked.since >= kSilence)
+        {
+            asked.since = now;
+            generation = asked.generation;
+            keys.push_back({id.first, id.second});
+        }
     }
+    if (keys.empty())
+    {
+        return;
+    }
+    auto hosts = others();
+    hosts.resize(std::min(hosts.size(), kHostsAtOnce));
+    for (const Catalogue::Offer* offer : hosts)
+    {
+        exchange_.ask(offer->host_epoch, offer->model, keys, generation);
+        last_arrival_ = offer->arrival;
+    }
+}
+
+/// Parts of a base mesh, which are proven together, only of the host that is asked first.
+void DdsLink::receive(std::uint64_t host_epoch, ContentKey key, std::span<const std::byte> bytes)
+{
+    if (key.kind == ContentKind::header)
+    {
+        return;
+    }
+    const auto at = asked_.find({key.kind, key.number});
+    if (host_epoch == offer_.host_epoch)
+    {
+        first_heard_ = Clock::now();
+    }
+    else if (at != asked_.end() && first_heard_ < at->second.first && is_trusted(host_epoch))
+    {
+        if (const Catalogue::Offer* offer = catalogue_.find(offer_.hash, host_epoch))
+        {
+            put_first(*offer);
+        }
+    }
+    if (key.kind == ContentKind::base)
+    {
+        if (host_epoch != offer_.host_epoch)
+        {
+            return;
+        }
+        base_from_.insert(host_epoch);
+    }
+    if (at != asked_.end())
+    {
+        at->second.has_come = true;
+    }
+    append_piece(
+        arrived_,
+        {offer_.hash, number_of(host_epoch), static_cast<std::uint32_t>(key.kind), key.number},
+        bytes);
+    bytes_received_ += kFrameBytes + bytes.size();
+}
+
+/// The one before doesn't answer, or not the truth.
+void DdsLink::put_first(const Catalogue::Offer& offer)
+{
+    if (told_.size() < kMaxRemembered && told_.insert(offer_.host_epoch).second)
+    {
+        const Participants& participants = catalogue_.participants();
+        log_.write(
+            fmt::format("model '{}': {} {}; its pieces come from {} now", offer_.name,
+                        participants.name_of(offer_.host),
+                        is_trusted(offer_.host_epoch) ? "doesn't answer" : "sends what is wrong",
+                        participants.name_of(offer.host)));
+    }
+    offer_ = offer;
+    first_heard_ = Clock::now();
+    exchange_.meet(offer.host_epoch);
 }
 
 void DdsLink::follow_host()
@@ -66,8 +260,11 @@ void DdsLink::follow_host()
     {
         return;
     }
-    const Catalogue::Offer* offer =
-        same_host != nullptr ? same_host : catalogue_.find({offer_.name, offer_.hash});
+    const Catalogue::Offer* offer = same_host;
+    if (const auto hosts = others(); same_host == nullptr && !hosts.empty())
+    {
+        offer = hosts.front();
+    }
     if (offer != nullptr)
     {
         adopt(*offer);
@@ -79,7 +276,7 @@ void DdsLink::follow_host()
         log_.write(
             fmt::format("host of model '{}' is gone; going on with what is resident", offer_.name));
     }
-    const Catalogue::Offer* changed = catalogue_.find({offer_.name, std::nullopt});
+    const Catalogue::Offer* changed = catalogue_.find({offer_.name});
     if (changed != nullptr && changed->hash != refused_hash_)
     {
         refused_hash_ = changed->hash;

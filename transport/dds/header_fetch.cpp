@@ -21,6 +21,10 @@ namespace
 constexpr std::size_t kPartsAtOnce = 64;
 /// Nothing came for so long: asked again. Longer than a round trip of any use to a hand.
 constexpr auto kAgain = std::chrono::milliseconds(100);
+/// So long another server may come where all that are there are wrong.
+constexpr auto kAnother = std::chrono::seconds(1);
+/// Hosts that are remembered as wrong.
+constexpr std::size_t kMaxRefused = 256;
 
 } // namespace
 
@@ -30,6 +34,7 @@ HeaderFetch::HeaderFetch(PieceExchange& exchange, const Catalogue& catalogue,
     , catalogue_(catalogue)
     , offer_(offer)
     , header_(ContentKind::header, std::min<std::size_t>(offer.header_bytes, kMaxHeaderBytes))
+    , progress_(Clock::now())
 {
     exchange.add(*this);
     if (offer.header_bytes == 0 || offer.header_bytes > kMaxHeaderBytes || offer.base_bytes == 0 ||
@@ -57,31 +62,30 @@ HeaderFetch::State HeaderFetch::step()
         asked_ = now;
         ask();
     }
-    return state_;
+    return now - progress_ < kSilence ? State::under_way : State::silent;
 }
 
-void HeaderFetch::receive(ContentKey key, std::span<const std::byte> bytes)
+void HeaderFetch::receive(std::uint64_t host_epoch, ContentKey key,
+                          std::span<const std::byte> bytes)
 {
-    if (header_.receive(key, bytes))
+    if (host_epoch == offer_.host_epoch && header_.receive(key, bytes))
     {
         open_ -= open_ > 0 ? 1 : 0;
+        progress_ = Clock::now();
     }
 }
 
-/// Of the host that has the model now; without one nothing is asked.
+/// While the host is there.
 void HeaderFetch::ask()
 {
-    const Catalogue::Offer* offer = catalogue_.find(offer_.hash, offer_.host_epoch);
-    offer = offer != nullptr ? offer : catalogue_.find({offer_.name, offer_.hash});
-    if (offer == nullptr)
+    if (!catalogue_.has_host(offer_.host_epoch))
     {
         return;
     }
-    offer_.host_epoch = offer->host_epoch;
     std::vector<ContentKey> keys;
     header_.list_missing(keys, kPartsAtOnce);
     open_ = keys.size();
-    exchange_.ask(offer->host_epoch, offer->model, keys, 0);
+    exchange_.ask(offer_.host_epoch, offer_.model, keys, 0);
 }
 
 HeaderFetch::State HeaderFetch::refuse(std::string objection)
@@ -109,6 +113,91 @@ HeaderFetch::State HeaderFetch::check()
                                   offer_.base_bytes, header.value().fields().base_bytes));
     }
     return state_ = State::done;
+}
+
+HeaderSearch::HeaderSearch(PieceExchange& exchange, Catalogue& catalogue, ModelSelector selector)
+    : exchange_(exchange), catalogue_(catalogue), selector_(std::move(selector))
+{
+    catalogue.ask_for(selector_);
+}
+
+HeaderSearch::State HeaderSearch::step()
+{
+    bool is_silent = true; // All that are asked.
+    for (std::size_t i = 0; i < fetches_.size();)
+    {
+        HeaderFetch& fetch = *fetches_[i];
+        const HeaderFetch::State state = fetch.step();
+        if (state == HeaderFetch::State::done)
+        {
+            offer_ = fetch.offer();
+            std::swap(fetches_.front(), fetches_[i]);
+            fetches_.resize(1);
+            return State::done;
+        }
+        if (state == HeaderFetch::State::refused)
+        {
+            objection_ = fetch.objection();
+            refuse(fetch.offer());
+            continue;
+        }
+        is_silent = is_silent && state == HeaderFetch::State::silent;
+        ++i;
+    }
+    const auto now = Clock::now();
+    const bool is_first = fetches_.empty() && refused_.empty();
+    const bool has_news =
+        std::exchange(seen_catalogue_, catalogue_.version()) != catalogue_.version();
+    if (is_silent && (has_news || now - looked_ >= kAgain))
+    {
+        look_for_hosts(is_first ? 1 : kHostsAtOnce);
+    }
+    const bool is_over = !refused_.empty() && now - refused_since_ >= kAnother;
+    return !fetches_.empty() ? State::under_way : is_over ? State::refused : State::not_published;
+}
+
+void HeaderSearch::refuse(const Catalogue::Offer& offer)
+{
+    refused_since_ = refused_.empty() ? Clock::now() : refused_since_;
+    offer_ = offer;
+    if (refused_.size() < kMaxRefused)
+    {
+        refused_.push_back(offer.host_epoch);
+    }
+    std::erase_if(fetches_, [host = offer.host_epoch](const auto& fetch)
+                  { return fetch->offer().host_epoch == host; });
+}
+
+/// Asks others than those that are asked, in the order in which they were seen, as many at the same
+/// time. Where there are more, those that were asked first make room.
+void HeaderSearch::look_for_hosts(std::size_t most)
+{
+    looked_ = Clock::now();
+    std::erase_if(fetches_, [this](const auto& fetch)
+                  { return !catalogue_.has_host(fetch->offer().host_epoch); });
+    std::vector<const Catalogue::Offer*> others = catalogue_.servers_of(selector_);
+    std::erase_if(others,
+                  [this](const Catalogue::Offer* offer)
+                  {
+                      const auto is_it = [offer](const auto& fetch)
+                      { return fetch->offer().host_epoch == offer->host_epoch; };
+                      return std::ranges::find(refused_, offer->host_epoch) != refused_.end() ||
+                             std::ranges::any_of(fetches_, is_it);
+                  });
+    // All round: those that come after the last one that was asked, then from the first.
+    const auto after = std::ranges::find_if(others, [this](const Catalogue::Offer* offer)
+                                            { return offer->arrival > last_arrival_; });
+    std::rotate(others.begin(), after, others.end());
+    others.resize(std::min(others.size(), most));
+    const std::size_t too_many =
+        fetches_.size() + others.size() - std::min(fetches_.size() + others.size(), most);
+    fetches_.erase(fetches_.begin(), fetches_.begin() + static_cast<std::ptrdiff_t>(too_many));
+    for (const Catalogue::Offer* offer : others)
+    {
+        fetches_.push_back(std::make_unique<HeaderFetch>(exchange_, catalogue_, *offer));
+        offer_ = *offer;
+        last_arrival_ = offer->arrival;
+    }
 }
 
 } // namespace tactus::dds

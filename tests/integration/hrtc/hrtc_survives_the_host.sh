@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # hrtc_survives_the_host.sh: a host that is killed in mid-run is one line and a note in the report,
-# and code 1 with --strict; one that comes back is used again.
+# and code 1 with --strict; pieces of one that comes back are used again, but its word isn't taken
+# without --failover, and a line says so.
 source "$(dirname "$0")/common.sh"
 model bumpy-sphere-60000 bumpy.spm
 
@@ -37,7 +38,10 @@ start_publisher bumpy.spm --watch
 wait_for_line hrtc.log 'is served again'
 wait_for_line publish.log ' subscribed'
 stop_hrtc
-check_loss 2
+check_loss 3
+grep -q "model 'bumpy' is offered by spm_publish .* now: its pieces are used" hrtc.log \
+    || fault 'no line that the other host is not followed'
 [[ $(lines 'is served again' hrtc.log) == 1 ]] || fault 'not one line that a host is back'
-check report.json models.0.host_connected == 1
+check report.json models.0.host_connected == 1 servers.lost == 1 servers.replaced == 0 \
+    servers.not_followed == 1
 finish

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # network_shared_object.sh: two controllers touch one object that moves, 10 ms from its host and
 # with one datagram in a hundred lost. Its host dies and takes it along; another host with the same
-# scene steps in, and both touch its object instead.
+# scene steps in, since --failover allows it, and both touch its object instead.
 source "$(dirname "$0")/two_networks.sh"
 
 # A swing of 3 mm to either side in x within a second, 100 poses a second.
@@ -13,7 +13,7 @@ awk 'BEGIN {
 
 # start_controller NAME: it is called so, its words are in NAME.log, its id in $controller.
 start_controller() {
-    "${on_controller[@]}" "$hrtc" --allow-no-rt --domain "$domain" --scene shared --name "$1" \
+    "${on_controller[@]}" "$hrtc" --allow-no-rt --domain "$domain" --scene shared --failover any --name "$1" \
         --device sim:touch --duration 600 --wait "$patience_s" --report "$1.json" >"$1.log" 2>&1 &
     controller=$!
     started+=("$controller")

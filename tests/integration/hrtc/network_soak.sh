@@ -55,6 +55,7 @@ start_relay --delay-ms 2 --loss 0.005 --duplicates 0.005 --seed 11
 model bumpy-sphere-100000 large.spm
 start_publisher large.spm --watch
 start_hrtc --model large --device sim:touch --pool-mib 2 --no-static --duration 3600 \
+    --failover any \
     --record run.rec --report report.json
 wait_for_line publish.log ' subscribed'
 
@@ -82,7 +83,8 @@ for ((cycle = 1; cycle <= cycles; ++cycle)); do
 done
 
 stop_hrtc
-(($(lines "model 'large'" hrtc.log) == 4 * cycles)) || fault 'not two lines for each loss'
+(($(lines "model 'large'" hrtc.log) == 5 * cycles)) \
+    || fault 'not two lines for each loss, and one for each host that is followed'
 check report.json models.0.host_connected == 1 models.0.static == 0 safety.begun.host '>' 0
 check_wire_run report.json
 judge_run large.spm

@@ -27,7 +27,7 @@ wait_for_contact publish.log
 mv publish.log first.log # The host goes on writing there.
 start_publisher second.spm --name ball
 mv publish.log second.log
-wait_for_line hrtc.log "warning: model 'ball' is published with two hashes"
+wait_for_line hrtc.log "warning: model 'ball' is offered by a second server, spm_publish"
 wait_for_more_frames 500 first.log
 stop_hrtc
 [[ $(lines "model 'ball'" hrtc.log) == 1 ]] || fault 'not one line about the second host'
@@ -46,10 +46,10 @@ done
 
 # Without a pin any of the two, but one of them as a whole; the warning says which.
 touch_ball --model ball
-used=$(sed -n "s/.*two hashes, \([0-9a-f]*\) (seen first, .*/\1/p" hrtc.log)
+other=$(sed -n "s/.*a second server, .*, with another hash, \([0-9a-f]*\); .*/\1/p" hrtc.log)
 which=first
-grep -qF "$used" first.log || which=second
-[[ -n "$used" ]] || fault 'no warning of two hashes'
+! grep -qF "hash $other:" first.log || which=second
+[[ -n "$other" ]] || fault 'no warning of two hashes'
 check_touch $which.spm
 stop_publisher
 stop TERM "$first"

@@ -44,6 +44,8 @@ Json report_of(const std::string& model)
         "cache": {"prediction": "auto", "loads": 61, "evictions": 67},
         "wire": {"bytes_received": 71000, "host_lost": false,
                  "arrival_ms": {"p50": 1.5, "p99": 2.5, "max": 3.5}},
+        "servers": {"pinned": 1, "lost": 0, "back": 0, "replaced": 0, "not_followed": 0,
+                    "namesake": 0, "events": []},
         "refused": [{"peer": "spm_publish <4>", "id": "00", "identity": 151}],
         "deadline": {"missed": 73, "own_fault": 0, "machine_late": 79, "unexplained": 0,
                      "noted": [{"frame": 83, "flags": ["woken_late"], "wake_us": 89.5}]},

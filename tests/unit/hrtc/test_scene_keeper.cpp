@@ -104,9 +104,37 @@ protected:
         controller_ = std::move(made).value();
         const std::size_t capacity = controller_->frame().objects().capacity();
         door_.emplace(controller_->poses(), capacity, kAgeLimit);
-        keeper.emplace(client_->catalogue(), std::move(reader_), *controller_, std::move(scene),
+        pin(scene, models);
+        keeper.emplace(authorities, std::move(reader_), *controller_, std::move(scene),
                        lines.log());
         keeper->connect(*door_, now_);
+    }
+    /// The host's word counts for the scene, or for each model.
+    void pin(const ShownScene& scene, std::size_t models)
+    {
+        dds::Catalogue& catalogue = client_->catalogue();
+        if (!scene.name.empty())
+        {
+            authorities.emplace_back(catalogue, ModelSelector{"workshop"}, true, failover,
+                                     lines.log());
+        }
+        for (std::size_t i = 0; i < models && scene.name.empty(); ++i)
+        {
+            const ServedModel& model = controller_->models()[i];
+            authorities.emplace_back(catalogue, ModelSelector{model.name, model.hash}, false,
+                                     failover, lines.log());
+        }
+        ASSERT_TRUE(eventually(
+            [&]
+            {
+                host->step();
+                client_->exchange().step();
+                return catalogue.offers_of(host->epoch()).size() == 2;
+            }));
+        for (dds::Authority& authority : authorities)
+        {
+            authority.pin(host->epoch());
+        }
     }
     bool step_until(const std::function<bool()>& is_so, dds::DdsHost* other = nullptr)
     {
@@ -119,6 +147,10 @@ protected:
                     each != nullptr ? each->step() : void();
                 }
                 client_->exchange().step();
+                for (dds::Authority& authority : authorities)
+                {
+                    authority.step();
+                }
                 keeper->step(now_);
                 for (const SceneChange& change : door_->refresh(now_))
                 {
@@ -141,6 +173,8 @@ protected:
 
     tactus::test::Lines lines;
     std::unique_ptr<dds::DdsHost> host;
+    Failover failover;
+    std::vector<dds::Authority> authorities;
     std::optional<SceneKeeper> keeper;
     std::map<SceneChangeKind, int> changes; ///< As the frame would get them.
 
@@ -251,17 +285,42 @@ TEST_F(FollowedScene, leaves_out_what_has_no_room_until_there_is_some)
     EXPECT_EQ(shown_as(0), (HostObject{host->epoch(), pot}));
 }
 
-TEST_F(FollowedScene, goes_with_its_host_and_comes_with_another_one)
+TEST_F(FollowedScene, stays_and_grows_stale_when_its_host_is_gone_and_follows_no_other_one)
 {
+    const std::uint32_t cup = show(*host, "cup", 0.0);
+    show(*host, "pot", 1.0, 1);
+    ASSERT_NO_FATAL_FAILURE(start(true, 4));
+    const std::uint64_t first = host->epoch();
+    ASSERT_TRUE(step_until([&] { return keeper->heard(0).ns > 0; }));
+    const auto second = make_host(kOtherHostDomain);
+    show(*second, "jar", 2.0);
+    ASSERT_TRUE(
+        step_until([&] { return lines.has("scene 'workshop' is offered by a second server, "); },
+                   second.get()))
+        << lines.text();
+    host.reset();
+    ASSERT_TRUE(step_until([&] { return !authorities[0].is_here(); }, second.get()));
+    const std::int64_t heard = keeper->heard(0).ns;
+    ASSERT_TRUE(step_until([&] { return lines.has("which isn't followed"); }, second.get()));
+    ASSERT_TRUE(step_until([&, until = 0]() mutable { return ++until == 300; }, second.get()));
+    EXPECT_EQ(keeper->heard(0).ns, heard); // So the answers are stale.
+    EXPECT_EQ(shown_as(0), (HostObject{first, cup}));
+    EXPECT_EQ(changes[SceneChangeKind::object_goes], 0);
+    EXPECT_EQ(changes[SceneChangeKind::object_comes], 0);
+    EXPECT_TRUE(lines.has("its objects stay where they are and are stale")) << lines.text();
+}
+
+TEST_F(FollowedScene, goes_and_another_host_s_comes_where_failover_allows_that_one)
+{
+    failover.any = true;
     show(*host, "cup", 0.0);
     show(*host, "pot", 1.0, 1);
     ASSERT_NO_FATAL_FAILURE(start(true, 4));
     const std::uint64_t first = host->epoch();
     ASSERT_TRUE(step_until([&] { return keeper->heard(0).ns > 0; }));
     host.reset();
-    ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_goes] == 2; }));
-    EXPECT_EQ(shown_as(0), std::nullopt);
-    EXPECT_EQ(shown_as(1), std::nullopt);
+    ASSERT_TRUE(step_until([&] { return !authorities[0].is_here(); }));
+    EXPECT_EQ(changes[SceneChangeKind::object_goes], 0);
     const auto second = make_host(kOtherHostDomain);
     const std::uint32_t jar = show(*second, "jar", 2.0);
     ASSERT_TRUE(
@@ -269,6 +328,7 @@ TEST_F(FollowedScene, goes_with_its_host_and_comes_with_another_one)
     EXPECT_NE(second->epoch(), first);
     EXPECT_EQ(shown_as(last_come().number), (HostObject{second->epoch(), jar}));
     EXPECT_EQ(keeper->news().went, 2U);
+    EXPECT_TRUE(lines.has("scene 'workshop' is followed as ")) << lines.text();
 }
 
 TEST_F(FollowedScene, passes_over_objects_of_models_that_are_not_here)

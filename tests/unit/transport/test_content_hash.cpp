@@ -45,7 +45,7 @@ TEST(ModelName, allows_1_to_63_plain_characters)
     }
 }
 
-TEST(ModelName, a_selector_is_a_name_and_perhaps_a_hash)
+TEST(ModelName, a_selector_is_a_name_and_perhaps_a_hash_or_a_server)
 {
     const auto plain = parse_selector("bunny");
     ASSERT_TRUE(plain);
@@ -54,7 +54,19 @@ TEST(ModelName, a_selector_is_a_name_and_perhaps_a_hash)
     const auto pinned = parse_selector("bunny@0e5751c026e543b2e8ab2eb06099daa1");
     ASSERT_TRUE(pinned);
     EXPECT_EQ(pinned.value().hash, content_hash({}));
-    EXPECT_EQ(parse_selector("bunny@12").error().text, "hash '12' is not 32 hexadecimal digits");
+    EXPECT_TRUE(pinned.value().server.empty());
+    for (const char* server : {"lab3", "lab3.example.org:812", "cert:91d177d5d766", "12"})
+    {
+        const auto of_one = parse_selector(std::string("bunny@") + server);
+        ASSERT_TRUE(of_one);
+        EXPECT_FALSE(of_one.value().hash);
+        EXPECT_EQ(of_one.value().server, server);
+    }
+    EXPECT_EQ(parse_selector("bunny@lab 3").error().text,
+              "'lab 3' behind @ is neither a hash of 32 hexadecimal digits nor a server, "
+              "MACHINE[:PROCESS] or cert:HEX");
+    EXPECT_FALSE(parse_selector("bunny@"));
+    EXPECT_FALSE(parse_selector("bunny@" + std::string(81, 'a')));
     EXPECT_EQ(parse_selector("b\tnny").error().text,
               "name 'b?nny' is not 1 to 63 characters of A-Z a-z 0-9 . _ -");
     EXPECT_FALSE(parse_selector("@0e5751c026e543b2e8ab2eb06099daa1"));

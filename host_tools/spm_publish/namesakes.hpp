@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/base/refusal.hpp"
+#include "rt_core/base/result.hpp"
+#include "transport/dds/catalogue.hpp"
+#include "transport/dds/dds_host.hpp"
+#include "transport/log.hpp"
+
+#include <chrono>
+#include <cstdint>
+#include <set>
+#include <string>
+#include <utility>
+
+namespace tactus
+{
+
+/// Looks for other servers on the domain that offer a model or a scene under a name of ours, and
+/// writes a line for each: a controller takes the one that answers first.
+class Namesakes
+{
+public:
+    /// The host must outlive it, and find others: Party::both, or the user's configuration.
+    [[nodiscard]] static Result<Namesakes, Refusal> create(const dds::DdsHost& host,
+                                                           std::string scene, Log log);
+
+    /// Call it often; it looks when it is due.
+    void update();
+
+private:
+    using Clock = std::chrono::steady_clock;
+    Namesakes(const dds::DdsHost& host, std::string scene, dds::Catalogue catalogue, Log log);
+
+    void look_at(const dds::Catalogue::Offer& other, const std::string& name,
+                 const std::string& what);
+
+    const dds::DdsHost& host_;
+    std::string scene_;
+    dds::Catalogue catalogue_;
+    RateLimitedLog log_;
+    std::uint64_t seen_{0};
+    Clock::time_point looked_{};
+    std::set<std::pair<std::uint64_t, std::string>> told_; ///< Of which host, and what.
+};
+
+} // namespace tactus

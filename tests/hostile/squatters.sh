@@ -1,0 +1,165 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# squatters.sh BIN CHECK_REPORT SANITIZER SQUATTER LYING_HOST ATTACK: servers that aren't meant, of
+# the name that is. Whose word counts stays with the first; what a hash proves comes from any.
+# The force is looked at period by period, beside that of a run without them.
+source "$(dirname "$0")/../integration/hrtc/common.sh"
+source "$(dirname "$0")/force_figures.sh"
+readonly squatter=$4 lying_host=$5 attack=$6
+
+model bumpy-sphere-20000 bumpy.spm
+cat >toy.gltf <<'GLTF'
+{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [
+    {"name": "toy", "extras": {"tactus": {"model": "bumpy.spm"}}}]}
+GLTF
+# A machine's name as DDS tells it.
+machine=$(hostname)
+readonly machine
+
+# squat LOG KIND NAME SCENE [COUNT]: its id is in $squatting.
+squat() {
+    "$squatter" "$domain" "$2" "$3" "$4" bumpy.spm "${@:5}" >"$1" 2>&1 &
+    squatting=$!
+    started+=("$squatting")
+    wait_for_line "$1" 'ready on DDS domain'
+}
+# strike LOG: a host of the scene that is honest until a tool is near its object; its id is in
+# $striking.
+strike() {
+    "$lying_host" "$domain" bumpy.spm 0.002 strike 0.015 >"$1" 2>&1 &
+    striking=$!
+    started+=("$striking")
+    wait_for_line "$1" 'ready on DDS domain'
+}
+readonly hand=(--name victim --device sim:touch --tool sphere:0.002)
+touch_scene() { # touch_scene ARGUMENT...: until stop_hrtc.
+    start_hrtc "${hand[@]}" --wait "$patience_s" --duration 600 --report report.json \
+        --record attacked.rec "$@"
+    wait_for_contact publish.log victim
+}
+# check_force [SHARE]: what was felt, and in contact for as much as this of the honest run's share.
+check_force() {
+    check_clean report.json
+    export_force attacked
+    read -r growth fall share < <(force_figures attacked.csv)
+    echo "growth, fall and contact share: honest $honest_growth N, $honest_fall N, $honest_share;" \
+        "$attack $growth N, $fall N, $share"
+    check report.json force.max_n '>' 0 force.max_n '<=' 3.3
+    at_most 'the largest growth a period' "$growth" 0.25
+    was_held_up report.json \
+        || at_most 'the lack of contact' "$(awk "BEGIN { print ${1:-0} * $honest_share }")" "$share"
+}
+
+start_publisher toy.gltf --scene toy
+run_hrtc "${hand[@]}" --scene toy --duration 5 --record honest.rec
+stop_publisher
+export_force honest
+read -r honest_growth honest_fall honest_share < <(force_figures honest.csv)
+
+# Of uptime.
+now_ms() { awk '{ printf "%.0f", $1 * 1000 }' /proc/uptime; }
+
+case $attack in
+    squat_killed | squat_restarted)
+        # The chain: a stranger beside the true host, which then goes, and comes back.
+        start_publisher toy.gltf --scene toy --watch
+        touch_scene --scene toy
+        strike strike.log
+        wait_for_line hrtc.log "warning: scene 'toy' is offered by a second server, lying_host"
+        wait_for_more_frames 500 publish.log victim
+        stop KILL "$publisher"
+        wait_for_line hrtc.log "the server of scene 'toy', spm_publish"
+        wait_for_line hrtc.log "scene 'toy' is offered by lying_host"
+        if [[ $attack == squat_restarted ]]; then
+            start_publisher toy.gltf --scene toy --watch
+            wait_for_line publish.log "warning: scene 'toy' is offered by lying_host"
+            wait_for_line hrtc.log "scene 'toy' is offered by spm_publish"
+        fi
+        wait_for_more "$controller" 6000
+        stop_hrtc
+        check report.json servers.lost == 1 servers.replaced == 0 servers.namesake '>=' 1 \
+            servers.not_followed '>=' 1 scene.came == 0 scene.went == 0 scene.objects == 1 \
+            safety.begun.stale '>=' 1 answers.stale '>' 500
+        grep -q '^servers .*not followed' hrtc.log || fault 'the summary does not tell'
+        check_force
+        ;;
+    squat_allowed)
+        # The same where the stranger has gone and a restarted server is followed.
+        start_publisher toy.gltf --scene toy --watch
+        strike strike.log
+        touch_scene --scene "toy@$machine:$publisher" --failover any
+        wait_for_line hrtc.log "warning: scene 'toy' is offered by a second server, lying_host"
+        wait_for_line publish.log "warning: scene 'toy' is offered by lying_host"
+        stop TERM "$striking"
+        stop KILL "$publisher"
+        wait_for_line hrtc.log "the server of scene 'toy', spm_publish"
+        start_publisher toy.gltf --scene toy --watch
+        began=$(now_ms)
+        wait_for_line hrtc.log "scene 'toy' is followed as spm_publish"
+        echo "followed $(($(now_ms) - began)) ms after it was ready"
+        wait_for_contact publish.log victim
+        stop_hrtc
+        check report.json servers.lost == 1 servers.replaced == 1 scene.came == 1 scene.went == 1
+        check_force
+        stop_publisher
+        ;;
+    squat_first)
+        # Who comes first of the two is told, at the start and by the second server itself; who
+        # is meant can be said.
+        strike strike.log
+        start_publisher toy.gltf --scene toy --watch
+        wait_for_line publish.log "warning: scene 'toy' is offered by lying_host"
+        touch_scene --scene "toy@$machine:$publisher"
+        wait_for_more_frames 500 publish.log victim
+        stop_hrtc
+        check report.json servers.lost == 0 servers.namesake == 1 servers.pinned == 1
+        grep -q '"event": "pinned"' report.json || fault 'the report names no server'
+        grep -Eq "\"server\": \"spm_publish \(process $publisher on" report.json \
+            || fault 'the report names another server'
+        check_force 0.7
+        stop_publisher
+        ;;
+    twin_*)
+        # The same model, hash and scene, and seen first.
+        kind=${attack#twin_}
+        count=
+        [[ $kind != claque ]] || count=40
+        squat twin.log "$kind" bumpy - $count
+        start_publisher bumpy.spm --watch
+        wait_for_line publish.log "warning: model 'bumpy' is offered by squatter"
+        began=$(now_ms)
+        touch_scene --model bumpy --no-static --pool-mib 1
+        echo "in contact $(($(now_ms) - began)) ms after the start"
+        wait_for_more_frames 2000 publish.log victim
+        stop_hrtc
+        grep -q "warning: model 'bumpy' is offered by a second server" hrtc.log \
+            || fault 'no word of the second server'
+        check report.json servers.namesake '>=' 1 wire.host_lost == 0 \
+            models.0.pieces_overdue == 0 safety.begun.starved == 0
+        [[ $kind == forger ]] || check report.json models.0.pieces_refused == 0
+        check_force 0.5
+        stop_publisher
+        ;;
+    crowd)
+        # 40 participants with 256 models each, before the start and while the host restarts.
+        squat crowd.log crowd bumpy - 40
+        start_publisher toy.gltf --scene toy --watch
+        began=$(now_ms)
+        touch_scene --scene toy --failover "$machine"
+        echo "in contact $(($(now_ms) - began)) ms after the start"
+        stop KILL "$publisher"
+        wait_for_line hrtc.log "the server of scene 'toy', spm_publish"
+        start_publisher toy.gltf --scene toy --watch
+        began=$(now_ms)
+        wait_for_line hrtc.log "scene 'toy' is followed as spm_publish"
+        echo "followed $(($(now_ms) - began)) ms after it was ready"
+        wait_for_contact publish.log victim
+        wait_for_more_frames 500 publish.log victim
+        stop_hrtc
+        check report.json servers.lost == 1 servers.replaced == 1
+        check_force
+        stop_publisher
+        ;;
+    *) fail "there is no attack $attack" ;;
+esac
+finish

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "transport/dds/authority.hpp"
+
+#include "rt_core/base/assert.hpp"
+#include "transport/content_hash.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace tactus::dds
+{
+
+namespace
+{
+
+/// Others that are told of; as many strangers as offer the name must not fill the log.
+constexpr std::size_t kMaxNamed = 16;
+
+} // namespace
+
+const std::array<const char*, kServerNewsKinds>& server_news_names() noexcept
+{
+    static const std::array<const char*, kServerNewsKinds> names{
+        "pinned", "lost", "back", "replaced", "not_followed", "namesake"};
+    return names;
+}
+
+Authority::Authority(Catalogue& catalogue, const ModelSelector& name, bool is_scene,
+                     Failover failover, Log log)
+    : catalogue_(catalogue)
+    , name_(name)
+    , is_scene_(is_scene)
+    , what_(fmt::format("{} '{}'", is_scene ? "scene" : "model", name.name))
+    , failover_(std::move(failover))
+    , log_(std::move(log))
+{
+    TACTUS_ASSERT(is_scene || name.hash);
+}
+
+void Authority::pin(std::uint64_t host_epoch)
+{
+    host_epoch_ = host_epoch;
+    is_here_ = true;
+    const std::vector<const Catalogue::Offer*> offers = catalogue_.offers_of(host_epoch);
+    if (!offers.empty())
+    {
+        host_ = offers.front()->host;
+        host_name_ = catalogue_.participants().name_of(host_);
+    }
+    catalogue_.keep(host_epoch);
+    tell(ServerNews::pinned, host_name_, "");
+}
+
+void Authority::step()
+{
+    if (catalogue_.version() == seen_catalogue_)
+    {
+        return;
+    }
+    seen_catalogue_ = catalogue_.version();
+    const std::vector<const Catalogue::Offer*> offers = candidates();
+    const bool was_here = std::exchange(
+        is_here_,
+        std::ranges::any_of(offers, [this](const Catalogue::Offer* offer)
+                            { return offer->host_epoch == host_epoch_ && has_hash(*offer); }));
+    if (was_here && !is_here_)
+    {
+        named_.clear();
+        tell(ServerNews::lost, host_name_,
+             is_scene_ ? fmt::format("the server of {}, {}, is gone; its objects stay where they "
+                                     "are and are stale",
+                                     what_, host_name_)
+                       : "");
+    }
+    if (!was_here && is_here_)
+    {
+        named_.clear();
+        tell(ServerNews::back, host_name_,
+             is_scene_ ? fmt::format("the server of {}, {}, is back", what_, host_name_) : "");
+    }
+    if (!is_here_)
+    {
+        look_for_another(offers);
+    }
+    if (is_here_)
+    {
+        name_others(offers);
+    }
+}
+
+/// All that offer the name, of a model with whatever hash.
+std::vector<const Catalogue::Offer*> Authority::candidates() const
+{
+    return is_scene_ ? catalogue_.servers_of_scene({name_.name})
+                     : catalogue_.servers_of({name_.name});
+}
+
+bool Authority::has_hash(const Catalogue::Offer& offer) const
+{
+    return is_scene_ || offer.hash == *name_.hash;
+}
+
+bool Authority::may_follow(const Catalogue::Offer& offer) const
+{
+    const Participants& participants = catalogue_.participants();
+    const std::string certificate = participants.certificate_of(host_);
+    const bool is_same_party =
+        !certificate.empty() && participants.certificate_of(offer.host) == certificate;
+    return has_hash(offer) &&
+           (is_same_party || failover_.any ||
+            std::ranges::any_of(failover_.servers, [&](const std::string& server)
+                                { return participants.is_called(offer.host, server); }));
+}
+
+void Authority::look_for_another(const std::vector<const Catalogue::Offer*>& offers)
+{
+    const auto next = std::ranges::find_if(offers, [this](const Catalogue::Offer* offer)
+                                           { return may_follow(*offer); });
+    if (next != offers.end())
+    {
+        const Catalogue::Offer& offer = **next;
+        host_epoch_ = offer.host_epoch;
+        host_ = offer.host;
+        is_here_ = true;
+        named_.clear();
+        catalogue_.keep(host_epoch_);
+        const std::string last =
+            std::exchange(host_name_, catalogue_.participants().name_of(host_));
+        tell(ServerNews::replaced, host_name_,
+             fmt::format("{} is followed as {} says from now on, in the place of {}", what_,
+                         host_name_, last));
+        return;
+    }
+    for (const Catalogue::Offer* offer : offers)
+    {
+        if (named_.size() < kMaxNamed && named_.insert(offer->host).second)
+        {
+            const std::string name = catalogue_.participants().name_of(offer->host);
+            const char* form =
+                is_scene_ ? "{} is offered by {} now, which isn't followed: it isn't {}, "
+                            "and --failover doesn't allow it"
+                          : "{} is offered by {} now: its pieces are used, what it says of "
+                            "objects isn't, since it isn't {} and --failover doesn't "
+                            "allow it";
+            // The model's link tells of another hash.
+            tell(ServerNews::not_followed, name,
+                 has_hash(*offer) ? fmt::format(fmt::runtime(form), what_, name, host_name_) : "");
+        }
+    }
+}
+
+void Authority::name_others(const std::vector<const Catalogue::Offer*>& offers)
+{
+    for (const Catalogue::Offer* offer : offers)
+    {
+        if (offer->host_epoch != host_epoch_ && named_.size() < kMaxNamed &&
+            named_.insert(offer->host).second)
+        {
+            const std::string name = catalogue_.participants().name_of(offer->host);
+            tell(ServerNews::namesake, name,
+                 fmt::format("warning: {} is offered by a second server, {}{}; {} is followed, "
+                             "{}@SERVER chooses",
+                             what_, name,
+                             has_hash(*offer) ? ""
+                                              : ", with another hash, " + hash_text(offer->hash),
+                             host_name_, name_.name));
+        }
+    }
+}
+
+void Authority::tell(ServerNews news, const std::string& server, const std::string& line)
+{
+    if (events_.size() < kMaxEvents)
+    {
+        events_.push_back({std::chrono::steady_clock::now(), news, what_, server});
+    }
+    if (!line.empty())
+    {
+        log_.write(line);
+    }
+}
+
+} // namespace tactus::dds
