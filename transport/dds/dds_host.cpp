@@ -140,7 +140,8 @@ void DdsHost::step()
     {
         last_looked_ = now;
         look_for_gone();
-        std::ranges::for_each(clients_, [this](Client& client) { heal(client); });
+        static_cast<void>(std::ranges::find_if(clients_, [this](Client& client)
+                                               { return try_heal(client); })); // One at a time.
     }
     if (now - last_forgot_ >= kHalfLife)
     {
@@ -307,14 +308,18 @@ void DdsHost::renew_motion(Client& client)
     }
 }
 
-void DdsHost::heal(Client& client)
+bool DdsHost::try_heal(Client& client)
 {
-    if (client.subscription.try_heal(Clock::now()))
+    auto old = client.subscription.try_heal(Clock::now());
+    if (old == nullptr)
     {
-        ++counters_.renewed;
-        fault_log_.write(fmt::format("pieces don't reach controller {}: other writers send them",
-                                     client.subscription.controller_name()));
+        return false;
     }
+    domain_.disposal().dispose(std::move(old));
+    ++counters_.renewed;
+    fault_log_.write(fmt::format("pieces don't reach controller {}: other writers send them",
+                                 client.subscription.controller_name()));
+    return true;
 }
 
 void DdsHost::take_wishes(Client& client, const tactus_v4_Wanted& wanted)
@@ -428,17 +433,18 @@ void DdsHost::look_for_gone()
 
 void DdsHost::on_controller_gone(const ControllerId& controller)
 {
-    const Client* client = find(controller);
+    Client* client = find(controller);
     if (client == nullptr)
     {
         return;
     }
-    const Subscription& subscription = client->subscription;
+    Subscription& subscription = client->subscription;
     counters_.pieces_sent += subscription.pieces_sent();
     counters_.bytes_sent += subscription.bytes_sent();
     visits_log_.write(fmt::format("controller {} left ({} pieces, {:.1f} KB sent)",
                                   subscription.controller_name(), subscription.pieces_sent(),
                                   static_cast<double>(subscription.bytes_sent()) / 1e3));
+    domain_.disposal().dispose(std::make_shared<Subscription>(std::move(subscription)));
     clients_.erase(clients_.begin() + (client - clients_.data()));
 }
 

@@ -111,7 +111,7 @@ private:
     void on_request(const ControllerId& controller, const tactus_v4_Wanted& wanted);
     void take_wishes(Client& client, const tactus_v4_Wanted& wanted);
     void renew_motion(Client& client);
-    void heal(Client& client);
+    bool try_heal(Client& client);
     void refuse(const ControllerId& controller, Refused reason);
     [[nodiscard]] Client* add_client(const ControllerId& controller,
                                      const tactus_v4_Wanted& wanted);

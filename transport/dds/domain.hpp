@@ -4,6 +4,7 @@
 
 #include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
+#include "transport/dds/disposal.hpp"
 #include "transport/dds/entity.hpp"
 #include "transport/dds/participants.hpp"
 
@@ -47,12 +48,15 @@ public:
     [[nodiscard]] std::int32_t participant() const noexcept { return participant_.get(); }
     /// Who is there, and who we are.
     [[nodiscard]] Participants& participants() const noexcept { return *participants_; }
+    /// For what is over, where nobody may wait for its end.
+    [[nodiscard]] Disposal& disposal() const noexcept { return *disposal_; }
 
 private:
     std::uint32_t id_{0};
     std::shared_ptr<Entity> configuration_; ///< Ours, shared by the process; outlives participants.
     std::unique_ptr<Participants> participants_; ///< In use as long as there are readers.
     Entity participant_;
+    std::unique_ptr<Disposal> disposal_{std::make_unique<Disposal>()}; ///< Ends before that.
 };
 
 } // namespace tactus::dds

@@ -200,6 +200,7 @@ void ObjectPublisher::change_motion_writer(Clock::time_point now)
     if (next_motion_.is_valid() &&
         (readers_of(next_motion_) >= readers_of(motion_) || now - renewed_ >= kHandOver))
     {
+        domain_->disposal().dispose(std::make_shared<Endpoint>(std::move(motion_)));
         motion_ = std::exchange(next_motion_, {});
     }
 }

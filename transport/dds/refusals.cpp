@@ -17,7 +17,7 @@ namespace
 {
 
 /// What a line says; empty where the place that refuses says more.
-std::string text_of(Refused reason, std::uint32_t number)
+std::string reason_of(Refused reason, std::uint32_t number)
 {
     constexpr std::string_view name_form =
         "its name is not 1 to 63 characters of A-Z a-z 0-9 . _ -";
@@ -119,7 +119,7 @@ std::vector<std::string> Refusals::take_lines(std::span<const std::string> names
         {
             Reason& reason = peer.reasons.at(i);
             const std::uint64_t count = peer.refused.counts.at(i);
-            const std::string text = text_of(static_cast<Refused>(i), reason.first);
+            const std::string text = reason_of(static_cast<Refused>(i), reason.first);
             if (text.empty() || count < reason.told_at)
             {
                 continue;

@@ -46,21 +46,21 @@ void Subscription::set_credit(const Credit& credit) noexcept
     credit_.received = std::max(credit_.received, credit.received);
 }
 
-bool Subscription::try_heal(Backoff::Clock::time_point now)
+std::shared_ptr<void> Subscription::try_heal(Backoff::Clock::time_point now)
 {
     if (lost_ <= given_up_)
     {
         given_up_ = lost_; // Late ones have come.
         overdue_since_ = now;
-        return false;
+        return nullptr;
     }
-    if (now - overdue_since_ < kOverdue || !writers_.try_renew(now))
+    auto old = now - overdue_since_ < kOverdue ? nullptr : writers_.try_renew(now);
+    if (old != nullptr)
     {
-        return false;
+        given_up_ = lost_;
+        overdue_since_ = now;
     }
-    given_up_ = lost_;
-    overdue_since_ = now;
-    return true;
+    return old;
 }
 
 bool Subscription::send_one(std::uint64_t host_epoch, std::span<const ModelPieces> models,

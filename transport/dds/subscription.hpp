@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -58,8 +59,8 @@ public:
     void set_credit(const Credit& credit) noexcept;
     /// Makes new writers where pieces are missing for a second that the controller says were sent
     /// and never came: who forged a packet in a writer's name has made its readers deaf to it.
-    /// True when it did so, which is less often each time.
-    bool try_heal(Backoff::Clock::time_point now);
+    /// Returns what owns the old ones when it did so, which is less often each time; null else.
+    [[nodiscard]] std::shared_ptr<void> try_heal(Backoff::Clock::time_point now);
 
     /// Whether send_one() would find something to do, were the controller's reader there.
     [[nodiscard]] bool has_work() const noexcept

@@ -64,22 +64,23 @@ bool WriterLanes::has_room(Lane& lane)
     return lane.unacked_bytes <= kUnackedMax;
 }
 
-bool WriterLanes::try_renew(Backoff::Clock::time_point now)
+std::shared_ptr<void> WriterLanes::try_renew(Backoff::Clock::time_point now)
 {
     if (!renewals_.is_due(now))
     {
-        return false;
+        return nullptr;
     }
     renewals_.begin(now);
     auto first = make_writer(*domain_, topic_, partition_);
     if (!first)
     {
-        return false;
+        return nullptr;
     }
+    auto old = std::make_shared<std::vector<Lane>>(std::move(lanes_));
     lanes_.clear();
     lanes_.push_back({std::move(first).value(), true, true, 0});
     turn_ = written_ = 0;
-    return true;
+    return old;
 }
 
 /// Brings the first one that isn't open a step further.

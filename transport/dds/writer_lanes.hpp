@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -38,9 +39,9 @@ public:
 
     /// Makes a new writer in the place of them all: where a packet in a writer's name told its
     /// reader of a much later sample, forged or not, that reader takes all others for old as long
-    /// as the writer is there. False when it is not due: Cyclone keeps a little of each writer that
-    /// was.
-    bool try_renew(Backoff::Clock::time_point now);
+    /// as the writer is there. Returns what owns the old ones, whose deletion takes a while; null
+    /// when it is not due: Cyclone keeps a little of each writer that was.
+    [[nodiscard]] std::shared_ptr<void> try_renew(Backoff::Clock::time_point now);
 
     static constexpr std::size_t kLanes = 4;
     /// So much a reader that never answers costs its writer, some seconds of a stream.

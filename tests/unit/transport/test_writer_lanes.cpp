@@ -160,13 +160,13 @@ TEST_F(Lanes, that_are_renewed_are_one_other_writer_and_not_at_once_again)
     };
     ASSERT_TRUE(comes(1));
     const auto now = Backoff::Clock::now();
-    EXPECT_TRUE(sut.try_renew(now));
-    EXPECT_FALSE(sut.try_renew(now));
+    EXPECT_NE(sut.try_renew(now), nullptr);
+    EXPECT_EQ(sut.try_renew(now), nullptr);
     ASSERT_TRUE(comes(2));
     EXPECT_EQ(writers_.size(), 2U);
     EXPECT_EQ(sut.open(), 1U);
-    EXPECT_TRUE(sut.try_renew(now + std::chrono::seconds(1)));
-    EXPECT_FALSE(sut.try_renew(now + std::chrono::seconds(2))) << "less often each time";
+    EXPECT_NE(sut.try_renew(now + std::chrono::seconds(1)), nullptr);
+    EXPECT_EQ(sut.try_renew(now + std::chrono::seconds(2)), nullptr) << "less often each time";
 }
 
 TEST_F(Lanes, are_renewed_where_pieces_stay_away_for_a_second)
@@ -174,15 +174,15 @@ TEST_F(Lanes, are_renewed_where_pieces_stay_away_for_a_second)
     auto sut = Subscription::create(*host_, ControllerId{1}, "controller", 100).value();
     const auto start = Backoff::Clock::now();
     sut.set_credit({100, 228, 80}); // From before: nobody knows why.
-    EXPECT_FALSE(sut.try_heal(start));
-    EXPECT_FALSE(sut.try_heal(start + std::chrono::seconds(2)));
+    EXPECT_EQ(sut.try_heal(start), nullptr);
+    EXPECT_EQ(sut.try_heal(start + std::chrono::seconds(2)), nullptr);
     sut.set_credit({100, 228, 70});
-    EXPECT_FALSE(sut.try_heal(start + std::chrono::milliseconds(2'900)));
+    EXPECT_EQ(sut.try_heal(start + std::chrono::milliseconds(2'900)), nullptr);
     sut.set_credit({100, 228, 80}); // They came late.
-    EXPECT_FALSE(sut.try_heal(start + std::chrono::milliseconds(3'100)));
+    EXPECT_EQ(sut.try_heal(start + std::chrono::milliseconds(3'100)), nullptr);
     sut.set_credit({100, 228, 70});
-    EXPECT_TRUE(sut.try_heal(start + std::chrono::milliseconds(4'200)));
-    EXPECT_FALSE(sut.try_heal(start + std::chrono::seconds(10))) << "these were given up";
+    EXPECT_NE(sut.try_heal(start + std::chrono::milliseconds(4'200)), nullptr);
+    EXPECT_EQ(sut.try_heal(start + std::chrono::seconds(10)), nullptr) << "these were given up";
 }
 
 } // namespace

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace tactus::dds
+{
+
+/// Deletes entities of Cyclone on a thread of its own, which begins with the first one: each writer
+/// takes some 10 ms, in which a host's other controllers would hear nothing.
+class Disposal
+{
+public:
+    Disposal() = default;
+    /// Waits until all are deleted.
+    ~Disposal();
+    Disposal(const Disposal&) = delete;
+    Disposal& operator=(const Disposal&) = delete;
+
+    /// What owns them; nobody else does. Null has no effect. Never waits; any thread.
+    void dispose(std::shared_ptr<void> owner);
+
+private:
+    void run();
+
+    std::mutex mutex_;
+    std::condition_variable has_news_;
+    std::vector<std::shared_ptr<void>> waiting_;
+    bool is_over_{false};
+    std::thread thread_;
+};
+
+} // namespace tactus::dds
