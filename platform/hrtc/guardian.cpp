@@ -119,12 +119,13 @@ void restore_crash_signals() noexcept
     }
 }
 
-/// What crashed does so again when this returns, and does then what it did before.
-void tell_of_crash(int /*signal*/)
+/// The signal comes again when this returns, and does then what it did before.
+void tell_of_crash(int signal)
 {
     const int error = errno;
     [[maybe_unused]] const ssize_t written = ::write(crash_pipe.load(), &kCrashes, 1);
     restore_crash_signals();
+    ::raise(signal);
     errno = error;
 }
 

@@ -94,6 +94,21 @@ TEST_F(GuardianTest, brakes_when_a_process_crashes_and_again_when_it_has_ended)
     EXPECT_EQ(told_after([](const auto&) { ::raise(SIGABRT); }), "abab");
 }
 
+TEST_F(GuardianTest, lets_a_crash_end_the_process_as_it_would_have)
+{
+    const pid_t process = ::fork();
+    if (process == 0)
+    {
+        const auto guardian = start();
+        ::kill(::getpid(), SIGSEGV); // From outside: what was done is not done again.
+        ::_exit(0);
+    }
+    int status = 0;
+    EXPECT_EQ(::waitpid(process, &status, 0), process);
+    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGSEGV);
+    EXPECT_EQ(read_all(), "abab");
+}
+
 TEST_F(GuardianTest, brakes_nothing_when_the_devices_are_closed)
 {
     EXPECT_EQ(told_after([](auto guardian) { guardian.reset(); }), "");

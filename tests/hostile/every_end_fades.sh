@@ -1,0 +1,129 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# every_end_fades.sh BIN CHECK_REPORT SANITIZER DEVICE RECORDING_DEVICE BARE_DEVICE STAND_IN_DHD:
+# what the motors of a device do last when hrtc ends: by a signal, because nobody reads what it
+# says, because its recording is too large; and when it is killed or crashes. The motors are a file
+# that outlives hrtc. DEVICE: udp, plugin or dhd.
+here=$(cd "$(dirname "$0")" && pwd)
+readonly here
+source "$here/../integration/hrtc/common.sh"
+readonly device=$4 recording=$5 bare=$6 stand_in=$7
+readonly port=$((20000 + $$ % 20000))
+model bumpy-sphere-20000 bumpy.spm
+
+options=(--transport file --model bumpy.spm --device-frame 0,0,0.06 --duration 600)
+case $device in
+    udp)
+        # The driver of the documents, which keeps what its motors do.
+        sed -e 's/^controller.setblocking(False)$/&\ntold = open("motors.log", "a", buffering=1)/' \
+            -e 's/^ *last, newest = number, .*$/&\n                    tell(force, "force")/' \
+            -e 's/^def newest_force(last):$/def tell(force, who):\n    print(time.monotonic_ns(), *force[:3], who, file=told)\n\n&/' \
+            -e 's/^        force, state = \[0.0\] \* 6, 0$/        if any(force[:3]):\n            tell([0.0] * 3, "watchdog")\n&/' \
+            "$here/../../docs/examples/udp_driver.py" >driver.py
+        options+=(--device "udp:$port" --wait "$patience_s")
+        ;;
+    plugin) options+=(--device "plugin:$recording,motors.log") ;;
+    dhd)
+        cp "$stand_in" libdhd.so.3
+        export LD_LIBRARY_PATH=$PWD TACTUS_DHD_LOG=$PWD/motors.log
+        options+=(--device dhd)
+        ;;
+esac
+
+# Fresh motors; for udp with a driver of their own.
+fresh_motors() {
+    rm -f motors.log
+    [[ "$device" == udp ]] || return 0
+    python3 driver.py "$port" 0.02 >driver.log 2>&1 &
+    driving=$!
+    started+=("$driving")
+}
+# judge SIGNAL HOW: of $controller; 1 when it is not so, with the reason in judged.txt.
+judge() {
+    local code=0
+    python3 "$here/last_force.py" motors.log "$controller" "$1" "$2" >judged.txt 2>&1 || code=1
+    [[ "$device" != udp ]] || stop KILL "$driving"
+    ((code != 0)) || printf '%s %s' "$device" "$(<judged.txt)"$'\n'
+    return "$code"
+}
+has_forces() { [[ -f motors.log ]] && has_lines force motors.log "$1"; }
+# ends SIGNAL HOW CODE: a machine that stops hrtc meanwhile gets two more tries.
+ends() {
+    local try code
+    for try in 1 2 3; do
+        fresh_motors
+        start_hrtc "${options[@]}"
+        if judge "$1" "$2"; then
+            code=0
+            wait "$controller" 2>/dev/null || code=$?
+            ((code == $3)) || fault "$device $1: hrtc ended with $code: $(cat hrtc.log)"
+            return
+        fi
+        kill -KILL "$controller" 2>/dev/null || true
+        wait "$controller" 2>/dev/null || true
+        echo "try $try: $(<judged.txt)"
+    done
+    fault "$device $1: $(<judged.txt)"
+}
+
+for signal in TERM HUP QUIT; do
+    ends "$signal" fades 0
+done
+
+case $device in
+    udp)
+        for signal in INT USR1 XCPU; do
+            ends "$signal" fades 0
+        done
+        # The driver's own watchdog: there is no other.
+        ends KILL watchdog 137
+
+        # Who reads the words is gone after the first line; the next comes after two seconds.
+        fresh_motors
+        "$hrtc" --allow-no-rt --domain "$domain" "${options[@]}" --report report.json \
+            > >(head -n 1 >first.log) 2>&1 &
+        controller=$!
+        started+=("$controller")
+        wait_until 'four seconds of forces' has_forces 4000
+        judge TERM fades || fault "a pipe without a reader: $(<judged.txt)"
+        code=0
+        wait "$controller" || code=$?
+        ((code == 0)) || fault "without a reader hrtc ended with $code"
+        check report.json frames '>' 4000
+
+        # A recording that grows beyond what is allowed: a line, and the force goes on.
+        fresh_motors
+        (
+            ulimit -f 64
+            exec "$hrtc" --allow-no-rt --domain "$domain" "${options[@]}" --record run.rec \
+                >hrtc.log 2>&1
+        ) &
+        controller=$!
+        started+=("$controller")
+        wait_until 'four seconds of forces' has_forces 4000 # 64 KiB last for less than one.
+        judge TERM fades || fault "a recording too large: $(<judged.txt)"
+        code=0
+        wait "$controller" || code=$?
+        ((code == 2)) || fault "with a recording too large hrtc ended with $code: $(cat hrtc.log)"
+        [[ $(grep -c "^hrtc: --record: run.rec: can't be written: File too large$" hrtc.log) == 1 ]] \
+            || fault "of a recording too large: $(cat hrtc.log)"
+        ! ls run.rec* >/dev/null 2>&1 || fault 'half a recording is left'
+        ;;
+    plugin)
+        ends KILL guard 137
+        ends SEGV guard 139
+        expect 2 "--device: a guardian can't start: $recording: its motors have one line" \
+            "$hrtc" --allow-no-rt --transport file --model bumpy.spm \
+            --device "plugin:$recording,motors.log,refuse"
+        "$hrtc" --allow-no-rt --transport file --model bumpy.spm --duration 0.2 \
+            --device "plugin:$bare,motors.log" >bare.log 2>&1 || fault "bare: $(cat bare.log)"
+        grep -q "^hrtc: tool 0: $bare has no guard; when hrtc is killed, " bare.log \
+            || fault "nothing tells that there is no guard: $(cat bare.log)"
+        ;;
+    dhd)
+        # Another program can have the device when the system has closed it for the dead one.
+        ends KILL opened 137
+        ends SEGV opened 139
+        ;;
+esac
+finish
