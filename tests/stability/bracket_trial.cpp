@@ -66,8 +66,10 @@ private:
         const bool is_exact = pair.kind == AnswerKind::exact;
         figures_.exact += is_exact ? 1 : 0;
         figures_.answered += is_exact || pair.kind == AnswerKind::decided ? 1 : 0;
-        for (const Verdict& verdict :
-             {broken_budget(output, trial_.hardship.budgets), unexplained(output)})
+        // A point that has no way yet reaches nothing, so that it asks for nothing.
+        const bool reaches_nothing = frame_ == 0 && radius_m_ == 0.0;
+        for (const Verdict& verdict : {broken_budget(output, trial_.hardship.budgets),
+                                       reaches_nothing ? std::nullopt : unexplained(output)})
         {
             if (verdict)
             {
