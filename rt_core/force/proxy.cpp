@@ -453,9 +453,9 @@ Proxy::Touch Proxy::feel_at(Vicinity& near, std::span<const PlacedSurface> surfa
         }
         hold.bump_m = along_all(hold.bump_m, touch.planes, held.held_by.view());
     }
-    if (hold.push_n.squaredNorm() > kLeastPush_n * kLeastPush_n)
+    if (const double push_sq = hold.push_n.squaredNorm(); push_sq > kLeastPush_n * kLeastPush_n)
     {
-        normal_ = hold.push_n.normalized();
+        normal_ = hold.push_n / std::sqrt(push_sq);
     }
     if (hold.rubs)
     {
