@@ -8,6 +8,8 @@
 #include <chrono>
 #include <cstring>
 #include <functional>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <string_view>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -143,6 +145,10 @@ std::optional<Refusal> LoopbackServer::start(std::uint16_t port, const char* opt
     }
     // The library's own backlog is 5: who comes sixth in a burst waits for seconds.
     ::listen(listening, SOMAXCONN);
+#ifdef TCP_DEFER_ACCEPT // Linux: who says nothing gets no thread.
+    const int seconds = static_cast<int>(PeerStream::kRequestPatience.count());
+    ::setsockopt(listening, IPPROTO_TCP, TCP_DEFER_ACCEPT, &seconds, sizeof(seconds));
+#endif
     server_.set_socket_options(nullptr);
     port_ = static_cast<std::uint16_t>(got);
     listener_ = std::thread(
