@@ -200,6 +200,7 @@ tactus_component(platform
     PUBLIC
         platform/clock.hpp
         platform/device_frame.hpp
+        platform/device_guard.hpp
         platform/dhd/dhd_device.hpp
         platform/float_control.hpp
         platform/haptic_device.hpp
