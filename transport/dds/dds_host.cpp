@@ -45,10 +45,9 @@ constexpr std::uint32_t kVisitLines = 40;
 /// and gives them in turn.
 constexpr auto kRequestsMax = std::chrono::milliseconds(2);
 constexpr auto kServingMax = std::chrono::milliseconds(4);
-/// Pieces that may be asked for in a second. A controller has 256 wishes and asks for each four
-/// times a second; headers of 256 models, 64 parts each, are asked for ten times.
+/// Pieces that one process may ask for in a second. A controller has 256 wishes and asks for each
+/// four times a second; headers of 256 models, 64 parts each, are asked for ten times.
 constexpr std::uint64_t kAskedMax = 262'144;
-constexpr std::uint64_t kAskedMaxOfProcess = 4 * kAskedMax;
 /// What somebody got counts half after so long.
 constexpr auto kHalfLife = std::chrono::milliseconds(250);
 /// What a sample costs beyond its pieces, in bytes.
@@ -146,7 +145,7 @@ void DdsHost::step()
     if (now - last_forgot_ >= kHalfLife)
     {
         last_forgot_ = now;
-        forget_use();
+        forget();
     }
     let_in();
     serve(now + kServingMax);
@@ -325,10 +324,8 @@ bool DdsHost::try_heal(Client& client)
 void DdsHost::take_wishes(Client& client, const tactus_v4_Wanted& wanted)
 {
     const std::uint32_t asked = wanted.pieces._length;
-    Use& of_process = client.process->use;
-    client.use.asked += asked;
-    of_process.asked += asked;
-    if (client.use.asked > kAskedMax || of_process.asked > kAskedMaxOfProcess)
+    client.process->asked += asked;
+    if (client.process->asked > kAskedMax)
     {
         refuse(client.subscription.controller(), Refused::rate);
         return;
@@ -449,22 +446,18 @@ void DdsHost::on_controller_gone(const ControllerId& controller)
 }
 
 /// Called every kHalfLife.
-void DdsHost::forget_use()
+void DdsHost::forget()
 {
-    const auto fade = [](Use& use)
-    {
-        constexpr auto kTimesInASecond = std::chrono::seconds(1) / kHalfLife;
-        use.asked -= use.asked / kTimesInASecond;
-        use.got_bytes /= 2.0;
-    };
+    constexpr auto kTimesInASecond = std::chrono::seconds(1) / kHalfLife;
     std::erase_if(processes_, [](const auto& process) { return process.use_count() == 1; });
     for (const auto& process : processes_)
     {
-        fade(process->use);
+        process->asked -= process->asked / kTimesInASecond;
+        process->got_bytes /= 2.0;
     }
     for (Client& client : clients_)
     {
-        fade(client.use);
+        client.got_bytes /= 2.0;
     }
 }
 
@@ -480,7 +473,7 @@ DdsHost::Client* DdsHost::next_to_serve()
             continue;
         }
         const auto got = [](const Client& who)
-        { return std::pair(who.process->use.got_bytes, who.use.got_bytes); };
+        { return std::pair(who.process->got_bytes, who.got_bytes); };
         next = next == nullptr || got(client) < got(*next) ? &client : next;
     }
     return next;
@@ -503,8 +496,8 @@ void DdsHost::serve(Clock::time_point end)
             continue;
         }
         const auto bytes = static_cast<double>(subscription.bytes_sent() - sent_before) + kASample;
-        client->use.got_bytes += bytes;
-        client->process->use.got_bytes += bytes;
+        client->got_bytes += bytes;
+        client->process->got_bytes += bytes;
     }
 }
 

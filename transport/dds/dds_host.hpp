@@ -77,24 +77,19 @@ private:
         under_way, ///< It was let in; the objects are on their way to it.
         done,
     };
-    /// What somebody asked for in the last second and got of late.
-    struct Use
-    {
-        std::uint64_t asked{0};
-        double got_bytes{0.0};
-    };
     /// All controllers of one process, as it names itself.
     struct Process
     {
         std::string name;
-        Use use{};
+        std::uint64_t asked{0};     ///< Pieces, in the last second.
+        double got_bytes{0.0};      ///< Recently; halved every 250 ms.
         Clock::time_point let_in{}; ///< When the last one was.
     };
     struct Client
     {
         Subscription subscription;
         std::shared_ptr<Process> process;
-        Use use{};
+        double got_bytes{0.0}; ///< Likewise.
         Joining joining{Joining::not_wanted};
         Clock::time_point let_in{};
         std::uint64_t writer{0}; ///< Handle of the last request's.
@@ -121,7 +116,7 @@ private:
     /// said so, and at some others in turn.
     void look_for_gone();
     void on_controller_gone(const ControllerId& controller);
-    void forget_use();
+    void forget();
     void serve(Clock::time_point end);
     [[nodiscard]] Client* next_to_serve();
     void let_in();

@@ -46,8 +46,7 @@ std::string reason_of(Refused reason, std::uint32_t number)
     case Refused::telemetry:
         return "telemetry with a name or numbers that are none, or of too many controllers";
     case Refused::rate:
-        return "more pieces asked for in a second than a host takes in of one controller or "
-               "process";
+        return "more pieces asked for in a second than a host takes in of one process";
     case Refused::not_served:
     case Refused::controller:
         break;

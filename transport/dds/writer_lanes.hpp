@@ -44,8 +44,8 @@ public:
     [[nodiscard]] std::shared_ptr<void> try_renew(Backoff::Clock::time_point now);
 
     static constexpr std::size_t kLanes = 4;
-    /// So much a reader that never answers costs its writer, some seconds of a stream.
-    static constexpr std::size_t kUnackedMax = std::size_t{4} << 20U;
+    /// So much a reader that never answers costs its writer, a second of a stream.
+    static constexpr std::size_t kUnackedMax = std::size_t{1} << 20U;
     /// Samples before a next lane is made.
     static constexpr std::uint64_t kSamplesALane = 64;
 
