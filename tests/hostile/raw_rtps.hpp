@@ -13,6 +13,12 @@ class RawRtps
 {
 public:
     using Datagram = std::vector<std::uint8_t>;
+    using Guid = std::array<std::uint8_t, 16>;
+
+    /// A sample of a host's motion, in the name of that writer, with the sequence number 2^40.
+    [[nodiscard]] static Datagram later_motion(const Guid& writer, std::uint64_t host_epoch);
+    /// A heartbeat in its name: all before 2^40 is gone.
+    [[nodiscard]] static Datagram later_heartbeat(const Guid& writer, std::uint64_t host_epoch);
 
     /// Listens at one of the ports where participants of the domain are looked for.
     explicit RawRtps(std::uint32_t domain);
@@ -30,6 +36,9 @@ public:
     [[nodiscard]] Datagram any_heard();
     /// With some bytes changed, cut or longer; sizes and magic as they were.
     [[nodiscard]] Datagram any_garbled();
+    /// What one said to be found, as one that nobody has seen and whose lease never ends. What it
+    /// heard has to have that.
+    [[nodiscard]] Datagram another_participant();
     /// A header of RTPS and nonsense.
     [[nodiscard]] Datagram nonsense();
 
