@@ -73,7 +73,7 @@ int touch(const Options& options)
         }
         print_out(fmt::format("histograms  {}\n", options.histograms_folder));
     }
-    if (done.value().recording_error || done.value().trace_error)
+    if (done.value().recording_error || done.value().trace_error || done.value().has_other_device)
     {
         return kExitFailed;
     }

@@ -34,6 +34,8 @@ namespace
 constexpr Duration kMarginMost = microseconds(100);
 /// Between two looks at the loop.
 constexpr std::chrono::milliseconds kLook{20};
+/// Descriptions of another device in a row: half a second of a driver that waits.
+constexpr std::uint64_t kOthersMax = 5;
 
 FinishedRun empty_run(const Controller& controller, const Options& options)
 {
@@ -258,6 +260,7 @@ void SessionRun::watch(const std::string& what)
         {
             take_events();
             tell_of_strangers();
+            tell_of_guardian();
         }
         std::this_thread::sleep_for(kLook);
     }
@@ -266,7 +269,6 @@ void SessionRun::watch(const std::string& what)
 
 /// What loop and supervisor have noted since the last time.
 void SessionRun::take_events()
-            tell_of_guardian();
 {
     std::vector<SafetyEvent> events;
     loop_.safety_log().take_into(events);
@@ -306,7 +308,16 @@ void SessionRun::tell_of_strangers()
         {
             continue;
         }
-        const auto refused = udp->traffic().refused;
+        const UdpTraffic traffic = udp->traffic();
+        const auto& refused = traffic.refused;
+        if (traffic.others >= kOthersMax && !std::exchange(done_.has_other_device, true))
+        {
+            loop_.stop();
+            device_log_.write(
+                fmt::format("tool {}: its device, {}, is gone, and another one describes itself at "
+                            "its port; a run keeps the limits of its first device, so it ends",
+                            tool, udp->info().name));
+        }
         const auto all = std::accumulate(refused.begin(), refused.end(), std::uint64_t{0});
         if (all >= std::max<std::uint64_t>(10 * strangers_[tool], 1))
         {
@@ -316,6 +327,16 @@ void SessionRun::tell_of_strangers()
                 fmt::format("tool {}: {} datagrams to its device's port refused, most of them: {}",
                             tool, all, udp::text_of(static_cast<udp::DatagramFault>(most))));
         }
+    }
+}
+
+/// A line when it is gone: the run goes on, and fades as long as this process lives.
+void SessionRun::tell_of_guardian()
+{
+    if (parts_.guardian != nullptr && parts_.guardian->has_died())
+    {
+        log_line("the guardian is gone; when hrtc is killed, nothing brakes its devices");
+        parts_.guardian = nullptr;
     }
 }
 
@@ -368,16 +389,6 @@ FinishedRun SessionRun::finish()
     haptic_thread_->join();
     brake_.reset();
     supervisor_.stop();
-/// A line when it is gone: the run goes on, and fades as long as this process lives.
-void SessionRun::tell_of_guardian()
-{
-    if (parts_.guardian != nullptr && parts_.guardian->has_died())
-    {
-        log_line("the guardian is gone; when hrtc is killed, nothing brakes its devices");
-        parts_.guardian = nullptr;
-    }
-}
-
     const bool is_supervised = supervisor_thread_.has_value();
     if (is_supervised)
     {
