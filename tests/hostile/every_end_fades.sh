@@ -11,15 +11,28 @@ readonly device=$4 recording=$5 bare=$6 stand_in=$7
 readonly port=$((20000 + $$ % 20000))
 model bumpy-sphere-20000 bumpy.spm
 
-options=(--transport file --model bumpy.spm --device-frame 0,0,0.06 --duration 600)
+options=(--transport file --model bumpy.spm --device-frame "0,0,0.06" --duration 600)
 case $device in
     udp)
         # The driver of the documents, which keeps what its motors do.
-        sed -e 's/^controller.setblocking(False)$/&\ntold = open("motors.log", "a", buffering=1)/' \
-            -e 's/^ *last, newest = number, .*$/&\n                    tell(force, "force")/' \
-            -e 's/^def newest_force(last):$/def tell(force, who):\n    print(time.monotonic_ns(), *force[:3], who, file=told)\n\n&/' \
-            -e 's/^        force, state = \[0.0\] \* 6, 0$/        if any(force[:3]):\n            tell([0.0] * 3, "watchdog")\n&/' \
-            "$here/../../docs/examples/udp_driver.py" >driver.py
+        python3 - "$here/../../docs/examples/udp_driver.py" >driver.py <<'EDIT'
+import sys
+text = open(sys.argv[1], encoding="utf-8").read()
+for old, new in (
+        ("controller.setblocking(False)\n",
+         'controller.setblocking(False)\ntold = open("motors.log", "a", buffering=1)\n'),
+        ("def newest_force(last):\n",
+         "def tell(force, who):\n    print(time.monotonic_ns(), *force[:3], who, file=told)\n\n"
+         "def newest_force(last):\n"),
+        ("(number, given, force, state)\n",
+         '(number, given, force, state)\n                    tell(force, "force")\n'),
+        ("        force, state = [0.0] * 6, 0\n",
+         "        if any(force[:3]):\n            tell([0.0] * 3, 'watchdog')\n"
+         "        force, state = [0.0] * 6, 0\n")):
+    assert text.count(old) == 1, old
+    text = text.replace(old, new)
+print(text, end="")
+EDIT
         options+=(--device "udp:$port" --wait "$patience_s")
         ;;
     plugin) options+=(--device "plugin:$recording,motors.log") ;;
@@ -91,6 +104,16 @@ case $device in
         ((code == 0)) || fault "without a reader hrtc ended with $code"
         check report.json frames '>' 4000
 
+        # Nor do the other programs end so.
+        code=0
+        "$publish" --domain "$domain" --watch --seconds 3 bumpy.spm > >(head -n 1 >host.log) 2>&1 \
+            || code=$?
+        ((code == 0)) || fault "without a reader spm_publish ended with $code"
+        grep -q "^serving 'bumpy'" host.log || fault "the host said: $(<host.log)"
+        code=0
+        "$1/spm_view" --domain "$domain" --port 0 --seconds 3 > >(exec true) 2>&1 || code=$?
+        ((code == 0)) || fault "without a reader spm_view ended with $code"
+
         # A recording that grows beyond what is allowed: a line, and the force goes on.
         fresh_motors
         (
@@ -105,7 +128,7 @@ case $device in
         code=0
         wait "$controller" || code=$?
         ((code == 2)) || fault "with a recording too large hrtc ended with $code: $(cat hrtc.log)"
-        [[ $(grep -c "^hrtc: --record: run.rec: can't be written: File too large$" hrtc.log) == 1 ]] \
+        has_lines "hrtc: --record: run.rec: can't be written: File too large" hrtc.log 1 \
             || fault "of a recording too large: $(cat hrtc.log)"
         ! ls run.rec* >/dev/null 2>&1 || fault 'half a recording is left'
         ;;

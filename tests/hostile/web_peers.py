@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Copyright the Tactus authors.
 """web_peers.py URL ATTACK: what a page, or any program of this machine, may do to the server of a
-URL. With `parts` four ask at once for 300 parts of what is there, and each answer's size is printed.
+URL. With `parts` four ask at once for 300 parts of what is there; each answer's size is printed.
 With `slow`, 40 connections stay, are made again when they are closed, and send a byte of a request
 now and then, until standard input ends; `ready` is printed when all are there."""
 import select
