@@ -8,6 +8,7 @@ namespace tactus
 /// The other end of a device, in a process of its own: what takes the force away when the program
 /// that drives the device has died without doing so. It is made before the device is opened, and
 /// holds all that its brake() needs, since by then there may be no memory and no file to be had.
+/// For the one thread of that process.
 class DeviceGuard
 {
 public:

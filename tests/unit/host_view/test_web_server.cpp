@@ -144,7 +144,8 @@ TEST_F(WebServerTest, sends_no_parts_however_many_are_asked_for)
 
 TEST_F(WebServerTest, answers_one_that_asks_while_forty_keep_silent)
 {
-    tactus::test::expect_answer_among_silent(sut_->port(), 40, [this] { return status_of(get("/state")); });
+    tactus::test::expect_answer_among_silent(sut_->port(), 40,
+                                             [this] { return status_of(get("/state")); });
 }
 
 TEST_F(WebServerTest, gives_up_a_request_that_comes_byte_by_byte)
