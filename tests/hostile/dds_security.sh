@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # dds_security.sh BIN CHECK_REPORT SANITIZER ATTACKER KEYS: the recipe of docs/security.md, made by
 # KEYS. Host and controller with certificates work as without; a program without one sees nobody,
-# and one with a controller's can't speak as a host.
+# and one with a controller's can't speak as a host. A host is known by its certificate.
 source "$(dirname "$0")/../integration/hrtc/common.sh"
 readonly attacker=$4 keys=$5
 if [[ -z "$(find /usr/lib -name libdds_security_auth.so -print -quit)" ]]; then
@@ -48,5 +48,28 @@ check report.json frames '>' 1000 wire.host_lost == 0 models.0.pieces_refused ==
     models.0.bytes_received '>' 10000 refused == 0
 check_contact report.json force.contact_share 0.3
 check_clean report.json
+stop_publisher
+
+# A host that is started again has the same certificate: it is the same one, without --failover.
+secured_publisher() {
+    CYCLONEDDS_URI=file://$PWD/roles/host.xml start_publisher bumpy.gltf --scene toy --watch
+}
+cat >bumpy.gltf <<'GLTF'
+{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [
+    {"name": "toy", "extras": {"tactus": {"model": "bumpy.spm"}}}]}
+GLTF
+secured_publisher
+CYCLONEDDS_URI=file://$PWD/roles/controller.xml start_hrtc --scene toy --name hand \
+    --device sim:touch --duration 600 --wait "$patience_s" --report report.json
+wait_for_contact publish.log hand
+stop KILL "$publisher"
+wait_for_line hrtc.log "the server of scene 'toy', spm_publish"
+secured_publisher
+wait_for_line hrtc.log "scene 'toy' is followed as spm_publish"
+wait_for_contact publish.log hand
+stop_hrtc
+grep -q "scene 'toy' is followed as spm_publish (process $publisher on .*, cert:[0-9a-f]\{12\})" \
+    hrtc.log || fault 'the line names no certificate'
+check report.json servers.lost == 1 servers.replaced == 1 servers.not_followed == 0
 stop_publisher
 finish

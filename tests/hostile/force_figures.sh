@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# shellcheck shell=bash
+# shellcheck shell=bash disable=SC2154 # It is sourced after common.sh.
 # A recording's force, period by period; sourced after common.sh.
 
 # export_force NAME: of NAME.rec; into NAME.csv.
