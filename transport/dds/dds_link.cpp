@@ -247,8 +247,16 @@ void DdsLink::put_first(const Catalogue::Offer& offer)
                         is_trusted(offer_.host_epoch) ? "doesn't answer" : "sends what is wrong",
                         participants.name_of(offer.host)));
     }
-    offer_ = offer;
+    take_over(offer);
     first_heard_ = Clock::now();
+}
+
+/// The model keeps its name, whatever that host calls it.
+void DdsLink::take_over(const Catalogue::Offer& offer)
+{
+    const std::string name = offer_.name;
+    offer_ = offer;
+    offer_.name = name;
     exchange_.meet(offer.host_epoch);
 }
 
@@ -289,8 +297,7 @@ void DdsLink::follow_host()
 void DdsLink::adopt(const Catalogue::Offer& offer)
 {
     const bool is_restarted = offer.host_epoch != offer_.host_epoch;
-    offer_ = offer;
-    exchange_.meet(offer.host_epoch);
+    take_over(offer);
     state_ = LinkState::connected;
     ++session_;
     log_.write(fmt::format("model '{}' is served again{}", offer_.name,

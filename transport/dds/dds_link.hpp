@@ -64,6 +64,7 @@ private:
     void adopt(const Catalogue::Offer& offer);
     void ask_others();
     void put_first(const Catalogue::Offer& offer);
+    void take_over(const Catalogue::Offer& offer);
     void distrust_host(std::uint64_t host);
     [[nodiscard]] bool is_trusted(std::uint64_t host) const;
     [[nodiscard]] std::vector<const Catalogue::Offer*> others() const;
