@@ -273,6 +273,7 @@ Json scene_of(const RunRecord& record)
             {"feels", record.run.scene_news.feels},
             {"limited", record.run.scene_news.limited},
             {"passed_over", record.run.scene_news.passed_over},
+            {"motion_regained", record.run.scene_news.motion_regained},
             {"walks", statistics.scene_walks},
             {"models", models},
             {"changes_refused", refused}};

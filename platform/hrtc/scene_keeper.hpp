@@ -28,11 +28,12 @@ namespace tactus::hrtc
 /// What has become of a scene's objects since the start.
 struct SceneNewsCounts
 {
-    std::uint64_t came{0};        ///< Objects that the frame was told of,
-    std::uint64_t went{0};        ///< and that left it.
-    std::uint64_t feels{0};       ///< Other materials that it was told of.
-    std::uint64_t limited{0};     ///< Materials that are felt otherwise than their server says.
-    std::uint64_t passed_over{0}; ///< That can't be touched: no such model, or no room.
+    std::uint64_t came{0};            ///< Objects that the frame was told of,
+    std::uint64_t went{0};            ///< and that left it.
+    std::uint64_t feels{0};           ///< Other materials that it was told of.
+    std::uint64_t limited{0};         ///< Materials that are felt otherwise than their server says.
+    std::uint64_t passed_over{0};     ///< That can't be touched: no such model, or no room.
+    std::uint64_t motion_regained{0}; ///< See dds::SceneReader.
 };
 
 /// Keeps our objects where the hosts have theirs. Transport thread.
@@ -65,7 +66,12 @@ public:
     [[nodiscard]] const dds::PoseCounts& counts(std::size_t model) const { return counts_[model]; }
     /// When a host that shows the model was heard last; 0: never.
     [[nodiscard]] MonotonicTime heard(std::size_t model) const { return heard_[model]; }
-    [[nodiscard]] const SceneNewsCounts& news() const noexcept { return news_; }
+    [[nodiscard]] SceneNewsCounts news() const noexcept
+    {
+        SceneNewsCounts counts = news_;
+        counts.motion_regained = reader_->motion_regained();
+        return counts;
+    }
 
 private:
     /// An object of a host, and which of those under its number.
