@@ -15,7 +15,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <string>
+#include <tuple>
 #include <utility>
 
 namespace tactus::test
@@ -287,7 +287,8 @@ TEST(ForcePipeline, lets_an_honest_touch_through_as_it_is)
         tool.output.in_contact = false;
         tool.steps(200); // Until the gain is whole.
         tool.output.stiffness_n_per_m = stiffness;
-        const auto depth_m = [speed](int i) { return speed * kPeriod_s * std::min(i, 60 - i); };
+        const double way_m = speed * kPeriod_s;
+        const auto depth_m = [way_m](int i) { return way_m * std::min(i, 60 - i); };
         const double deepest = device.force_max_n / stiffness;
         for (int i = 1; i < 60; ++i)
         {
