@@ -207,7 +207,7 @@ TACTUS_CALL tactus_result tactus_frame_load(tactus_frame* frame, tactus_error* e
 #define TACTUS_SQUEEZED 4U   /* Objects leave it no room; its force must fade. */
 #define TACTUS_CROWDED 8U    /* More touches it than the limits allow. */
 #define TACTUS_HELD_BACK 16U /* It went as far as the surface is known. */
-#define TACTUS_OUTRUN 32U    /* What it touches is placed too far from where it is, likewise. */
+#define TACTUS_OUTRUN 32U    /* What it may touch is placed too far from where it is, likewise. */
 
 typedef enum tactus_kind
 {
@@ -247,12 +247,13 @@ typedef struct tactus_poses
  * and wait for a file. */
 TACTUS_CALL tactus_result tactus_frame_run(tactus_frame* frame, const tactus_poses* poses,
                                            tactus_error* error);
-/* With the next frame the object stands there; while a tool touches it, it is carried there, by at
- * most object_speed_max_m_per_s where the tool is, with that frame and those after it: so no step
- * of a pose makes a force change faster than by stiffness x speed. Behind by more than 20 ms of
- * that, TACTUS_OUTRUN is true of the tool. The last place that was said counts. At most 64 of
- * these, of objects that are being carried, and of tactus_frame_feel() wait for one frame, of more
- * TACTUS_BUSY. On the thread of tactus_frame_run(), as is tactus_frame_state_of(). */
+/* With the next frame the object stands there. While a tool touches it, or may within 20 ms, it is
+ * carried there with that frame and those after it: no point of it in the tool's reach goes faster
+ * than object_speed_max_m_per_s, so no step of a pose makes a force change faster than by stiffness
+ * x speed. Behind by more than 20 ms of that, TACTUS_OUTRUN is true of a tool that it may touch in
+ * this frame. The last place that was said counts. At most 64 of these, of objects that are being
+ * carried, and of tactus_frame_feel() wait for one frame, of more TACTUS_BUSY. On the thread of
+ * tactus_frame_run(), as is tactus_frame_state_of(). */
 TACTUS_CALL tactus_result tactus_frame_place(tactus_frame* frame, uint32_t object,
                                              const tactus_pose* pose, tactus_error* error);
 
