@@ -211,7 +211,10 @@ void PieceExchange::keep_credit(Host& host)
         host.last_progress = now;
         if (++host.write_offs > 1) // It may be deaf to our writers, by a forged packet.
         {
-            static_cast<void>(wanted_->try_renew(now));
+            if (auto old = wanted_->try_renew(now))
+            {
+                old_wanted_ = std::move(old);
+            }
         }
     }
     const bool is_half_used = host.credit.granted() >= host.granted_sent + kCreditPieces / 2;

@@ -114,6 +114,7 @@ private:
     std::string controller_name_;
     ControllerId controller_;
     std::unique_ptr<WriterLanes> wanted_; ///< From create() on.
+    std::shared_ptr<void> old_wanted_; ///< Writers before the last renewal: hosts may go by them.
     Endpoint chunks_;
     std::vector<PieceReceiver*> receivers_;
     std::vector<Host> hosts_;

@@ -15,7 +15,7 @@ namespace
 {
 
 /// Longer than a lost datagram takes to be sent again.
-constexpr auto kOverdue = std::chrono::milliseconds(500);
+constexpr auto kOverdue = std::chrono::milliseconds(300);
 
 } // namespace
 

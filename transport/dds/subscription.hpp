@@ -57,7 +57,7 @@ public:
     /// Requests may come in another order than they were sent in: the counts only grow. Nobody has
     /// seen more than was sent, nor grants more than kCreditPieces beyond what it has seen.
     void set_credit(const Credit& credit) noexcept;
-    /// Makes new writers where pieces are missing for half a second that the controller says were
+    /// Makes new writers where pieces are missing for 300 ms that the controller says were
     /// sent and never came: who forged a packet in a writer's name has made its readers deaf to it.
     /// Returns what owns the old ones when it did so, which is less often each time; null else.
     [[nodiscard]] std::shared_ptr<void> try_heal(Backoff::Clock::time_point now);

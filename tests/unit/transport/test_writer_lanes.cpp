@@ -169,7 +169,7 @@ TEST_F(Lanes, that_are_renewed_are_one_other_writer_and_not_at_once_again)
     EXPECT_EQ(sut.try_renew(now + std::chrono::seconds(2)), nullptr) << "less often each time";
 }
 
-TEST_F(Lanes, are_renewed_where_pieces_stay_away_for_half_a_second)
+TEST_F(Lanes, are_renewed_where_pieces_stay_away_for_300_ms)
 {
     auto sut = Subscription::create(*host_, ControllerId{1}, "controller", 100).value();
     const auto start = Backoff::Clock::now();
@@ -177,11 +177,11 @@ TEST_F(Lanes, are_renewed_where_pieces_stay_away_for_half_a_second)
     EXPECT_EQ(sut.try_heal(start), nullptr);
     EXPECT_EQ(sut.try_heal(start + std::chrono::seconds(2)), nullptr);
     sut.set_credit({100, 228, 70});
-    EXPECT_EQ(sut.try_heal(start + std::chrono::milliseconds(2'400)), nullptr);
+    EXPECT_EQ(sut.try_heal(start + std::chrono::milliseconds(2'200)), nullptr);
     sut.set_credit({100, 228, 80}); // They came late.
-    EXPECT_EQ(sut.try_heal(start + std::chrono::milliseconds(2'600)), nullptr);
+    EXPECT_EQ(sut.try_heal(start + std::chrono::milliseconds(2'400)), nullptr);
     sut.set_credit({100, 228, 70});
-    EXPECT_NE(sut.try_heal(start + std::chrono::milliseconds(3'200)), nullptr);
+    EXPECT_NE(sut.try_heal(start + std::chrono::milliseconds(2'800)), nullptr);
     EXPECT_EQ(sut.try_heal(start + std::chrono::seconds(10)), nullptr) << "these were given up";
 }
 
