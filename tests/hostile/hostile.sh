@@ -132,7 +132,7 @@ case $attack in
         said=$(grep -c 'controller stranger' publish.log)
         ((said <= 40 * (SECONDS + 1))) || fault "$said lines of a stranger's visits"
         ;;
-    controllers_flooded) # More than a host takes of one process, and no window is larger than others'.
+    controllers_flooded) # More than a host takes in of one process.
         grep -q 'refused of attacker .*: more pieces asked for in a second' publish.log \
             || fault 'the host tells of no rate'
         ;;&
