@@ -81,19 +81,11 @@ FrameFault Tool::begin(const ToolState& sample, double period_s,
     const FrameFault fault = take(sample);
     is_still_ = fault == FrameFault::none && objects.empty() && !lost_object_ && !leapt_by_ &&
                 goal_ == last && goal_.velocity_m_per_s == Vec3(0.0, 0.0, 0.0);
-    motion_ = objects.empty() ? Motion{} : motion_of(objects);
     with(body_,
          [&](auto& body)
          {
              body.see(goal_);
-             const Similarity before = body.place();
-             body.carry(objects, goal_.elapsed_s);
-             if (!objects.empty())
-             {
-                 const Similarity now = body.place();
-                 motion_.carried_m = now.translation_m - before.translation_m;
-                 motion_.carried_rad = rotation_between(before.rotation, now.rotation);
-             }
+             let_carry(body, objects);
              way_left_m_ = spec_.speed_max_m_per_s * goal_.elapsed_s;
              stand(body);
          });
@@ -102,6 +94,23 @@ FrameFault Tool::begin(const ToolState& sample, double period_s,
     const double ahead_s = output_.in_contact && is_mesh(spec_) ? 0.0 : kApproachTime_s;
     stance_.approach_m = ahead_s * goal_.velocity_m_per_s;
     return fault;
+}
+
+/// What no object moves costs nothing here.
+void Tool::let_carry(auto& body, std::span<const NearObject> objects) noexcept
+{
+    has_motion_ = !objects.empty();
+    if (!has_motion_)
+    {
+        body.carry(objects, goal_.elapsed_s);
+        return;
+    }
+    motion_ = motion_of(objects);
+    const Similarity before = body.place();
+    body.carry(objects, goal_.elapsed_s);
+    const Similarity now = body.place();
+    motion_.carried_m = now.translation_m - before.translation_m;
+    motion_.carried_rad = rotation_between(before.rotation, now.rotation);
 }
 
 /// Where the body is now it looks as far as it may go for the goal.
@@ -245,7 +254,7 @@ ToolOutput Tool::finish(ToolOutput output, double clear_m) noexcept
     output.sample_fault = watch_.fault();
     output.clear_m = std::max(clear_m, 0.0);
     output.lost_object = lost_object_;
-    if (!lost_object_) // A jump is no motion that is believed.
+    if (has_motion_ && !lost_object_) // A jump is no motion that is believed.
     {
         output.object_way_m = motion_.object_way_m;
         output.object_turn_rad = motion_.object_turn_rad;

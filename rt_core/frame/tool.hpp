@@ -120,6 +120,7 @@ private:
     [[nodiscard]] static Body make_body(const ToolSpec& spec, RigidProxy::Planes* planes) noexcept;
     template <typename Function>
     static auto with(auto& body, const Function& function) noexcept;
+    void let_carry(auto& body, std::span<const NearObject> objects) noexcept;
     void stand(const auto& body) noexcept;
     [[nodiscard]] FrameFault take(const ToolState& sample) noexcept;
     [[nodiscard]] bool is_jump(const NearObject& object) const noexcept;
@@ -139,7 +140,8 @@ private:
     Vec3 began_m_{0.0, 0.0, 0.0}; ///< Its core's middle, when this frame or the last one began.
     double way_left_m_{0.0};      ///< In this frame, by the speed limit.
     ToolOutput output_;           ///< The last frame's.
-    Motion motion_;
+    Motion motion_;               ///< Of this frame, where has_motion_.
+    bool has_motion_{false};
     bool is_still_{false};
     std::uint32_t equal_outputs_{0};
     bool lost_object_{false}; ///< In this one, while it was: an object went or jumped.
