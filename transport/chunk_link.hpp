@@ -48,9 +48,9 @@ public:
     /// is still waiting.
     virtual void request(std::span<const ContentKey> keys, std::uint32_t generation) = 0;
 
-    /// Called in receive(), or after it for a base mesh that is whole: what came hasn't the hash that
-    /// it should have. Whether it is worth while to ask again: another source is asked from now on,
-    /// or may come.
+    /// Called in receive(), or after it for a base mesh that is whole: what came hasn't the hash
+    /// that it should have. Whether it is worth while to ask again: another source is asked from
+    /// now on, or may come.
     [[nodiscard]] virtual bool distrust(ContentKey /*key*/) { return false; }
 
     /// Hands over what has come in. Also the place for the link's own upkeep: call it often (a few

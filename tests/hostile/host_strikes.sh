@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# host_strikes.sh BIN CHECK_REPORT SANITIZER LYING_HOST ATTACK: the host of a scene is honest until a
-# tool is near what it shows. The force is looked at period by period, in recordings, on a device of
+# host_strikes.sh BIN CHECK_REPORT SANITIZER LYING_HOST ATTACK: the host of a scene is honest until
+# a tool is near what it shows. The force is looked at period by period, in recordings, on a device of
 # the omega class and one of the touch class, beside that of an honest host.
 source "$(dirname "$0")/../integration/hrtc/common.sh"
 readonly lying_host=$4 attack=$5
@@ -12,8 +12,8 @@ declare -A growth fall share excess
 declare -A growth_max_n=([omega]=0.5 [touch]=0.25)
 [[ "$attack" != drag ]] || growth_max_n=([omega]=0.55 [touch]=0.37)
 readonly growth_max_n
-# The law on change (docs/safety.md): the wall in N/m, which is the device's or 500, times the way of
-# the hand and 0.5 mm a period of the object, and a hundredth of the device's force in N.
+# The law on change (docs/safety.md): the wall in N/m, which is the device's or 500, times the way
+# of the hand and 0.5 mm a period of the object, and a hundredth of the device's force in N.
 readonly -A wall_n_per_m=([omega]=500 [touch]=400) slew_n=([omega]=0.12 [touch]=0.033)
 
 # run_against NAME DEVICE ATTACK [NUMBER]: a run of some seconds with that host. Its force is in
@@ -56,7 +56,8 @@ force_figures() {
         }
         {
             n = sqrt(square("tool0.sent_force_world_n"))
-            way = sqrt(($at[hand ".x"] - x) ^ 2 + ($at[hand ".y"] - y) ^ 2 + ($at[hand ".z"] - z) ^ 2)
+            way = sqrt(($at[hand ".x"] - x) ^ 2 + ($at[hand ".y"] - y) ^ 2 \
+                       + ($at[hand ".z"] - z) ^ 2)
             periods = $at["tool0.elapsed_periods"] > 1 ? $at["tool0.elapsed_periods"] : 1
             touches = $at["tool0.in_contact"] == "true" || $at["tool0.in_contact"] == 1
             grown = (n - before) / periods

@@ -14,7 +14,7 @@ namespace tactus::dds
 {
 
 /// In the topics' names: who speaks another one is not heard.
-inline constexpr std::uint32_t kProtocolVersion = 4;
+inline constexpr std::uint32_t kProtocolVersion = 5;
 
 /// Names of pieces in one request.
 inline constexpr std::uint32_t kMaxWishes = 256;

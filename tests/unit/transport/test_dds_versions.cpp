@@ -190,7 +190,7 @@ TEST_F(DdsVersions, who_speaks_another_version_is_named_once_by_both_sides_and_p
     tactus_v4_CatalogueEntry entry = {};
     std::strcpy(static_cast<char*>(entry.name), "old");
     ASSERT_EQ(dds_write(host_writer.get(), &entry), DDS_RETCODE_OK);
-    const std::string line = "is refused: it speaks protocol version 1, this build 4";
+    const std::string line = "is refused: it speaks protocol version 1, this build 5";
     EXPECT_TRUE(step_until(
         [&] {
             return lines.find(line) != std::string::npos &&
