@@ -58,7 +58,7 @@ sign governance
 
 topics() { # topics TOPIC...: as elements.
     printf '<topics>'
-    printf '<topic>tactus/v4/%s</topic>' "$@"
+    printf '<topic>tactus/v5/%s</topic>' "$@"
     printf '</topics><partitions><partition>*</partition></partitions>'
 }
 

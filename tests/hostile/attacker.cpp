@@ -58,11 +58,11 @@ class Attacker
 public:
     explicit Attacker(std::uint32_t of_domain) : Attacker(of_domain, {})
     {
-        catalogue_ = reader("tactus/v4/catalogue", tactus_v4_CatalogueEntry_desc);
-        wanted_ = reader("tactus/v4/wanted", tactus_v4_Wanted_desc);
+        catalogue_ = reader("tactus/v5/catalogue", tactus_v5_CatalogueEntry_desc);
+        wanted_ = reader("tactus/v5/wanted", tactus_v5_Wanted_desc);
     }
     /// Another participant of the same process, which knows what that one has seen.
-    Attacker(std::uint32_t of_domain, const tactus_v4_CatalogueEntry& seen)
+    Attacker(std::uint32_t of_domain, const tactus_v5_CatalogueEntry& seen)
         : host(seen)
         , domain(of_domain)
         , participant_(checked(dds_create_participant(of_domain, nullptr, nullptr)))
@@ -190,8 +190,8 @@ public:
 
     std::vector<std::uint16_t> ports; ///< The others'.
     std::shared_ptr<RawRtps> raw;     ///< For attacks without DDS.
-    tactus_v4_CatalogueEntry host{};  ///< What was seen.
-    tactus_v4_Wanted victim{};
+    tactus_v5_CatalogueEntry host{};  ///< What was seen.
+    tactus_v5_Wanted victim{};
     std::uint32_t domain;
 
 private:
@@ -237,9 +237,9 @@ private:
 /// Returns what is done again and again.
 using Attack = std::function<std::function<void(std::uint64_t turn)>(Attacker&)>;
 
-tactus_v4_Placement placement(double x_m)
+tactus_v5_Placement placement(double x_m)
 {
-    tactus_v4_Placement place = {};
+    tactus_v5_Placement place = {};
     place.rotation[3] = 1.0;
     place.translation_m[0] = x_m;
     place.scale = 1.0;
@@ -252,20 +252,20 @@ Attack move_object(std::uint64_t serial, double x_m)
     return [=](Attacker& self)
     {
         const auto motion =
-            self.writer("tactus/v4/motion", tactus_v4_Motion_desc, self.host_partition(), true);
+            self.writer("tactus/v5/motion", tactus_v5_Motion_desc, self.host_partition(), true);
         const auto records =
-            self.writer("tactus/v4/objects", tactus_v4_ObjectRecord_desc, self.host_partition());
+            self.writer("tactus/v5/objects", tactus_v5_ObjectRecord_desc, self.host_partition());
         return [=, &self](std::uint64_t turn)
         {
-            tactus_v4_MovedObject moved{0, 1, placement(turn % 2 == 0 ? x_m : 0.0)};
-            tactus_v4_Motion sample = {};
+            tactus_v5_MovedObject moved{0, 1, placement(turn % 2 == 0 ? x_m : 0.0)};
+            tactus_v5_Motion sample = {};
             sample.host_epoch = self.host.host_epoch;
             sample.serial = serial == 0 ? 1'000'000 + turn : serial;
             sample.host_time_ns = static_cast<std::int64_t>(turn) * 4'000'000;
             sample.objects = 1;
             sample.moved = {1, 1, &moved, false};
             dds_write(motion, &sample);
-            tactus_v4_ObjectRecord record = {};
+            tactus_v5_ObjectRecord record = {};
             record.host_epoch = self.host.host_epoch;
             record.generation = 1;
             record.serial = sample.serial;
@@ -281,7 +281,7 @@ Attack dispose_catalogue()
 {
     return [](Attacker& self)
     {
-        const auto writer = self.writer("tactus/v4/catalogue", tactus_v4_CatalogueEntry_desc, "");
+        const auto writer = self.writer("tactus/v5/catalogue", tactus_v5_CatalogueEntry_desc, "");
         return [=, &self](std::uint64_t) { dds_dispose(writer, &self.host); };
     };
 }
@@ -291,10 +291,10 @@ Attack forge_catalogue()
 {
     return [](Attacker& self)
     {
-        const auto writer = self.writer("tactus/v4/catalogue", tactus_v4_CatalogueEntry_desc, "");
+        const auto writer = self.writer("tactus/v5/catalogue", tactus_v5_CatalogueEntry_desc, "");
         return [=, &self](std::uint64_t)
         {
-            tactus_v4_CatalogueEntry entry = self.host;
+            tactus_v5_CatalogueEntry entry = self.host;
             entry.model_hash[0] ^= 1U;
             dds_write(writer, &entry);
         };
@@ -313,10 +313,10 @@ Attack spam_catalogue()
 {
     return [](Attacker& self)
     {
-        const auto writer = self.writer("tactus/v4/catalogue", tactus_v4_CatalogueEntry_desc, "");
+        const auto writer = self.writer("tactus/v5/catalogue", tactus_v5_CatalogueEntry_desc, "");
         return [=, &self](std::uint64_t turn)
         {
-            tactus_v4_CatalogueEntry entry = self.host;
+            tactus_v5_CatalogueEntry entry = self.host;
             std::snprintf(static_cast<char*>(entry.name), sizeof(entry.name), "bogus-%llu",
                           static_cast<unsigned long long>(turn));
             entry.model = number_in(turn);
@@ -332,10 +332,10 @@ Attack spam_wanted(bool right_epoch)
 {
     return [=](Attacker& self)
     {
-        const auto writer = self.writer("tactus/v4/wanted", tactus_v4_Wanted_desc, "stranger");
+        const auto writer = self.writer("tactus/v5/wanted", tactus_v5_Wanted_desc, "stranger");
         return [=, &self](std::uint64_t turn)
         {
-            tactus_v4_Wanted wanted = {};
+            tactus_v5_Wanted wanted = {};
             std::memcpy(wanted.controller, self.own().data(), self.own().size());
             std::memcpy(wanted.controller, &turn, sizeof(turn));
             wanted.host_epoch = self.host.host_epoch + (right_epoch ? 0 : 1 + turn);
@@ -352,15 +352,15 @@ Attack forge_wanted()
     return [](Attacker& self)
     {
         const auto writer =
-            self.writer("tactus/v4/wanted", tactus_v4_Wanted_desc, self.victim_name());
+            self.writer("tactus/v5/wanted", tactus_v5_Wanted_desc, self.victim_name());
         return [=, &self](std::uint64_t turn)
         {
-            std::array<tactus_v4_PieceName, 200> names{};
+            std::array<tactus_v5_PieceName, 200> names{};
             for (std::uint32_t i = 0; i < names.size(); ++i)
             {
                 names.at(i) = {0, 2, i};
             }
-            tactus_v4_Wanted wanted = self.victim;
+            tactus_v5_Wanted wanted = self.victim;
             wanted.generation = static_cast<std::uint32_t>(1'000'000 + turn);
             wanted.seen = wanted.received = 0;
             wanted.granted = UINT64_MAX;
@@ -375,10 +375,10 @@ Attack dispose_wanted()
     return [](Attacker& self)
     {
         const auto writer =
-            self.writer("tactus/v4/wanted", tactus_v4_Wanted_desc, self.victim_name());
+            self.writer("tactus/v5/wanted", tactus_v5_Wanted_desc, self.victim_name());
         return [=, &self](std::uint64_t)
         {
-            tactus_v4_Wanted wanted = self.victim;
+            tactus_v5_Wanted wanted = self.victim;
             wanted.pieces = {};
             dds_dispose(writer, &wanted);
         };
@@ -391,10 +391,10 @@ Attack dispose_object()
     return [](Attacker& self)
     {
         const auto writer =
-            self.writer("tactus/v4/objects", tactus_v4_ObjectRecord_desc, self.host_partition());
+            self.writer("tactus/v5/objects", tactus_v5_ObjectRecord_desc, self.host_partition());
         return [=, &self](std::uint64_t)
         {
-            tactus_v4_ObjectRecord record = {};
+            tactus_v5_ObjectRecord record = {};
             record.host_epoch = self.host.host_epoch;
             dds_dispose(writer, &record);
         };
@@ -407,10 +407,10 @@ Attack spam_objects()
     return [](Attacker& self)
     {
         const auto writer =
-            self.writer("tactus/v4/objects", tactus_v4_ObjectRecord_desc, self.host_partition());
+            self.writer("tactus/v5/objects", tactus_v5_ObjectRecord_desc, self.host_partition());
         return [=, &self](std::uint64_t turn)
         {
-            tactus_v4_ObjectRecord record = {};
+            tactus_v5_ObjectRecord record = {};
             record.host_epoch = self.host.host_epoch;
             record.object = number_in(turn);
             record.generation = 1'000;
@@ -431,7 +431,7 @@ Attack forge_pieces()
     return [](Attacker& self)
     {
         const auto writer =
-            self.writer("tactus/v4/chunks", tactus_v4_Pieces_desc, self.victim_partition());
+            self.writer("tactus/v5/chunks", tactus_v5_Pieces_desc, self.victim_partition());
         return [=, &self](std::uint64_t turn)
         {
             std::array<std::uint8_t, 4'000> bytes{};
@@ -439,7 +439,7 @@ Attack forge_pieces()
             bytes[20] = 2; // A chunk.
             bytes[24] = static_cast<std::uint8_t>(turn);
             bytes[28] = 100;
-            tactus_v4_Pieces pieces = {};
+            tactus_v5_Pieces pieces = {};
             pieces.sent = UINT64_MAX;
             pieces.payload = {bytes.size(), bytes.size(), bytes.data(), false};
             for (const std::uint64_t epoch : {self.host.host_epoch, self.own_epoch()})
@@ -456,9 +456,9 @@ Attack replay_pieces()
 {
     return [](Attacker& self)
     {
-        const auto from = self.reader("tactus/v4/chunks", tactus_v4_Pieces_desc);
+        const auto from = self.reader("tactus/v5/chunks", tactus_v5_Pieces_desc);
         const auto writer =
-            self.writer("tactus/v4/chunks", tactus_v4_Pieces_desc, self.victim_partition());
+            self.writer("tactus/v5/chunks", tactus_v5_Pieces_desc, self.victim_partition());
         return [=](std::uint64_t)
         {
             std::array<void*, 4> samples{};
@@ -485,10 +485,10 @@ Attack forge_telemetry()
     return [](Attacker& self)
     {
         const auto writer =
-            self.writer("tactus/v4/telemetry", tactus_v4_Telemetry_desc, self.victim_name(), true);
+            self.writer("tactus/v5/telemetry", tactus_v5_Telemetry_desc, self.victim_name(), true);
         return [=, &self](std::uint64_t turn)
         {
-            tactus_v4_Telemetry news = {};
+            tactus_v5_Telemetry news = {};
             std::memcpy(news.controller, self.victim.controller, sizeof(news.controller));
             std::strcpy(static_cast<char*>(news.controller_name), "victim");
             news.serial = UINT64_MAX;
@@ -507,10 +507,10 @@ Attack visit()
 {
     return [](Attacker& self)
     {
-        const auto writer = self.writer("tactus/v4/wanted", tactus_v4_Wanted_desc, "stranger");
+        const auto writer = self.writer("tactus/v5/wanted", tactus_v5_Wanted_desc, "stranger");
         return [=, &self](std::uint64_t turn)
         {
-            tactus_v4_Wanted wanted = {};
+            tactus_v5_Wanted wanted = {};
             std::memcpy(wanted.controller, self.own().data(), self.own().size());
             wanted.host_epoch = self.host.host_epoch;
             wanted.granted = 128;
@@ -540,19 +540,19 @@ Attack crowd_of_controllers()
         for (int i = 0; i < 50; ++i)
         {
             auto self = std::make_unique<Attacker>(first.domain, first.host);
-            const auto reader = self->reader("tactus/v4/chunks", tactus_v4_Pieces_desc,
+            const auto reader = self->reader("tactus/v5/chunks", tactus_v5_Pieces_desc,
                                              self->own_partition("crowd"));
-            const auto writer = self->writer("tactus/v4/wanted", tactus_v4_Wanted_desc, "crowd");
+            const auto writer = self->writer("tactus/v5/wanted", tactus_v5_Wanted_desc, "crowd");
             members->push_back({std::move(self), writer, reader, 0});
         }
         return [=](std::uint64_t turn)
         {
-            std::array<tactus_v4_PieceName, 256> names{};
+            std::array<tactus_v5_PieceName, 256> names{};
             for (std::uint32_t i = 0; i < names.size(); ++i)
             {
                 names.at(i) = {0, 2, i};
             }
-            tactus_v4_Wanted wanted = {};
+            tactus_v5_Wanted wanted = {};
             wanted.host_epoch = members->front().self->host.host_epoch;
             wanted.generation = static_cast<std::uint32_t>(turn);
             wanted.objects = 1;
@@ -569,7 +569,7 @@ Attack crowd_of_controllers()
                 dds_sample_info_t info = {};
                 for (; dds_take(member.reader, &sample, &info, 1, 1) == 1; sample = nullptr)
                 {
-                    member.seen = static_cast<const tactus_v4_Pieces*>(sample)->sent;
+                    member.seen = static_cast<const tactus_v5_Pieces*>(sample)->sent;
                     dds_return_loan(member.reader, &sample, 1);
                 }
             }
@@ -595,8 +595,8 @@ Attack crowd_of_endpoints(int count)
 {
     return [=](Attacker& self)
     {
-        const auto topic = checked(dds_create_topic(self.participant(), &tactus_v4_Pieces_desc,
-                                                    "tactus/v4/chunks", nullptr, nullptr));
+        const auto topic = checked(dds_create_topic(self.participant(), &tactus_v5_Pieces_desc,
+                                                    "tactus/v5/chunks", nullptr, nullptr));
         for (int i = 0; i < count; ++i)
         {
             checked(dds_create_reader(self.participant(), topic, nullptr, nullptr));
@@ -688,8 +688,8 @@ const std::map<std::string, Habit>& habits()
         {"rtps_replayed", {send_raw([](RawRtps& raw) { return raw.any_heard(); }), 1ms, 600}},
         {"rtps_participants",
          {send_raw([](RawRtps& raw) { return raw.another_participant(); }), 500us, 5'000}},
-        {"rtps_motion_deaf", {forge_sequence("tactus/v4/motion", RawRtps::later_motion), 5s, 2}},
-        {"rtps_pieces_deaf", {forge_sequence("tactus/v4/chunks", RawRtps::later_heartbeat), 5s, 2}},
+        {"rtps_motion_deaf", {forge_sequence("tactus/v5/motion", RawRtps::later_motion), 5s, 2}},
+        {"rtps_pieces_deaf", {forge_sequence("tactus/v5/chunks", RawRtps::later_heartbeat), 5s, 2}},
         {"controllers_flooded", {crowd_of_controllers(), 20ms, 250}},
         {"participants_flooded", {crowd_of_participants(300), 10ms, 500}},
         {"endpoints_flooded", {crowd_of_endpoints(3'000), 10ms, 500}},

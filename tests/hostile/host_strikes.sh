@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# host_strikes.sh BIN CHECK_REPORT SANITIZER LYING_HOST ATTACK: the host of a scene is honest until
-# a tool is near what it shows. The force is looked at period by period, in recordings, on a device of
-# the omega class and one of the touch class, beside that of an honest host.
+# host_strikes.sh BIN CHECK_REPORT SANITIZER LYING_HOST ATTACK: the host of a scene is honest
+# until a tool is near what it shows. The force is looked at period by period, in recordings, on a
+# device of the omega class and one of the touch class, beside that of an honest host.
 source "$(dirname "$0")/../integration/hrtc/common.sh"
 readonly lying_host=$4 attack=$5
 readonly tool_m=0.002

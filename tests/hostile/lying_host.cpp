@@ -246,13 +246,13 @@ Turn lie_about_the_time(LyingHost& self)
             -1,
             std::numeric_limits<std::int64_t>::max() - 1,
             1};
-        tactus_v4_MovedObject moved = {};
+        tactus_v5_MovedObject moved = {};
         moved.object = liar.number();
         moved.generation = liar.generation();
         moved.pose.rotation[3] = 1.0;
         moved.pose.translation_m[0] = turn % 2 == 0 ? 1e-3 : 0.0;
         moved.pose.scale = 1.0;
-        tactus_v4_Motion sample = {};
+        tactus_v5_Motion sample = {};
         sample.host_epoch = liar.host().epoch();
         sample.serial = 1'000'000'000 + turn;
         sample.host_time_ns = kTimes.at(turn / 3 % kTimes.size());

@@ -71,7 +71,7 @@ public:
 
     void offer(std::uint32_t number, const std::string& name, const ContentHash& hash)
     {
-        tactus_v4_CatalogueEntry entry = {};
+        tactus_v5_CatalogueEntry entry = {};
         entry.host_epoch = epoch_;
         entry.model = number;
         name.copy(static_cast<char*>(entry.name), kMaxNameBytes);
@@ -91,13 +91,13 @@ public:
         {
             wanted_ = needed(make_reader(domain_, dds::Topic::wanted, dds::kAnyPartition));
         }
-        dds::take_each<tactus_v4_Wanted>(
+        dds::take_each<tactus_v5_Wanted>(
             wanted_.handle, 100,
-            [&](const tactus_v4_Wanted& wanted, const dds_sample_info_t& info)
+            [&](const tactus_v5_Wanted& wanted, const dds_sample_info_t& info)
             {
                 for (std::uint32_t i = 0; info.valid_data && i < wanted.pieces._length; ++i)
                 {
-                    const tactus_v4_PieceName& name = wanted.pieces._buffer[i];
+                    const tactus_v5_PieceName& name = wanted.pieces._buffer[i];
                     const ContentKey key{static_cast<ContentKind>(name.kind), name.number};
                     if (forges || key.kind == ContentKind::header)
                     {
@@ -108,7 +108,7 @@ public:
     }
 
 private:
-    void send(const tactus_v4_Wanted& to, ContentKey key, bool is_wrong)
+    void send(const tactus_v5_Wanted& to, ContentKey key, bool is_wrong)
     {
         dds::ControllerId id{};
         std::memcpy(id.data(), to.controller, id.size());
@@ -132,7 +132,7 @@ private:
         dds::append_piece(
             payload, {model_.store().hash(), 0, static_cast<std::uint32_t>(key.kind), key.number},
             bytes);
-        tactus_v4_Pieces sample = {};
+        tactus_v5_Pieces sample = {};
         sample.host_epoch = epoch_;
         sample.sent = ++sent_;
         const auto count = static_cast<std::uint32_t>(payload.size());

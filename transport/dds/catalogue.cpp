@@ -125,9 +125,9 @@ bool Catalogue::is_asked(const Offer& offer) const
 void Catalogue::refresh()
 {
     participants_->report(log_);
-    take_each<tactus_v4_CatalogueEntry>(
+    take_each<tactus_v5_CatalogueEntry>(
         reader_.handle, kEntriesPerRefresh,
-        [this](const tactus_v4_CatalogueEntry& entry, const dds_sample_info_t& info)
+        [this](const tactus_v5_CatalogueEntry& entry, const dds_sample_info_t& info)
         {
             const std::string name(text_of(entry.name));
             const std::string scene(text_of(entry.scene));

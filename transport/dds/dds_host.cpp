@@ -56,7 +56,7 @@ constexpr double kASample = 1'000.0;
 constexpr auto kMatchWait = std::chrono::milliseconds(2);
 
 /// What a controller calls itself, fit to be printed.
-std::string name_of(const tactus_v4_Wanted& wanted)
+std::string name_of(const tactus_v5_Wanted& wanted)
 {
     return printable(text_of(wanted.controller_name));
 }
@@ -218,7 +218,7 @@ void DdsHost::announce()
     {
         const ModelStore& store = models_[i].store();
         const HeaderFields& fields = store.header().fields();
-        tactus_v4_CatalogueEntry entry = {};
+        tactus_v5_CatalogueEntry entry = {};
         entry.host_epoch = epoch_;
         entry.model = i;
         models_[i].model().name.copy(static_cast<char*>(entry.name), kMaxNameBytes);
@@ -234,7 +234,7 @@ void DdsHost::announce()
 
 void DdsHost::take_requests(Clock::time_point end)
 {
-    const auto take = [this](const tactus_v4_Wanted& wanted, const dds_sample_info_t& info)
+    const auto take = [this](const tactus_v5_Wanted& wanted, const dds_sample_info_t& info)
     {
         ControllerId controller{};
         std::memcpy(controller.data(), wanted.controller, sizeof(wanted.controller));
@@ -252,7 +252,7 @@ void DdsHost::take_requests(Clock::time_point end)
                 client->is_disputed || info.instance_state != DDS_ALIVE_INSTANCE_STATE;
         }
     };
-    while (take_each<tactus_v4_Wanted>(wanted_.handle, kTakenAtOnce, take) == kTakenAtOnce)
+    while (take_each<tactus_v5_Wanted>(wanted_.handle, kTakenAtOnce, take) == kTakenAtOnce)
     {
         if (Clock::now() >= end)
         {
@@ -262,7 +262,7 @@ void DdsHost::take_requests(Clock::time_point end)
     }
 }
 
-void DdsHost::on_request(const ControllerId& controller, const tactus_v4_Wanted& wanted)
+void DdsHost::on_request(const ControllerId& controller, const tactus_v5_Wanted& wanted)
 {
     Client* client = find(controller);
     client = client == nullptr ? add_client(controller, wanted) : client;
@@ -321,7 +321,7 @@ bool DdsHost::try_heal(Client& client)
     return true;
 }
 
-void DdsHost::take_wishes(Client& client, const tactus_v4_Wanted& wanted)
+void DdsHost::take_wishes(Client& client, const tactus_v5_Wanted& wanted)
 {
     const std::uint32_t asked = wanted.pieces._length;
     client.process->asked += asked;
@@ -332,7 +332,7 @@ void DdsHost::take_wishes(Client& client, const tactus_v4_Wanted& wanted)
     }
     for (std::uint32_t i = 0; i < asked; ++i)
     {
-        const tactus_v4_PieceName& name = wanted.pieces._buffer[i];
+        const tactus_v5_PieceName& name = wanted.pieces._buffer[i];
         const ContentKey key{static_cast<ContentKind>(name.kind), name.number};
         if (name.model >= models_.size() || !models_[name.model].has(key))
         {
@@ -349,7 +349,7 @@ void DdsHost::refuse(const ControllerId& controller, Refused reason)
     domain_.participants().refusals().count(controller, reason);
 }
 
-DdsHost::Client* DdsHost::add_client(const ControllerId& controller, const tactus_v4_Wanted& wanted)
+DdsHost::Client* DdsHost::add_client(const ControllerId& controller, const tactus_v5_Wanted& wanted)
 {
     const std::string name = name_of(wanted);
     if (!is_valid_name(name)) // It would name a partition.

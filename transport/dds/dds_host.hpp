@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-struct tactus_v4_Wanted; // idlc's type of a sample.
+struct tactus_v5_Wanted; // idlc's type of a sample.
 
 namespace tactus::dds
 {
@@ -103,13 +103,13 @@ private:
     [[nodiscard]] Result<Done, Refusal> open_endpoints();
     void announce();
     void take_requests(Clock::time_point end);
-    void on_request(const ControllerId& controller, const tactus_v4_Wanted& wanted);
-    void take_wishes(Client& client, const tactus_v4_Wanted& wanted);
+    void on_request(const ControllerId& controller, const tactus_v5_Wanted& wanted);
+    void take_wishes(Client& client, const tactus_v5_Wanted& wanted);
     void renew_motion(Client& client);
     bool try_heal(Client& client);
     void refuse(const ControllerId& controller, Refused reason);
     [[nodiscard]] Client* add_client(const ControllerId& controller,
-                                     const tactus_v4_Wanted& wanted);
+                                     const tactus_v5_Wanted& wanted);
     void on_end(const ControllerId& controller, std::uint64_t writer);
     /// Of what a stranger wrote in a controller's name too, DDS tells no end while the stranger is
     /// here: a controller goes with its writer or its participant. Looks at those of which somebody

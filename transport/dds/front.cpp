@@ -29,10 +29,10 @@ namespace
 constexpr std::array kBudgetOrder{&Budgets::splits,   &Budgets::merges,    &Budgets::scanned,
                                   &Budgets::nodes,    &Budgets::triangles, &Budgets::pages,
                                   &Budgets::requests, &Budgets::regions};
-static_assert(std::size(tactus_v4_Front{}.budgets) == kBudgetOrder.size());
+static_assert(std::size(tactus_v5_Front{}.budgets) == kBudgetOrder.size());
 // All but what proxies look at.
 static_assert(sizeof(Budgets) == (kBudgetOrder.size() + 1) * sizeof(std::uint32_t));
-static_assert(std::size(tactus_v4_Front{}.times) == kFrontTimes);
+static_assert(std::size(tactus_v5_Front{}.times) == kFrontTimes);
 
 template <typename From, typename To>
 void copy_head(const From& from, To& to)
@@ -54,7 +54,7 @@ bool is_amount(double x)
     return std::isfinite(x) && x >= 0.0;
 }
 
-std::optional<FrontTool> tool_from(const tactus_v4_FrontTool& wire)
+std::optional<FrontTool> tool_from(const tactus_v5_FrontTool& wire)
 {
     const std::string_view shape = text_of(wire.shape);
     constexpr std::uint32_t known = (1U << kForceOffs) - 1;
@@ -67,7 +67,7 @@ std::optional<FrontTool> tool_from(const tactus_v4_FrontTool& wire)
                      std::string(shape), wire.radius_m};
 }
 
-std::optional<FrontObject> object_from(const tactus_v4_FrontObject& wire, std::uint32_t models)
+std::optional<FrontObject> object_from(const tactus_v5_FrontObject& wire, std::uint32_t models)
 {
     // A model may lie farther from its frame's origin than an object may be moved.
     const Pose told = from_wire(wire.pose);
@@ -89,14 +89,14 @@ bool is_next_chunk(ChunkId chunk, const Last& last)
 }
 
 /// The models with their pages and wishes; none where these don't add up or aren't in order.
-std::optional<std::vector<FrontModel>> models_from(const tactus_v4_Front& sample)
+std::optional<std::vector<FrontModel>> models_from(const tactus_v5_Front& sample)
 {
     std::vector<FrontModel> models;
     std::uint32_t next = 0;
     std::uint32_t next_wish = 0;
     for (std::uint32_t i = 0; i < sample.models._length; ++i)
     {
-        const tactus_v4_FrontModel& wire = sample.models._buffer[i];
+        const tactus_v5_FrontModel& wire = sample.models._buffer[i];
         FrontModel& model = models.emplace_back();
         std::memcpy(model.hash.data(), wire.hash, model.hash.size());
         if (wire.pages > sample.chunks._length - next ||
@@ -131,7 +131,7 @@ std::optional<std::vector<FrontModel>> models_from(const tactus_v4_Front& sample
                : std::nullopt;
 }
 
-std::optional<FrontRegion> region_from(const tactus_v4_FrontRegion& wire, std::uint32_t models)
+std::optional<FrontRegion> region_from(const tactus_v5_FrontRegion& wire, std::uint32_t models)
 {
     FrontRegion region{wire.model, wire.is_foretold, {}, wire.radius_m};
     std::ranges::copy(wire.center_m, region.center_m.begin());
@@ -141,7 +141,7 @@ std::optional<FrontRegion> region_from(const tactus_v4_FrontRegion& wire, std::u
     return is_sound ? std::optional(region) : std::nullopt;
 }
 
-std::optional<Front> front_from(const tactus_v4_Front& sample)
+std::optional<Front> front_from(const tactus_v5_Front& sample)
 {
     const bool is_in_bounds =
         sample.tools._length <= kMaxTools && sample.models._length <= kMaxModels &&
@@ -197,9 +197,9 @@ std::optional<Front> front_from(const tactus_v4_Front& sample)
     return front;
 }
 
-tactus_v4_FrontTool to_wire(const FrontTool& tool)
+tactus_v5_FrontTool to_wire(const FrontTool& tool)
 {
-    tactus_v4_FrontTool wire = {};
+    tactus_v5_FrontTool wire = {};
     wire.state = static_cast<std::uint8_t>(tool.state);
     wire.causes = static_cast<std::uint32_t>(tool.causes);
     tool.shape.copy(static_cast<char*>(wire.shape), kMaxShapeBytes);
@@ -207,9 +207,9 @@ tactus_v4_FrontTool to_wire(const FrontTool& tool)
     return wire;
 }
 
-tactus_v4_FrontObject to_wire(const FrontObject& object)
+tactus_v5_FrontObject to_wire(const FrontObject& object)
 {
-    tactus_v4_FrontObject wire = {};
+    tactus_v5_FrontObject wire = {};
     wire.host_epoch = object.host_epoch;
     wire.object = object.object;
     wire.number = object.number;
@@ -218,9 +218,9 @@ tactus_v4_FrontObject to_wire(const FrontObject& object)
     return wire;
 }
 
-tactus_v4_FrontRegion to_wire(const FrontRegion& region)
+tactus_v5_FrontRegion to_wire(const FrontRegion& region)
 {
-    tactus_v4_FrontRegion wire = {};
+    tactus_v5_FrontRegion wire = {};
     wire.model = static_cast<std::uint16_t>(region.model);
     wire.is_foretold = region.is_foretold;
     std::ranges::copy(region.center_m, std::begin(wire.center_m));
@@ -263,20 +263,20 @@ void FrontWriter::write(const Front& front)
     TACTUS_ASSERT(front.models.size() <= kMaxModels);
     TACTUS_ASSERT(front.objects.size() <= kMaxFrontObjects);
     TACTUS_ASSERT(front.regions.size() <= kMaxFrontRegions);
-    std::vector<tactus_v4_FrontTool> tools;
-    std::vector<tactus_v4_FrontModel> models;
-    std::vector<tactus_v4_FrontObject> objects;
+    std::vector<tactus_v5_FrontTool> tools;
+    std::vector<tactus_v5_FrontModel> models;
+    std::vector<tactus_v5_FrontObject> objects;
     std::vector<std::uint32_t> chunks;
     std::vector<std::uint64_t> refined;
     std::vector<std::uint32_t> wished;
-    std::vector<tactus_v4_FrontRegion> regions;
+    std::vector<tactus_v5_FrontRegion> regions;
     for (const FrontTool& tool : front.tools)
     {
         tools.push_back(to_wire(tool));
     }
     for (const FrontModel& model : front.models)
     {
-        tactus_v4_FrontModel& wire = models.emplace_back();
+        tactus_v5_FrontModel& wire = models.emplace_back();
         std::memcpy(wire.hash, model.hash.data(), model.hash.size());
         wire.pages = static_cast<std::uint32_t>(model.pages.size());
         for (const FrontPage& page : model.pages)
@@ -299,7 +299,7 @@ void FrontWriter::write(const Front& front)
         TACTUS_ASSERT(region.model < front.models.size());
         regions.push_back(to_wire(region));
     }
-    tactus_v4_Front sample = {};
+    tactus_v5_Front sample = {};
     std::memcpy(sample.controller, controller_.data(), controller_.size());
     controller_name_.copy(static_cast<char*>(sample.controller_name), kMaxNameBytes);
     sample.serial = ++sent_;
@@ -336,9 +336,9 @@ FrontReader::FrontReader(Participants& participants, Endpoint reader)
 
 void FrontReader::poll()
 {
-    refused_ += take_newest<tactus_v4_Front>(
+    refused_ += take_newest<tactus_v5_Front>(
         reader_, participants_, kMaxSeen, fronts_,
-        [](const tactus_v4_Front& sample) -> std::optional<SeenFront>
+        [](const tactus_v5_Front& sample) -> std::optional<SeenFront>
         {
             auto front = front_from(sample);
             return front ? std::optional<SeenFront>(

@@ -236,7 +236,7 @@ void ObjectPublisher::write_record(std::uint32_t object)
         return;
     }
     const ShownObject& shown = slot.shown;
-    tactus_v4_ObjectRecord record = {};
+    tactus_v5_ObjectRecord record = {};
     record.host_epoch = host_epoch_;
     record.object = object;
     record.generation = slot.generation;
@@ -256,7 +256,7 @@ void ObjectPublisher::write_record(std::uint32_t object)
 /// Likewise. Nobody gets its number before.
 void ObjectPublisher::write_end(std::uint32_t object)
 {
-    tactus_v4_ObjectRecord record = {};
+    tactus_v5_ObjectRecord record = {};
     record.host_epoch = host_epoch_;
     record.object = object;
     is_full_ = is_full_ || dds_dispose(records_.handle, &record) != DDS_RETCODE_OK;
@@ -290,13 +290,13 @@ void ObjectPublisher::settle(Clock::time_point now)
 
 void ObjectPublisher::send(std::span<const std::uint32_t> moved, Clock::time_point now)
 {
-    std::array<tactus_v4_MovedObject, kMaxMoved> objects{};
+    std::array<tactus_v5_MovedObject, kMaxMoved> objects{};
     for (std::size_t i = 0; i < moved.size(); ++i)
     {
         const Slot& slot = slots_[moved[i]];
         objects.at(i) = {moved[i], slot.generation, to_wire(slot.shown.pose)};
     }
-    tactus_v4_Motion sample = {};
+    tactus_v5_Motion sample = {};
     sample.host_epoch = host_epoch_;
     sample.serial = ++serial_;
     sample.host_time_ns =

@@ -158,9 +158,9 @@ void PieceExchange::forget_hosts()
 
 void PieceExchange::take_pieces()
 {
-    take_each<tactus_v4_Pieces>(
+    take_each<tactus_v5_Pieces>(
         chunks_.handle, kPiecesPerStep,
-        [&](const tactus_v4_Pieces& sample, const dds_sample_info_t& info)
+        [&](const tactus_v5_Pieces& sample, const dds_sample_info_t& info)
         {
             Host* host = info.valid_data ? find(sample.host_epoch) : nullptr;
             if (host == nullptr)
@@ -234,7 +234,7 @@ void PieceExchange::send(Host& host)
         host.awaits_pieces = true;
         host.last_progress = now;
     }
-    tactus_v4_Wanted wanted = {};
+    tactus_v5_Wanted wanted = {};
     std::memcpy(wanted.controller, controller_.data(), controller_.size());
     wanted.host_epoch = host.epoch;
     controller_name_.copy(static_cast<char*>(wanted.controller_name), kMaxNameBytes);
@@ -243,16 +243,16 @@ void PieceExchange::send(Host& host)
     wanted.seen = host.credit.seen();
     wanted.granted = host.credit.granted();
     wanted.received = host.credit.received();
-    const tactus_v4_Wanted probe = wanted;
+    const tactus_v5_Wanted probe = wanted;
     std::span<const HostPiece> wishes(host.wishes);
     do
     {
-        std::array<tactus_v4_PieceName, kMaxWishes> names{};
+        std::array<tactus_v5_PieceName, kMaxWishes> names{};
         const auto part = wishes.first(std::min<std::size_t>(wishes.size(), kMaxWishes));
         std::ranges::transform(part, names.begin(),
                                [](const HostPiece& piece)
                                {
-                                   return tactus_v4_PieceName{
+                                   return tactus_v5_PieceName{
                                        static_cast<std::uint16_t>(piece.model),
                                        static_cast<std::uint8_t>(piece.key.kind), piece.key.number};
                                });

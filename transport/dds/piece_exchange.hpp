@@ -78,7 +78,7 @@ public:
 
 private:
     using Clock = std::chrono::steady_clock;
-    enum class Objects : std::uint8_t // As in tactus_v4_Wanted.
+    enum class Objects : std::uint8_t // As in tactus_v5_Wanted.
     {
         not_wanted,
         waits,

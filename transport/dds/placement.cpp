@@ -10,16 +10,16 @@
 namespace tactus::dds
 {
 
-tactus_v4_Placement to_wire(const Pose& pose) noexcept
+tactus_v5_Placement to_wire(const Pose& pose) noexcept
 {
-    tactus_v4_Placement wire = {};
+    tactus_v5_Placement wire = {};
     std::ranges::copy(pose.rotation, std::begin(wire.rotation));
     std::ranges::copy(pose.translation_m, std::begin(wire.translation_m));
     wire.scale = pose.scale;
     return wire;
 }
 
-Pose from_wire(const tactus_v4_Placement& wire) noexcept
+Pose from_wire(const tactus_v5_Placement& wire) noexcept
 {
     Pose pose;
     std::ranges::copy(wire.rotation, pose.rotation.begin());
@@ -28,7 +28,7 @@ Pose from_wire(const tactus_v4_Placement& wire) noexcept
     return pose;
 }
 
-void put_material(const Material& material, tactus_v4_ObjectRecord& wire) noexcept
+void put_material(const Material& material, tactus_v5_ObjectRecord& wire) noexcept
 {
     const bool is_rigid = material.stiffness_n_per_m == kInfinity;
     wire.stiffness_n_per_m = is_rigid ? 0.0 : material.stiffness_n_per_m;
@@ -40,7 +40,7 @@ void put_material(const Material& material, tactus_v4_ObjectRecord& wire) noexce
     wire.texture_length_m = material.texture_length_m;
 }
 
-Material material_of(const tactus_v4_ObjectRecord& wire) noexcept
+Material material_of(const tactus_v5_ObjectRecord& wire) noexcept
 {
     const bool is_rigid = wire.stiffness_n_per_m == 0.0;
     return {is_rigid ? kInfinity : wire.stiffness_n_per_m,

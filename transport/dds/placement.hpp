@@ -5,18 +5,18 @@
 #include "rt_core/records/material.hpp"
 #include "transport/pose.hpp"
 
-struct tactus_v4_ObjectRecord; // idlc's types.
-struct tactus_v4_Placement;
+struct tactus_v5_ObjectRecord; // idlc's types.
+struct tactus_v5_Placement;
 
 namespace tactus::dds
 {
 
 /// A pose to the wire, and from it as it came: see checked_pose().
-[[nodiscard]] tactus_v4_Placement to_wire(const Pose& pose) noexcept;
-[[nodiscard]] Pose from_wire(const tactus_v4_Placement& wire) noexcept;
+[[nodiscard]] tactus_v5_Placement to_wire(const Pose& pose) noexcept;
+[[nodiscard]] Pose from_wire(const tactus_v5_Placement& wire) noexcept;
 
 /// A material likewise; see is_sound(). 0 is the stiffness of one that has none of its own.
-void put_material(const Material& material, tactus_v4_ObjectRecord& wire) noexcept;
-[[nodiscard]] Material material_of(const tactus_v4_ObjectRecord& wire) noexcept;
+void put_material(const Material& material, tactus_v5_ObjectRecord& wire) noexcept;
+[[nodiscard]] Material material_of(const tactus_v5_ObjectRecord& wire) noexcept;
 
 } // namespace tactus::dds

@@ -160,9 +160,9 @@ void SceneReader::take_records(std::uint64_t epoch, Host& host, const Take& take
         known->second = is_new ? domain_.participants().is_writing(writer) : known->second;
         return known->second;
     };
-    take_each<tactus_v4_ObjectRecord>(
+    take_each<tactus_v5_ObjectRecord>(
         host.records.handle, kRecordsPerPoll,
-        [&](const tactus_v4_ObjectRecord& record, const dds_sample_info_t& info)
+        [&](const tactus_v5_ObjectRecord& record, const dds_sample_info_t& info)
         {
             if (info.valid_data)
             {
@@ -197,7 +197,7 @@ void SceneReader::take_records(std::uint64_t epoch, Host& host, const Take& take
 }
 
 /// Why nothing came of it; none when it is fine.
-std::optional<Refused> SceneReader::take_record(Host& host, const tactus_v4_ObjectRecord& record,
+std::optional<Refused> SceneReader::take_record(Host& host, const tactus_v5_ObjectRecord& record,
                                                 const Take& take)
 {
     SeenObject news;
@@ -271,9 +271,9 @@ void SceneReader::hear(std::uint64_t epoch, Host& host, std::uint64_t writer)
 void SceneReader::take_motion(std::uint64_t epoch, Host& host, const Take& take)
 {
     host.was_heard = false;
-    take_each<tactus_v4_Motion>(
+    take_each<tactus_v5_Motion>(
         host.motion.handle, kMotionPerPoll,
-        [&](const tactus_v4_Motion& motion, const dds_sample_info_t& info)
+        [&](const tactus_v5_Motion& motion, const dds_sample_info_t& info)
         {
             if (!info.valid_data)
             {
@@ -282,7 +282,7 @@ void SceneReader::take_motion(std::uint64_t epoch, Host& host, const Take& take)
             hear(epoch, host, info.publication_handle);
             for (std::uint32_t i = 0; i < motion.moved._length; ++i)
             {
-                const tactus_v4_MovedObject& moved = motion.moved._buffer[i];
+                const tactus_v5_MovedObject& moved = motion.moved._buffer[i];
                 const auto known = host.objects.find(moved.object);
                 if (known == host.objects.end() || known->second.generation != moved.generation)
                 {
@@ -351,7 +351,7 @@ void SceneReader::look_at_strangers(std::uint64_t epoch, Host& host, const Take&
 }
 
 /// Whether the pose was accepted; counted either way.
-bool SceneReader::try_move(SeenObject& object, std::uint64_t serial, const tactus_v4_Placement& to)
+bool SceneReader::try_move(SeenObject& object, std::uint64_t serial, const tactus_v5_Placement& to)
 {
     const auto refuse = [&](PoseRefusal refusal)
     {

@@ -20,9 +20,9 @@
 #include <string>
 #include <utility>
 
-struct tactus_v4_ObjectRecord; // idlc's types of samples.
-struct tactus_v4_Motion;
-struct tactus_v4_Placement;
+struct tactus_v5_ObjectRecord; // idlc's types of samples.
+struct tactus_v5_Motion;
+struct tactus_v5_Placement;
 
 namespace tactus::dds
 {
@@ -133,12 +133,12 @@ private:
     static void drop_unconfirmed(Host& host, const Take& take);
     void take_records(std::uint64_t epoch, Host& host, const Take& take);
     [[nodiscard]] std::optional<Refused>
-    take_record(Host& host, const tactus_v4_ObjectRecord& record, const Take& take);
+    take_record(Host& host, const tactus_v5_ObjectRecord& record, const Take& take);
     void take_motion(std::uint64_t epoch, Host& host, const Take& take);
     void hear(std::uint64_t epoch, Host& host, std::uint64_t writer);
     static void settle_disputed(Host& host, std::uint32_t objects, const Take& take);
     void look_at_strangers(std::uint64_t epoch, Host& host, const Take& take);
-    static bool try_move(SeenObject& object, std::uint64_t serial, const tactus_v4_Placement& to);
+    static bool try_move(SeenObject& object, std::uint64_t serial, const tactus_v5_Placement& to);
     static void remove(Host& host, std::uint32_t number, const Take& take);
 
     const Domain& domain_;

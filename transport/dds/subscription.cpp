@@ -90,10 +90,10 @@ bool Subscription::let_in(std::uint64_t host_epoch)
 bool Subscription::write(std::uint64_t host_epoch, std::uint64_t pieces, bool lets_in,
                          std::vector<std::byte>& payload)
 {
-    tactus_v4_Pieces sample = {};
+    tactus_v5_Pieces sample = {};
     sample.host_epoch = host_epoch;
     sample.sent = sent_;
-    const tactus_v4_Pieces probe = sample;
+    const tactus_v5_Pieces probe = sample;
     sample.sent += pieces;
     sample.lets_in = lets_in;
     const auto length = static_cast<std::uint32_t>(payload.size());

@@ -54,9 +54,9 @@ constexpr unsigned bit_when(bool is_so, unsigned bit)
     return is_so ? bit : 0U;
 }
 
-tactus_v4_ToolTelemetry to_wire(const ToolTelemetry& tool)
+tactus_v5_ToolTelemetry to_wire(const ToolTelemetry& tool)
 {
-    tactus_v4_ToolTelemetry wire = {};
+    tactus_v5_ToolTelemetry wire = {};
     std::ranges::copy(tool.position_m, std::begin(wire.position_m));
     std::ranges::copy(tool.rotation, std::begin(wire.rotation));
     std::ranges::copy(tool.proxy_m, std::begin(wire.proxy_m));
@@ -72,7 +72,7 @@ tactus_v4_ToolTelemetry to_wire(const ToolTelemetry& tool)
     return wire;
 }
 
-ToolTelemetry from_wire(const tactus_v4_ToolTelemetry& wire)
+ToolTelemetry from_wire(const tactus_v5_ToolTelemetry& wire)
 {
     ToolTelemetry tool;
     std::ranges::copy(wire.position_m, tool.position_m.begin());
@@ -91,9 +91,9 @@ ToolTelemetry from_wire(const tactus_v4_ToolTelemetry& wire)
     return tool;
 }
 
-tactus_v4_PairTelemetry to_wire(const PairTelemetry& pair)
+tactus_v5_PairTelemetry to_wire(const PairTelemetry& pair)
 {
-    tactus_v4_PairTelemetry wire = {};
+    tactus_v5_PairTelemetry wire = {};
     wire.host_epoch = pair.host_epoch;
     wire.object = pair.object;
     wire.tool = pair.tool;
@@ -105,7 +105,7 @@ tactus_v4_PairTelemetry to_wire(const PairTelemetry& pair)
     return wire;
 }
 
-PairTelemetry from_wire(const tactus_v4_PairTelemetry& wire)
+PairTelemetry from_wire(const tactus_v5_PairTelemetry& wire)
 {
     PairTelemetry pair{wire.host_epoch, wire.object,  wire.tool, static_cast<AnswerKind>(wire.kind),
                        wire.lower_m,    wire.upper_m, {},        {}};
@@ -114,12 +114,12 @@ PairTelemetry from_wire(const tactus_v4_PairTelemetry& wire)
     return pair;
 }
 
-tactus_v4_ModelTelemetry to_wire(const ModelIdentity& identity, const ModelTelemetry& model)
+tactus_v5_ModelTelemetry to_wire(const ModelIdentity& identity, const ModelTelemetry& model)
 {
     const auto pool = [](const PoolTelemetry& use) {
-        return tactus_v4_PoolTelemetry{use.used, use.capacity};
+        return tactus_v5_PoolTelemetry{use.used, use.capacity};
     };
-    tactus_v4_ModelTelemetry wire = {};
+    tactus_v5_ModelTelemetry wire = {};
     identity.name.copy(static_cast<char*>(wire.name), kMaxNameBytes);
     std::memcpy(wire.hash, identity.hash.data(), identity.hash.size());
     wire.revision = identity.revision;
@@ -137,9 +137,9 @@ tactus_v4_ModelTelemetry to_wire(const ModelIdentity& identity, const ModelTelem
     return wire;
 }
 
-ModelTelemetry from_wire(const tactus_v4_ModelTelemetry& wire)
+ModelTelemetry from_wire(const tactus_v5_ModelTelemetry& wire)
 {
-    const auto pool = [](const tactus_v4_PoolTelemetry& use) {
+    const auto pool = [](const tactus_v5_PoolTelemetry& use) {
         return PoolTelemetry{use.used, use.capacity};
     };
     ModelTelemetry model;
@@ -177,7 +177,7 @@ bool is_sound(const PairTelemetry& pair, std::uint32_t tools)
            all_finite(pair.point_m) && all_finite(pair.force_n);
 }
 
-ModelIdentity identity_of(const tactus_v4_ModelTelemetry& wire)
+ModelIdentity identity_of(const tactus_v5_ModelTelemetry& wire)
 {
     ModelIdentity identity{std::string(text_of(wire.name)), {}, wire.revision};
     std::memcpy(identity.hash.data(), wire.hash, identity.hash.size());
@@ -203,7 +203,7 @@ void copy_counts(const From& from, To& to)
 }
 
 /// None where a name is none, a number can't be, or there is too much of something.
-std::optional<WatchedController> watched_from(const tactus_v4_Telemetry& sample)
+std::optional<WatchedController> watched_from(const tactus_v5_Telemetry& sample)
 {
     WatchedController news;
     news.id = controller_of(sample);
@@ -281,9 +281,9 @@ void TelemetryWriter::write(const Telemetry& telemetry)
     TACTUS_ASSERT(telemetry.tool_count <= kMaxTools);
     TACTUS_ASSERT(telemetry.pair_count <= kMaxPairs);
     TACTUS_ASSERT(telemetry.model_count == models_.size());
-    std::array<tactus_v4_PairTelemetry, kMaxPairs> pairs{};
-    std::array<tactus_v4_ToolTelemetry, kMaxTools> tools{};
-    std::array<tactus_v4_ModelTelemetry, kMaxShownModels> models{};
+    std::array<tactus_v5_PairTelemetry, kMaxPairs> pairs{};
+    std::array<tactus_v5_ToolTelemetry, kMaxTools> tools{};
+    std::array<tactus_v5_ModelTelemetry, kMaxShownModels> models{};
     for (std::uint32_t i = 0; i < telemetry.tool_count; ++i)
     {
         tools[i] = to_wire(telemetry.tools[i]);
@@ -296,7 +296,7 @@ void TelemetryWriter::write(const Telemetry& telemetry)
     {
         models[i] = to_wire(models_[i], telemetry.models[i]);
     }
-    tactus_v4_Telemetry sample = {};
+    tactus_v5_Telemetry sample = {};
     std::memcpy(sample.controller, controller_.data(), controller_.size());
     controller_name_.copy(static_cast<char*>(sample.controller_name), kMaxNameBytes);
     sample.serial = ++sent_;
@@ -325,7 +325,7 @@ TelemetryReader::TelemetryReader(Participants& participants, Endpoint reader)
 
 void TelemetryReader::poll()
 {
-    refused_ += take_newest<tactus_v4_Telemetry>(reader_, participants_, kMaxWatched, controllers_,
+    refused_ += take_newest<tactus_v5_Telemetry>(reader_, participants_, kMaxWatched, controllers_,
                                                  watched_from);
 }
 

@@ -29,22 +29,22 @@ constexpr std::int64_t kLiveliness = DDS_MSECS(500);
 
 // The bounds of transport/idl/tactus.idl. When a constant on the right grows, the wire changes with
 // it: raise the bound there and the protocol's version.
-static_assert(tactus_v4_max_name_bytes == kMaxNameBytes);
-static_assert(tactus_v4_max_tools == kMaxTools);
-static_assert(tactus_v4_max_models == kMaxShownModels);
-static_assert(tactus_v4_max_pairs == kMaxPairs);
-static_assert(tactus_v4_max_wishes == kMaxWishes);
-static_assert(tactus_v4_max_moved == kMaxMoved);
-static_assert(tactus_v4_max_payload_bytes >= kPayloadBytes);
-static_assert(tactus_v4_max_shape_bytes == kMaxShapeBytes);
-static_assert(tactus_v4_max_front_models == kMaxModels);
-static_assert(tactus_v4_max_front_objects == kMaxFrontObjects);
-static_assert(tactus_v4_max_front_pages == kMaxFrontPages);
-static_assert(tactus_v4_max_front_wishes == kMaxFrontWishes);
-static_assert(tactus_v4_max_front_regions == kMaxFrontRegions);
+static_assert(tactus_v5_max_name_bytes == kMaxNameBytes);
+static_assert(tactus_v5_max_tools == kMaxTools);
+static_assert(tactus_v5_max_models == kMaxShownModels);
+static_assert(tactus_v5_max_pairs == kMaxPairs);
+static_assert(tactus_v5_max_wishes == kMaxWishes);
+static_assert(tactus_v5_max_moved == kMaxMoved);
+static_assert(tactus_v5_max_payload_bytes >= kPayloadBytes);
+static_assert(tactus_v5_max_shape_bytes == kMaxShapeBytes);
+static_assert(tactus_v5_max_front_models == kMaxModels);
+static_assert(tactus_v5_max_front_objects == kMaxFrontObjects);
+static_assert(tactus_v5_max_front_pages == kMaxFrontPages);
+static_assert(tactus_v5_max_front_wishes == kMaxFrontWishes);
+static_assert(tactus_v5_max_front_regions == kMaxFrontRegions);
 static_assert(kMaxModels <= UINT16_MAX); // PieceName::model.
-static_assert(sizeof(tactus_v4_Wanted::controller) == sizeof(ControllerId));
-static_assert(sizeof(tactus_v4_CatalogueEntry::model_hash) == sizeof(ContentHash));
+static_assert(sizeof(tactus_v5_Wanted::controller) == sizeof(ControllerId));
+static_assert(sizeof(tactus_v5_CatalogueEntry::model_hash) == sizeof(ContentHash));
 
 struct TopicTraits
 {
@@ -87,14 +87,14 @@ bool is_of_its_controller(const Sample& sample, const dds_sample_info_t* info, v
 
 bool is_honest_entry(const void* sample, const dds_sample_info_t* info, void* context)
 {
-    const auto& entry = *static_cast<const tactus_v4_CatalogueEntry*>(sample);
+    const auto& entry = *static_cast<const tactus_v5_CatalogueEntry*>(sample);
     return is_of_its_host(entry, info, context) &&
            (entry.model < kMaxModels || refuse(info, context, Refused::model_number, entry.model));
 }
 
 bool is_honest_record(const void* sample, const dds_sample_info_t* info, void* context)
 {
-    const auto& record = *static_cast<const tactus_v4_ObjectRecord*>(sample);
+    const auto& record = *static_cast<const tactus_v5_ObjectRecord*>(sample);
     return is_of_its_host(record, info, context) &&
            (record.object < kMaxObjects ||
             refuse(info, context, Refused::object_number, record.object));
@@ -102,30 +102,30 @@ bool is_honest_record(const void* sample, const dds_sample_info_t* info, void* c
 
 bool is_honest_motion(const void* sample, const dds_sample_info_t* info, void* context)
 {
-    return is_of_its_host(*static_cast<const tactus_v4_Motion*>(sample), info, context);
+    return is_of_its_host(*static_cast<const tactus_v5_Motion*>(sample), info, context);
 }
 
 /// Wishes to other hosts take no room either.
 bool is_honest_wish(const void* sample, const dds_sample_info_t* info, void* context)
 {
-    const auto& wanted = *static_cast<const tactus_v4_Wanted*>(sample);
+    const auto& wanted = *static_cast<const tactus_v5_Wanted*>(sample);
     return wanted.host_epoch == participants_of(context).own_epoch() &&
            is_of_its_controller(wanted, info, context);
 }
 
 bool is_honest_pieces(const void* sample, const dds_sample_info_t* info, void* context)
 {
-    return is_of_its_host(*static_cast<const tactus_v4_Pieces*>(sample), info, context);
+    return is_of_its_host(*static_cast<const tactus_v5_Pieces*>(sample), info, context);
 }
 
 bool is_honest_telemetry(const void* sample, const dds_sample_info_t* info, void* context)
 {
-    return is_of_its_controller(*static_cast<const tactus_v4_Telemetry*>(sample), info, context);
+    return is_of_its_controller(*static_cast<const tactus_v5_Telemetry*>(sample), info, context);
 }
 
 bool is_honest_front(const void* sample, const dds_sample_info_t* info, void* context)
 {
-    return is_of_its_controller(*static_cast<const tactus_v4_Front*>(sample), info, context);
+    return is_of_its_controller(*static_cast<const tactus_v5_Front*>(sample), info, context);
 }
 
 const TopicTraits& traits_of(Topic topic)
@@ -137,17 +137,17 @@ const TopicTraits& traits_of(Topic topic)
     // that is full would hold up all reception of its process. What the filters let through bounds
     // them.
     static const std::array<TopicTraits, 7> traits{{
-        {"tactus/v4/catalogue", &tactus_v4_CatalogueEntry_desc, is_honest_entry, true, true, false,
+        {"tactus/v5/catalogue", &tactus_v5_CatalogueEntry_desc, is_honest_entry, true, true, false,
          1},
-        {"tactus/v4/objects", &tactus_v4_ObjectRecord_desc, is_honest_record, true, false, false,
+        {"tactus/v5/objects", &tactus_v5_ObjectRecord_desc, is_honest_record, true, false, false,
          1},
-        {"tactus/v4/motion", &tactus_v4_Motion_desc, is_honest_motion, false, false, true, 128},
-        {"tactus/v4/wanted", &tactus_v4_Wanted_desc, is_honest_wish, false, true, false, 16},
-        {"tactus/v4/chunks", &tactus_v4_Pieces_desc, is_honest_pieces, false, false, false,
+        {"tactus/v5/motion", &tactus_v5_Motion_desc, is_honest_motion, false, false, true, 128},
+        {"tactus/v5/wanted", &tactus_v5_Wanted_desc, is_honest_wish, false, true, false, 16},
+        {"tactus/v5/chunks", &tactus_v5_Pieces_desc, is_honest_pieces, false, false, false,
          4 * kCreditPieces},
-        {"tactus/v4/telemetry", &tactus_v4_Telemetry_desc, is_honest_telemetry, false, true, true,
+        {"tactus/v5/telemetry", &tactus_v5_Telemetry_desc, is_honest_telemetry, false, true, true,
          1},
-        {"tactus/v4/front", &tactus_v4_Front_desc, is_honest_front, false, true, true, 1},
+        {"tactus/v5/front", &tactus_v5_Front_desc, is_honest_front, false, true, true, 1},
     }};
     return traits[static_cast<std::size_t>(topic)];
 }

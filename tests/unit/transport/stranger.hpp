@@ -87,9 +87,9 @@ public:
     void step()
     {
         announce();
-        dds::take_each<tactus_v4_Wanted>(
+        dds::take_each<tactus_v5_Wanted>(
             wanted_.handle, 100,
-            [this](const tactus_v4_Wanted& sample, const dds_sample_info_t& info)
+            [this](const tactus_v5_Wanted& sample, const dds_sample_info_t& info)
             {
                 if (info.valid_data && sample.host_epoch == epoch_)
                 {
@@ -104,7 +104,7 @@ public:
 private:
     void announce()
     {
-        tactus_v4_CatalogueEntry entry = {};
+        tactus_v5_CatalogueEntry entry = {};
         entry.host_epoch = epoch_;
         name_.copy(static_cast<char*>(entry.name), kMaxNameBytes);
         scene_.copy(static_cast<char*>(entry.scene), kMaxNameBytes);
@@ -116,7 +116,7 @@ private:
         dds_write(catalogue_.handle, &entry);
     }
 
-    void answer(const tactus_v4_Wanted& wanted)
+    void answer(const tactus_v5_Wanted& wanted)
     {
         dds::ControllerId id{};
         std::memcpy(id.data(), wanted.controller, id.size());
@@ -133,7 +133,7 @@ private:
         }
         for (std::uint32_t i = 0; i < wanted.pieces._length; ++i)
         {
-            const tactus_v4_PieceName& name = wanted.pieces._buffer[i];
+            const tactus_v5_PieceName& name = wanted.pieces._buffer[i];
             send({static_cast<ContentKind>(name.kind), name.number});
         }
     }
@@ -154,7 +154,7 @@ private:
             payload,
             {model_hash(model_.header), 0, static_cast<std::uint32_t>(key.kind), key.number},
             bytes);
-        tactus_v4_Pieces sample = {};
+        tactus_v5_Pieces sample = {};
         sample.host_epoch = epoch_;
         sample.sent = ++sent_;
         const auto count = static_cast<std::uint32_t>(payload.size());

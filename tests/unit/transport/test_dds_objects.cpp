@@ -309,22 +309,22 @@ protected:
         motion_ = make_writer(host->domain(), Topic::motion, host_partition(host->epoch())).value();
         ASSERT_TRUE(eventually([&] { return is_matched(motion_); }));
     }
-    void write(std::uint64_t serial, const tactus_v4_MovedObject& moved)
+    void write(std::uint64_t serial, const tactus_v5_MovedObject& moved)
     {
-        tactus_v4_MovedObject copy = moved;
-        tactus_v4_Motion sample = {};
+        tactus_v5_MovedObject copy = moved;
+        tactus_v5_Motion sample = {};
         sample.host_epoch = host->epoch();
         sample.serial = serial;
         sample.host_time_ns = 1;
         sample.moved = {1, 1, &copy, false};
         EXPECT_EQ(dds_write(motion_.handle, &sample), DDS_RETCODE_OK);
     }
-    [[nodiscard]] tactus_v4_MovedObject good(double x_m = 0.0) const
+    [[nodiscard]] tactus_v5_MovedObject good(double x_m = 0.0) const
     {
         return {cup_, 1, to_wire(some_pose(x_m))};
     }
     /// Best effort promises nothing: written until it was counted.
-    void write_until_counted(std::uint64_t serial, const tactus_v4_MovedObject& moved)
+    void write_until_counted(std::uint64_t serial, const tactus_v5_MovedObject& moved)
     {
         const auto counted = [&]
         { return seen(cup_)->counts.accepted + seen(cup_)->counts.refused_in_all(); };
@@ -355,9 +355,9 @@ TEST_F(DdsObjectFaults, are_refused_under_their_names_and_change_nothing)
     struct Fault
     {
         PoseRefusal refusal;
-        std::function<void(tactus_v4_Placement&)> make;
+        std::function<void(tactus_v5_Placement&)> make;
     };
-    using Place = tactus_v4_Placement;
+    using Place = tactus_v5_Placement;
     const std::vector<Fault> faults{
         {PoseRefusal::not_finite, [](Place& p) { p.rotation[0] = kNan; }},
         {PoseRefusal::not_finite, [](Place& p) { p.rotation[3] = kInfinity; }},
@@ -374,7 +374,7 @@ TEST_F(DdsObjectFaults, are_refused_under_their_names_and_change_nothing)
     write_until_counted(1'000, good(0.5));
     for (std::size_t i = 0; i < faults.size(); ++i)
     {
-        tactus_v4_MovedObject moved = good(0.75);
+        tactus_v5_MovedObject moved = good(0.75);
         faults[i].make(moved.pose);
         const std::uint64_t before = refused(faults[i].refusal);
         write_until_counted(2'000 + i, moved);
@@ -390,7 +390,7 @@ TEST_F(DdsObjectFaults, are_refused_under_their_names_and_change_nothing)
 
 TEST_F(DdsObjectFaults, of_objects_that_are_not_there_or_were_are_passed_over)
 {
-    tactus_v4_MovedObject moved = good(0.5);
+    tactus_v5_MovedObject moved = good(0.5);
     moved.object = cup_ + 1;
     write(1'000, moved);
     moved = good(0.5);
@@ -409,7 +409,7 @@ TEST_F(DdsObjectFaults, of_noise_never_pass_for_a_pose)
     std::mt19937_64 random(kSeed);
     for (std::uint64_t i = 0; i < 5'000; ++i)
     {
-        tactus_v4_MovedObject moved = good();
+        tactus_v5_MovedObject moved = good();
         for (double* number :
              {&moved.pose.rotation[0], &moved.pose.rotation[1], &moved.pose.rotation[2],
               &moved.pose.rotation[3], &moved.pose.translation_m[0], &moved.pose.scale})
@@ -443,10 +443,10 @@ protected:
         entries_ = make_writer(host->domain(), Topic::catalogue, "").value();
         ASSERT_TRUE(eventually([&] { return is_matched(records_) && is_matched(entries_); }));
     }
-    [[nodiscard]] tactus_v4_ObjectRecord record_of(std::uint32_t number, const std::string& name,
+    [[nodiscard]] tactus_v5_ObjectRecord record_of(std::uint32_t number, const std::string& name,
                                                    const ContentHash& model)
     {
-        tactus_v4_ObjectRecord record = {};
+        tactus_v5_ObjectRecord record = {};
         record.host_epoch = host->epoch();
         record.object = number;
         record.generation = 1;
@@ -458,12 +458,12 @@ protected:
     }
     void show(std::uint32_t number, const std::string& name, const ContentHash& model)
     {
-        const tactus_v4_ObjectRecord record = record_of(number, name, model);
+        const tactus_v5_ObjectRecord record = record_of(number, name, model);
         EXPECT_EQ(dds_write(records_.handle, &record), DDS_RETCODE_OK);
     }
     void announce(std::uint32_t number, const std::string& name, const ContentHash& model)
     {
-        tactus_v4_CatalogueEntry entry = {};
+        tactus_v5_CatalogueEntry entry = {};
         entry.host_epoch = host->epoch();
         entry.model = number;
         name.copy(static_cast<char*>(entry.name), kMaxNameBytes);
@@ -532,9 +532,9 @@ TEST_F(DdsHostFaults, more_objects_and_models_than_a_controller_holds_take_no_ro
 TEST_F(DdsHostFaults, records_that_are_none_are_named_once_and_change_nothing)
 {
     const auto write =
-        [&](std::uint32_t number, const std::function<void(tactus_v4_ObjectRecord&)>& spoil)
+        [&](std::uint32_t number, const std::function<void(tactus_v5_ObjectRecord&)>& spoil)
     {
-        tactus_v4_ObjectRecord record = record_of(number, "pot", host->models()[0].store().hash());
+        tactus_v5_ObjectRecord record = record_of(number, "pot", host->models()[0].store().hash());
         spoil(record);
         EXPECT_EQ(dds_write(records_.handle, &record), DDS_RETCODE_OK);
     };
@@ -575,7 +575,7 @@ TEST_F(DdsHostFaults, objects_of_models_that_it_does_not_serve_are_refused_by_na
     EXPECT_EQ(follower->count(SceneNews::goes), 0U);
     // Once it is served it comes, and one that goes before is never heard of.
     show(9, "wraith", other_model());
-    tactus_v4_ObjectRecord gone = {};
+    tactus_v5_ObjectRecord gone = {};
     gone.host_epoch = host->epoch();
     gone.object = 9;
     EXPECT_EQ(dds_dispose(records_.handle, &gone), DDS_RETCODE_OK);
@@ -629,7 +629,7 @@ TEST_F(DdsObjectFaults, of_who_is_not_the_host_do_not_get_in)
     const Endpoint records = make_writer(stranger, Topic::objects, partition).value();
     const Endpoint motion = make_writer(stranger, Topic::motion, partition).value();
     ASSERT_TRUE(eventually([&] { return is_matched(records) && is_matched(motion); }));
-    tactus_v4_ObjectRecord record = {};
+    tactus_v5_ObjectRecord record = {};
     record.host_epoch = host->epoch();
     record.object = cup_;
     record.generation = 9;
@@ -641,8 +641,8 @@ TEST_F(DdsObjectFaults, of_who_is_not_the_host_do_not_get_in)
     ASSERT_EQ(dds_write(records.handle, &record), DDS_RETCODE_OK);
     record.object = cup_;
     ASSERT_EQ(dds_dispose(records.handle, &record), DDS_RETCODE_OK);
-    tactus_v4_MovedObject moved = good(7.0);
-    tactus_v4_Motion sample = {};
+    tactus_v5_MovedObject moved = good(7.0);
+    tactus_v5_Motion sample = {};
     sample.host_epoch = host->epoch();
     sample.serial = 1'000'000;
     sample.moved = {1, 1, &moved, false};

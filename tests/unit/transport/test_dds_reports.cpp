@@ -199,10 +199,10 @@ Front front_of(const Size& size)
 /// A sample of the wire with one record of each kind, sound but for what a test changes.
 struct TelemetrySample
 {
-    tactus_v4_ToolTelemetry tool = {};
-    tactus_v4_PairTelemetry pair = {};
-    tactus_v4_ModelTelemetry model = {};
-    tactus_v4_Telemetry sample = {};
+    tactus_v5_ToolTelemetry tool = {};
+    tactus_v5_PairTelemetry pair = {};
+    tactus_v5_ModelTelemetry model = {};
+    tactus_v5_Telemetry sample = {};
 
     TelemetrySample()
     {
@@ -215,14 +215,14 @@ struct TelemetrySample
 
 struct FrontSample
 {
-    tactus_v4_FrontTool tool = {};
-    tactus_v4_FrontModel model = {};
-    tactus_v4_FrontObject object = {};
+    tactus_v5_FrontTool tool = {};
+    tactus_v5_FrontModel model = {};
+    tactus_v5_FrontObject object = {};
     std::array<std::uint32_t, 2> chunks{3, 4};
     std::array<std::uint64_t, 2> refined{};
     std::array<std::uint32_t, 2> wished{5, 6};
-    tactus_v4_FrontRegion region = {};
-    tactus_v4_Front sample = {};
+    tactus_v5_FrontRegion region = {};
+    tactus_v5_Front sample = {};
 
     FrontSample()
     {
@@ -477,7 +477,7 @@ TEST_F(DdsTelemetry, that_holds_more_than_its_bounds_never_leaves)
 {
     const Domain controller = Domain::join(1).value();
     const auto writer = std::move(make_writer(controller, Topic::telemetry, "long")).value();
-    std::vector<tactus_v4_ToolTelemetry> tools(kMaxTools + 1);
+    std::vector<tactus_v5_ToolTelemetry> tools(kMaxTools + 1);
     TelemetrySample sample;
     std::strcpy(static_cast<char*>(sample.sample.controller_name), "long");
     sample.sample.tools = {kMaxTools + 1, kMaxTools + 1, tools.data(), false};

@@ -271,7 +271,7 @@ TEST_F(DdsServers, what_is_asked_for_is_kept_however_many_others_there_are)
     std::vector<Endpoint> writers;
     const auto announce = [&](std::size_t who, std::uint32_t number, const std::string& name)
     {
-        tactus_v4_CatalogueEntry entry = {};
+        tactus_v5_CatalogueEntry entry = {};
         entry.host_epoch = crowd[who].participants().own_epoch();
         entry.model = number;
         name.copy(static_cast<char*>(entry.name), kMaxNameBytes);

@@ -139,7 +139,7 @@ protected:
     [[nodiscard]] Endpoint announce(std::uint64_t epoch) const
     {
         Endpoint writer = make_writer(stranger, Topic::catalogue, "").value();
-        tactus_v4_CatalogueEntry entry = {};
+        tactus_v5_CatalogueEntry entry = {};
         std::strcpy(static_cast<char*>(entry.name), "tiny");
         entry.host_epoch = epoch;
         entry.header_bytes = entry.base_bytes = 100;
@@ -148,10 +148,10 @@ protected:
         EXPECT_EQ(dds_write(writer.handle, &entry), DDS_RETCODE_OK);
         return writer;
     }
-    [[nodiscard]] tactus_v4_Wanted request(const ControllerId& controller,
+    [[nodiscard]] tactus_v5_Wanted request(const ControllerId& controller,
                                            const std::string& name) const
     {
-        tactus_v4_Wanted wanted = {};
+        tactus_v5_Wanted wanted = {};
         std::memcpy(wanted.controller, controller.data(), controller.size());
         name.copy(static_cast<char*>(wanted.controller_name), kMaxNameBytes);
         wanted.host_epoch = host->epoch();
@@ -161,7 +161,7 @@ protected:
     /// A topic of another version; its type is of no matter to who only looks at names.
     [[nodiscard]] Entity topic_of_version(const std::string& name) const
     {
-        return Entity(dds_create_topic(stranger.participant(), &tactus_v4_CatalogueEntry_desc,
+        return Entity(dds_create_topic(stranger.participant(), &tactus_v5_CatalogueEntry_desc,
                                        name.c_str(), nullptr, nullptr));
     }
 
@@ -187,7 +187,7 @@ TEST_F(DdsVersions, who_speaks_another_version_is_named_once_by_both_sides_and_p
     const Entity controller_writer(
         dds_create_writer(stranger.participant(), wanted.get(), nullptr, nullptr));
     const Entity foreign(dds_create_writer(stranger.participant(), other.get(), nullptr, nullptr));
-    tactus_v4_CatalogueEntry entry = {};
+    tactus_v5_CatalogueEntry entry = {};
     std::strcpy(static_cast<char*>(entry.name), "old");
     ASSERT_EQ(dds_write(host_writer.get(), &entry), DDS_RETCODE_OK);
     const std::string line = "is refused: it speaks protocol version 1, this build 5";
@@ -224,7 +224,7 @@ TEST_F(DdsVersions, who_is_not_the_host_can_not_end_it_nor_hide_its_end)
 {
     ASSERT_NO_FATAL_FAILURE(connect());
     const Endpoint writer = heard_writer(Topic::catalogue, "");
-    tactus_v4_CatalogueEntry entry = {};
+    tactus_v5_CatalogueEntry entry = {};
     entry.host_epoch = host->epoch();
     const auto refused = [&]
     {
@@ -253,7 +253,7 @@ TEST_F(DdsVersions, who_is_not_the_controller_can_not_end_it_nor_hide_its_end)
 {
     ASSERT_NO_FATAL_FAILURE(connect());
     const Endpoint writer = heard_writer(Topic::wanted, "ours");
-    const tactus_v4_Wanted wanted = request(client->domain().participants().own(), "ours");
+    const tactus_v5_Wanted wanted = request(client->domain().participants().own(), "ours");
     ASSERT_EQ(dds_dispose(writer.handle, &wanted), DDS_RETCODE_OK);
     ASSERT_TRUE(
         step_until([&] { return !host->domain().participants().refusals().list().empty(); }));
@@ -271,8 +271,8 @@ TEST_F(DdsVersions, an_end_that_a_stranger_put_on_what_was_not_taken_yet_is_not_
     ASSERT_NO_FATAL_FAILURE(connect());
     const Endpoint wants = heard_writer(Topic::wanted, "ours");
     const Endpoint shows = heard_writer(Topic::catalogue, "");
-    const tactus_v4_Wanted wanted = request(client->domain().participants().own(), "ours");
-    tactus_v4_CatalogueEntry entry = {};
+    const tactus_v5_Wanted wanted = request(client->domain().participants().own(), "ours");
+    tactus_v5_CatalogueEntry entry = {};
     entry.host_epoch = host->epoch();
     constexpr auto kOnItsWay = 20ms;
     for (std::uint32_t i = 1; i <= 10; ++i)
@@ -310,7 +310,7 @@ TEST_F(DdsVersions, pieces_of_who_says_to_be_the_host_are_not_taken)
     const Endpoint writer = heard_writer(Topic::chunks, controller_partition("ours", us));
     std::vector<std::byte> payload;
     append_piece(payload, {model_hash(model.header), 0, 2, 0}, std::vector<std::byte>(10));
-    tactus_v4_Pieces sample = {};
+    tactus_v5_Pieces sample = {};
     sample.host_epoch = host->epoch();
     sample.sent = 1'000'000;
     const auto length = static_cast<std::uint32_t>(payload.size());
@@ -327,7 +327,7 @@ TEST_F(DdsVersions, a_controller_is_served_under_its_own_id_and_a_valid_name_onl
     const ControllerId own = stranger.participants().own();
     ControllerId other = own;
     other[3] ^= 1U;
-    tactus_v4_Wanted wanted = request(other, "stranger");
+    tactus_v5_Wanted wanted = request(other, "stranger");
     ASSERT_EQ(dds_write(writer.handle, &wanted), DDS_RETCODE_OK);
     wanted = request(own, "strange\n\x1b[31m*");
     ASSERT_EQ(dds_write(writer.handle, &wanted), DDS_RETCODE_OK);
@@ -352,8 +352,8 @@ TEST_F(DdsVersions, nobody_gets_more_pieces_than_a_window_beyond_what_it_has_see
     const Endpoint reader =
         make_reader(stranger, Topic::chunks, controller_partition("stranger", own)).value();
     const Endpoint writer = heard_writer(Topic::wanted, "stranger");
-    std::array<tactus_v4_PieceName, 1> names{{{0, 2, 0}}};
-    tactus_v4_Wanted wanted = request(own, "stranger");
+    std::array<tactus_v5_PieceName, 1> names{{{0, 2, 0}}};
+    tactus_v5_Wanted wanted = request(own, "stranger");
     wanted.seen = 0;
     wanted.granted = std::uint64_t{1} << 63U;
     wanted.pieces = {1, 1, names.data(), false};
@@ -397,8 +397,8 @@ TEST_F(DdsVersions, who_asks_for_too_much_in_a_second_is_counted_by_name_and_ser
     ASSERT_NO_FATAL_FAILURE(connect());
     const ControllerId own = stranger.participants().own();
     const Endpoint writer = heard_writer(Topic::wanted, "stranger");
-    std::vector<tactus_v4_PieceName> names(kMaxWishes, {0, 2, 0});
-    tactus_v4_Wanted wanted = request(own, "stranger");
+    std::vector<tactus_v5_PieceName> names(kMaxWishes, {0, 2, 0});
+    tactus_v5_Wanted wanted = request(own, "stranger");
     wanted.pieces = {kMaxWishes, kMaxWishes, names.data(), false};
     const auto refused = [&]
     {

@@ -39,9 +39,9 @@ protected:
     /// What has come, by the count in the sample and who wrote it.
     void take_from(const Endpoint& reader)
     {
-        take_each<tactus_v4_Pieces>(
+        take_each<tactus_v5_Pieces>(
             reader.handle, 100,
-            [this](const tactus_v4_Pieces& sample, const dds_sample_info_t& info)
+            [this](const tactus_v5_Pieces& sample, const dds_sample_info_t& info)
             {
                 if (info.valid_data)
                 {
@@ -60,7 +60,7 @@ protected:
 TEST_F(Lanes, without_a_reader_are_not_matched_and_write_to_nobody)
 {
     auto sut = WriterLanes::create(*host_, Topic::chunks, kPartition).value();
-    tactus_v4_Pieces sample = {};
+    tactus_v5_Pieces sample = {};
 
     EXPECT_FALSE(sut.is_matched());
     for (std::uint64_t i = 0; i < 10 * WriterLanes::kSamplesALane; ++i)
@@ -79,9 +79,9 @@ TEST_F(Lanes, join_one_by_one_and_take_turns_and_everything_comes)
     std::uint64_t sent = 0;
     const auto write = [&]
     {
-        tactus_v4_Pieces sample = {};
+        tactus_v5_Pieces sample = {};
         sample.host_epoch = host_->participants().own_epoch(); // Or the reader would refuse it.
-        tactus_v4_Pieces probe = sample;
+        tactus_v5_Pieces probe = sample;
         sample.sent = ++sent;
         EXPECT_TRUE(sut.write(&sample, &probe));
         take_from(in);
@@ -124,7 +124,7 @@ TEST_F(Lanes, an_older_request_that_comes_late_takes_no_credit_back)
 TEST_F(Lanes, lose_what_a_reader_that_does_not_answer_would_make_them_keep)
 {
     auto sut = WriterLanes::create(*host_, Topic::chunks, kPartition).value();
-    tactus_v4_Pieces sample = {};
+    tactus_v5_Pieces sample = {};
     constexpr std::size_t bytes = WriterLanes::kUnackedMax / 2 + 1;
     for (int i = 0; i < 10; ++i)
     {
@@ -145,7 +145,7 @@ TEST_F(Lanes, that_are_renewed_are_one_other_writer_and_not_at_once_again)
 {
     auto sut = WriterLanes::create(*host_, Topic::chunks, kPartition).value();
     const Endpoint in = reader(kPartition);
-    tactus_v4_Pieces sample = {};
+    tactus_v5_Pieces sample = {};
     sample.host_epoch = host_->participants().own_epoch();
     const auto comes = [&](std::uint64_t count)
     {
