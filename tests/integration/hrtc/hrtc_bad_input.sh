@@ -29,7 +29,7 @@ refuse 2 'missing.gltf: no such file' missing.gltf
 refuse 2 'missing.rec: cannot be opened' good.spm --device replay:missing.rec
 refuse 2 'missing.so' good.spm --device plugin:./missing.so
 refuse 2 "--motion: 'cow' is no model that is touched; there are: good" good.spm --motion tap:cow
-refuse 2 '--pool-mib: 0.25 MiB is too small for 1 models; 0.31 MiB would do for a start' good.spm \
+refuse 2 '--pool-mib: 0.25 MiB is too small for 1 models; 0.37 MiB would do for a start' good.spm \
     --pool-mib 0.25
 
 # What nothing needs of the most memory isn't taken, nor locked.
