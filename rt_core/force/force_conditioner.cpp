@@ -118,8 +118,7 @@ bool ForceConditioner::observe(const DeviceStep& device) noexcept
     knows_position_ = device.position_m.allFinite();
     if (knows_position_)
     {
-        carried_m_ += device.carried_m;
-        velocity_.add(device.position_m - carried_m_, elapsed_s);
+        velocity_.add(device.position_m, elapsed_s);
         position_m_ = device.position_m;
     }
     return is_usable;
@@ -187,8 +186,7 @@ void ForceConditioner::hold(const SpringForce& force, bool is_again) noexcept
     is_again ? observer_.hold_instead(energy_j) : observer_.hold(energy_j);
 }
 
-/// The wall's force and the damping against the hand's velocity relative to what carries it, as its
-/// work is observed; never a pull.
+/// The wall's force and the damping against the velocity; never a pull.
 void ForceConditioner::damp(SpringForce& force) const noexcept
 {
     const Vec3 velocity = velocity_.velocity_m_per_s();

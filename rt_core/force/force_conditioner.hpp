@@ -110,7 +110,6 @@ private:
     SentForces sent_;
     PassivityObserver observer_;
     Vec3 position_m_{0.0, 0.0, 0.0};
-    Vec3 carried_m_{0.0, 0.0, 0.0}; ///< By objects since the start, along with the hand.
     bool knows_position_{false};
     double gain_{0.0}; ///< What begin() said, for finish().
 };
