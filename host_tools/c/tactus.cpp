@@ -4,6 +4,7 @@
 
 #include "platform/base/refusal.hpp"
 #include "rt_core/frame/frame.hpp"
+#include "rt_core/frame/list_touches.hpp"
 #include "rt_core/geometry/believed_motion.hpp"
 #include "rt_core/math/rotation.hpp"
 #include "rt_core/records/object_touch.hpp"
@@ -543,7 +544,8 @@ void run_one(tactus_frame& frame)
     const auto changes = take_changes(frame);
     frame.output = frame.frame->run(
         {.tools = frame.states, .changes = changes.view(), .budgets = {}, .now_ns = now_ns});
-    frame.frame->list_touches(frame.belief, frame.touches); // For the changes of the next frame.
+    // For the changes of the next frame.
+    list_touches(*frame.frame, frame.output.pairs, frame.belief, frame.touches);
     ++frame.frames;
 }
 

@@ -4,6 +4,7 @@
 
 #include "platform/allocation_counter.hpp"
 #include "platform/system_call_trap.hpp"
+#include "rt_core/frame/list_touches.hpp"
 #include "rt_core/limits.hpp"
 
 #include <algorithm>
@@ -307,7 +308,7 @@ void HapticLoop::make_safe(const FrameOutput& output) noexcept
     }
     if (parts_.pose_door != nullptr) // For the poses that the next frame begins with.
     {
-        parts_.frame->list_touches(parts_.pose_door->belief(), touches_);
+        list_touches(*parts_.frame, output.pairs, parts_.pose_door->belief(), touches_);
     }
 }
 

@@ -3,6 +3,7 @@
 #include "rt_core/frame/frame.hpp"
 
 #include "rt_core/frame/validate_model.hpp"
+#include "rt_core/geometry/believed_motion.hpp"
 
 #include <algorithm>
 
@@ -302,28 +303,6 @@ void Frame::look_for_leap(std::uint32_t object, const ObjectPose& before) noexce
             const Ball reach = tools_[i].reach_ball();
             presences_[i].leap_m = std::max(presences_[i].leap_m,
                                             way_in_ball_m(before, now, reach.center, reach.radius));
-        }
-    }
-}
-
-void Frame::list_touches(const BelievedSpeed& belief, ObjectTouches& touches) const noexcept
-{
-    touches.clear();
-    const std::span<const PairOutput> pairs(pair_outputs_.data(), pairs_.all().size());
-    for (const bool is_in_reach : {true, false})
-    {
-        for (const PairOutput& pair : pairs)
-        {
-            const Tool& tool = tools_[pair.tool];
-            const double radius_m = tool.spec().radius_m;
-            const double soon_m = radius_m + kTouchSlack_m + belief.soon_m(tool.speed_m_per_s());
-            if (!tool.spec().passes_through && pair.lower_m <= soon_m &&
-                tactus::is_in_reach(pair, radius_m) == is_in_reach)
-            {
-                const Ball reach = tool.reach_ball();
-                touches.push_back(
-                    {pair.object, pair.tool, reach.center, reach.radius, is_in_reach});
-            }
         }
     }
 }

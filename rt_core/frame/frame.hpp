@@ -12,7 +12,6 @@
 #include "rt_core/frame/pair_shedding.hpp"
 #include "rt_core/frame/refinement.hpp"
 #include "rt_core/frame/tool.hpp"
-#include "rt_core/geometry/believed_motion.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_output.hpp"
 #include "rt_core/scene/broad_phase.hpp"
@@ -61,10 +60,6 @@ public:
 
     /// In set-up order; there must be such a tool, which nothing checks. Likewise with models.
     [[nodiscard]] const Tool& tool(std::uint32_t index) const noexcept { return tools_[index]; }
-    /// Objects that tools may touch within BelievedSpeed::kPatience_s, as the last frame left both,
-    /// those in reach first. Tools without a force are left out.
-    void list_touches(const BelievedSpeed& belief,
-                      ObjectTouches& touches) const noexcept TACTUS_NONBLOCKING;
     /// The scene's objects by their numbers, as the last frame left them.
     [[nodiscard]] const ObjectTable& objects() const noexcept { return objects_; }
     /// What tools may touch, most urgent first: where pages were looked for last.

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/frame/list_touches.hpp"
+
+namespace tactus
+{
+
+void list_touches(const Frame& frame, std::span<const PairOutput> pairs,
+                  const BelievedSpeed& belief, ObjectTouches& touches) noexcept
+{
+    touches.clear();
+    for (const bool is_near : {true, false})
+    {
+        for (const PairOutput& pair : pairs)
+        {
+            const Tool& tool = frame.tool(pair.tool);
+            const double radius_m = tool.spec().radius_m;
+            const double soon_m = radius_m + kTouchSlack_m + belief.soon_m(tool.speed_m_per_s());
+            if (!tool.spec().passes_through && pair.lower_m <= soon_m &&
+                is_in_reach(pair, radius_m) == is_near)
+            {
+                const Ball reach = tool.reach_ball();
+                touches.push_back({pair.object, pair.tool, reach.center, reach.radius, is_near});
+            }
+        }
+    }
+}
+
+} // namespace tactus

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/realtime.hpp"
+#include "rt_core/frame/frame.hpp"
+#include "rt_core/geometry/believed_motion.hpp"
+#include "rt_core/records/object_touch.hpp"
+
+#include <span>
+
+namespace tactus
+{
+
+/// Objects that tools may touch within BelievedSpeed::kPatience_s, as the last frame left both,
+/// those in reach first. Tools without a force are left out. `pairs`: of that frame's output.
+/// Haptic thread, between frames.
+void list_touches(const Frame& frame, std::span<const PairOutput> pairs,
+                  const BelievedSpeed& belief, ObjectTouches& touches) noexcept TACTUS_NONBLOCKING;
+
+} // namespace tactus
