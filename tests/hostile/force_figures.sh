@@ -8,26 +8,37 @@ export_force() {
         || fail "the recording of $1 doesn't replay: $(cat replay.log)"
 }
 
-# force_figures FILE: the largest growth of the force a period, its largest fall a period in touch,
-# both in N, and the share of the frames in contact.
+# force_figures FILE [WALL SLEW]: the largest growth of the force a period, its largest fall a
+# period in touch, both in N, the share of the frames in contact, and the most by which a growth was
+# beyond what the law on change (docs/safety.md) allows: WALL in N/m times the way of the hand and
+# 0.5 mm a period of the object, and SLEW in N.
 force_figures() {
-    awk -F, '
+    awk -F, -v wall="${2:-0}" -v slew="${3:-0}" '
         NR == 1 {
             for (i = 1; i <= NF; ++i) at[$i] = i
             force = "tool0.sent_force_world_n"
+            hand = "tool0.goal_world_m"
+            beyond = -1
             next
         }
         {
             n = sqrt($at[force ".x"] ^ 2 + $at[force ".y"] ^ 2 + $at[force ".z"] ^ 2)
+            way = sqrt(($at[hand ".x"] - x) ^ 2 + ($at[hand ".y"] - y) ^ 2 \
+                       + ($at[hand ".z"] - z) ^ 2)
             periods = $at["tool0.elapsed_periods"] > 1 ? $at["tool0.elapsed_periods"] : 1
             touches = $at["tool0.in_contact"] == "true" || $at["tool0.in_contact"] == 1
             grown = (n - before) / periods
             most = grown > most ? grown : most
             least = touches && -grown > least ? -grown : least
+            over = n - before - wall * (way + 5e-4 * periods) - slew
+            beyond = NR > 2 && over > beyond ? over : beyond
             in_touch += touches
             before = n
+            x = $at[hand ".x"]
+            y = $at[hand ".y"]
+            z = $at[hand ".z"]
         }
-        END { printf "%.4f %.4f %.4f\n", most, least, in_touch / (NR - 1) }' "$1"
+        END { printf "%.4f %.4f %.4f %.4f\n", most, least, in_touch / (NR - 1), beyond }' "$1"
 }
 
 # at_most NAME VALUE LIMIT

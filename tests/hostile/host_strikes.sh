@@ -4,6 +4,7 @@
 # until a tool is near what it shows. The force is looked at period by period, in recordings, on a
 # device of the omega class and one of the touch class, beside that of an honest host.
 source "$(dirname "$0")/../integration/hrtc/common.sh"
+source "$(dirname "$0")/force_figures.sh"
 readonly lying_host=$4 attack=$5
 readonly tool_m=0.002
 declare -A growth fall share excess
@@ -12,8 +13,7 @@ declare -A growth fall share excess
 declare -A growth_max_n=([omega]=0.5 [touch]=0.25)
 [[ "$attack" != drag ]] || growth_max_n=([omega]=0.55 [touch]=0.37)
 readonly growth_max_n
-# The law on change (docs/safety.md): the wall in N/m, which is the device's or 500, times the way
-# of the hand and 0.5 mm a period of the object, and a hundredth of the device's force in N.
+# Of force_figures: the wall is the device's or 500 N/m, the slew a hundredth of the device's force.
 readonly -A wall_n_per_m=([omega]=500 [touch]=400) slew_n=([omega]=0.12 [touch]=0.033)
 
 # run_against NAME DEVICE ATTACK [NUMBER]: a run of some seconds with that host. Its force is in
@@ -32,51 +32,11 @@ run_against() {
     ((stopped_with == 0)) || fail "the host ended with $stopped_with: $(cat "$name-host.log")"
     grep -Eq '^done [1-9]' "$name-host.log" || fail "it did nothing: $(cat "$name-host.log")"
     check_clean "$name.json"
-    "$hrtc" --replay "$name.rec" --export "$name.csv" >replay.log 2>&1 \
-        || fail "the recording of $name doesn't replay: $(cat replay.log)"
+    export_force "$name"
     read -r "growth[$name]" "fall[$name]" "share[$name]" "excess[$name]" \
         < <(force_figures "$name.csv" "${wall_n_per_m[$device]}" "${slew_n[$device]}")
     echo "$name: $(tail -n 1 "$name-host.log"), growth ${growth[$name]} N, fall ${fall[$name]} N," \
         "in contact ${share[$name]}, beyond the law ${excess[$name]} N"
-}
-
-# force_figures FILE WALL SLEW: the largest growth of the force a period, its largest fall a period
-# in touch, both in N, the share of the frames in contact, and the most by which a growth was beyond
-# what the law allows.
-force_figures() {
-    awk -F, -v wall="$2" -v slew="$3" '
-        function square(name) {
-            return $at[name ".x"] ^ 2 + $at[name ".y"] ^ 2 + $at[name ".z"] ^ 2
-        }
-        NR == 1 {
-            for (i = 1; i <= NF; ++i) at[$i] = i
-            hand = "tool0.goal_world_m"
-            beyond = -1
-            next
-        }
-        {
-            n = sqrt(square("tool0.sent_force_world_n"))
-            way = sqrt(($at[hand ".x"] - x) ^ 2 + ($at[hand ".y"] - y) ^ 2 \
-                       + ($at[hand ".z"] - z) ^ 2)
-            periods = $at["tool0.elapsed_periods"] > 1 ? $at["tool0.elapsed_periods"] : 1
-            touches = $at["tool0.in_contact"] == "true" || $at["tool0.in_contact"] == 1
-            grown = (n - before) / periods
-            most = grown > most ? grown : most
-            least = touches && -grown > least ? -grown : least
-            over = n - before - wall * (way + 5e-4 * periods) - slew
-            beyond = NR > 2 && over > beyond ? over : beyond
-            in_touch += touches
-            before = n
-            x = $at[hand ".x"]
-            y = $at[hand ".y"]
-            z = $at[hand ".z"]
-        }
-        END { printf "%.4f %.4f %.4f %.4f\n", most, least, in_touch / (NR - 1), beyond }' "$1"
-}
-# at_most NAME VALUE LIMIT
-at_most() {
-    awk -v value="$2" -v limit="$3" 'BEGIN { exit !(value <= limit) }' \
-        || fault "$1 is $2, above $3"
 }
 
 case $attack in
@@ -92,6 +52,8 @@ for device in omega touch; do
         # shellcheck disable=SC2086 # An attack and its number.
         run_against "$name" "$device" $variant
         at_most "what is beyond the law on change, $name," "${excess[$name]}" 0.0001
+        [[ "$attack" != materials ]] || was_held_up "$name.json" \
+            || at_most "the largest fall a period, $name," "${fall[$name]}" 0.5
         # A loop that is held up meets more of an object's way in a frame than a period's.
         was_held_up "$name.json" \
             || at_most "the largest growth a period, $name," "${growth[$name]}" \

@@ -96,9 +96,8 @@ if [[ "$attack" == rtps_* ]]; then
                 || fault 'the host made no other writers'
             ;;
         rtps_participants)
-            # How many of them are heard while the attack lasts is the machine's matter.
-            grep -Eq ' (has|participants are).* on this domain' publish.log \
-                || fault 'the host counts no participants'
+            wait_until 'count of participants' grep -Eqs \
+                '[0-9]{4,} participants are on this domain' publish.log
             ;;
     esac
     was_held_up report.json || check report.json force.max_step_n '<' 0.45
@@ -141,7 +140,7 @@ case $attack in
         grep -Eq 'attacker .* has [0-9]+ participants on this domain' publish.log \
             || fault 'the host counts no participants'
         ;;
-    endpoints_flooded) ;; # They are nobody's.
+    endpoints_flooded) ;; # They belong to no service.
     wanted_* | telemetry_*)
         grep -q 'refused of attacker (process [0-9]* on ' publish.log \
             || fault 'the host names nobody'

@@ -41,7 +41,7 @@ touch_scene() { # touch_scene ARGUMENT...: until stop_hrtc.
 check_force() {
     check_clean report.json
     export_force attacked
-    read -r growth fall share < <(force_figures attacked.csv)
+    read -r growth fall share _ < <(force_figures attacked.csv)
     echo "growth, fall and contact share: honest $honest_growth N, $honest_fall N, $honest_share;" \
         "$attack $growth N, $fall N, $share"
     check report.json force.max_n '>' 0 force.max_n '<=' 3.3
@@ -54,7 +54,7 @@ start_publisher toy.gltf --scene toy
 run_hrtc "${hand[@]}" --scene toy --duration 5 --record honest.rec
 stop_publisher
 export_force honest
-read -r honest_growth honest_fall honest_share < <(force_figures honest.csv)
+read -r honest_growth honest_fall honest_share _ < <(force_figures honest.csv)
 
 # Of uptime.
 now_ms() { awk '{ printf "%.0f", $1 * 1000 }' /proc/uptime; }
