@@ -4,13 +4,13 @@
 /// No input ends the process: tools without room, hands at rest and exactly along walls.
 
 #include "tests/shared/random.hpp"
+#include "tests/shared/trial_length.hpp"
 #include "tests/stability/no_room_trial.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
 
 namespace tactus::test
 {
@@ -18,23 +18,17 @@ namespace tactus::test
 namespace
 {
 
-/// Of each kind of tool, with friction and without.
-std::uint32_t frames_of_each()
-{
-    const char* text = std::getenv("TACTUS_NO_ROOM_FRAMES");
-    return text != nullptr ? static_cast<std::uint32_t>(std::strtoul(text, nullptr, 10)) : 1'000;
-}
-
 class NoRoom : public testing::TestWithParam<std::size_t>
 {
 };
 
 TEST_P(NoRoom, ends_no_process_and_leaves_every_force_finite_and_in_range)
 {
+    const std::uint32_t frames = has_full_trials() ? 25'000 : 1'000;
     for (const bool has_friction : {false, true})
     {
         const TrialFigures sut = run_no_room_trial(cramped_tools()[GetParam()], has_friction,
-                                                   frames_of_each(), seed_of(20'261'600));
+                                                   frames, seed_of(20'261'600));
         std::printf("%s\n", sut.summary().c_str());
         EXPECT_TRUE(sut.holds());
     }
