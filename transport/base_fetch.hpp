@@ -25,7 +25,7 @@ public:
     {
         under_way,
         done,    ///< The model's `base` is whole and has the hash that its header names.
-        refused, ///< For good: it has another one, and nobody else sends any.
+        refused, ///< For good: it has another one, and no other server has it.
     };
 
     /// The model must outlive it, and its header be as ServedModel says; one with a base mesh is

@@ -207,7 +207,7 @@ TACTUS_CALL tactus_result tactus_frame_load(tactus_frame* frame, tactus_error* e
 #define TACTUS_SQUEEZED 4U   /* Objects leave it no room; its force must fade. */
 #define TACTUS_CROWDED 8U    /* More touches it than the limits allow. */
 #define TACTUS_HELD_BACK 16U /* It went as far as the surface is known. */
-#define TACTUS_OUTRUN 32U    /* What it may touch is placed too far from where it is, likewise. */
+#define TACTUS_OUTRUN 32U    /* What it may touch lags its pose; its force must fade. */
 
 typedef enum tactus_kind
 {

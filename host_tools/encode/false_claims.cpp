@@ -370,7 +370,7 @@ private:
     }
 
     /// Of all index pages and chunks the first whose box leaves out a part of what it should hold,
-    /// or reaches beyond it: such a chunk is fetched where nobody needs it.
+    /// or reaches beyond it: such a chunk is fetched where no tool needs it.
     void check_boxes()
     {
         std::vector<std::byte> coded;

@@ -70,7 +70,8 @@ std::string host_metrics(dds::DdsHost& host, const dds::TelemetryReader& control
     tell("tactus_requests_refused_total", "counter", "Requests that were refused.",
          counters.requests_refused);
     tell("tactus_writers_renewed_total", "counter",
-         "Times that writers were made anew for who was deaf to them.", counters.renewed);
+         "Times that writers were replaced for controllers that they did not reach.",
+         counters.renewed);
     tell("tactus_participants", "gauge", "DDS participants on the domain.",
          host.domain().participants().count());
     tell("tactus_subscribers", "gauge", "Controllers that this host serves.",

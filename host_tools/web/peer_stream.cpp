@@ -87,7 +87,7 @@ Connections::Served& Connections::served(int socket)
 bool Connections::wait(int socket, short events, Clock::time_point deadline)
 {
     pollfd peer{socket, events, 0};
-    if (::poll(&peer, 1, 0) > 0) // It keeps nobody waiting.
+    if (::poll(&peer, 1, 0) > 0) // No other peer waits for it.
     {
         return true;
     }

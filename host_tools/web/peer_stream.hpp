@@ -84,7 +84,7 @@ private:
     Clock::time_point request_end_{Clock::now() + kRequestPatience};
     std::optional<Clock::time_point> answer_end_; ///< Of the part that is being taken.
     std::array<char, 4'096> buffer_{};
-    std::size_t begin_{0}; ///< Of what the buffer has and nobody has read.
+    std::size_t begin_{0}; ///< The first byte of the buffer that is not read yet.
     std::size_t end_{0};
     std::size_t received_{0};
 };

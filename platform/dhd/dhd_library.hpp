@@ -41,7 +41,7 @@ struct DhdFunctions
     int (*dhdEnableForce)(unsigned char on, char id);
     const char* (*dhdErrorGetLastStr)(); ///< Of the last failure.
     /// Null in SDKs before 3.3.2. After that time without a force, in steps of 125 us, the device
-    /// itself disables its forces, whatever has become of the program; 0: never.
+    /// itself disables its forces, even when the program is dead; 0: never.
     int (*dhdSetWatchdog)(unsigned char steps, char id);
 };
 

@@ -56,7 +56,7 @@ struct DevicePlugin
 [[nodiscard]] Result<std::unique_ptr<HapticDevice>, Refusal> load_device(const std::string& path,
                                                                          const DeviceWish& wish);
 
-/// Loads the library and makes its guard; none where it has none. Refused likewise.
+/// Loads the library and makes its guard; none where it has none. Refused as load_plugin() does.
 [[nodiscard]] Result<std::unique_ptr<DeviceGuard>, Refusal> load_guard(const std::string& path,
                                                                        const DeviceWish& wish);
 

@@ -35,8 +35,8 @@ constexpr std::size_t first_of(std::size_t word, std::uint64_t bits) noexcept
 std::int64_t since_ns(std::int64_t before_ns, std::int64_t now_ns) noexcept
 {
     constexpr std::int64_t kDay_ns = 86'400'000'000'000;
-    const bool is_time = now_ns > before_ns && (before_ns >= 0) == (now_ns >= 0) &&
-                         now_ns - before_ns <= kDay_ns;
+    const bool is_time =
+        now_ns > before_ns && (before_ns >= 0) == (now_ns >= 0) && now_ns - before_ns <= kDay_ns;
     return is_time ? now_ns - before_ns : 0;
 }
 

@@ -46,7 +46,7 @@ struct PoseUse
 /// it. After a rest a pose that is farther than kJump_m is taken at once: that is no motion.
 ///
 /// Where a tool touches it, or may soon, an object is carried no faster than is believed
-/// (BelievedSpeed), whatever its host says: no point of it that the tool may meet goes faster. It
+/// (BelievedSpeed): no point of it that the tool may meet goes faster. It
 /// catches up when it may. What is taken at once isn't held back if it outruns its belief.
 ///
 /// An object's age is the time since its host was last heard, on this machine's clock. One that
@@ -94,7 +94,7 @@ public:
     /// The haptic thread, at the start of a frame: what moves, and objects whose host fell silent
     /// or was heard again; at most kMaxSceneChanges. More wait for the next frame, which begins
     /// with them; up to half of the room is for what tools may touch, in every frame and in its
-    /// order. `touches`: as the last frame left the tools (Frame::list_touches), at most kMaxPairs.
+    /// order. `touches`: as the last frame left the tools (list_touches()), at most kMaxPairs.
     /// Valid until the next call. Allocates nothing; 0.1 us an object that glides, 0.6 us for all
     /// that rest.
     [[nodiscard]] std::span<const SceneChange>

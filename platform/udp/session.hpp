@@ -51,7 +51,7 @@ struct Sampled
 /// one that has sent samples keeps its place for a while: nobody takes it from a driver that only
 /// stumbled. With a seal nobody is heard who hasn't the key.
 ///
-/// Until settle() nobody has a place to keep: a device that falls silent is forgotten with all that
+/// Until settle() no device has a place to keep: one that falls silent is forgotten with all that
 /// it said of itself, and the next one may be quite another.
 class Session
 {
@@ -88,13 +88,13 @@ public:
     [[nodiscard]] bool lapse(MonotonicTime now) noexcept;
 
     /// Whether the device that is attached has been there for so long, has sent kProof samples, and
-    /// nobody else wants to be it.
+    /// no other one describes itself.
     [[nodiscard]] bool is_proven(Duration time, MonotonicTime now) const noexcept;
     /// From now on no device with other limits is let in.
     void settle() noexcept
     {
         is_settled_ = true;
-        has_samples_ = false; // Nobody has read any yet.
+        has_samples_ = false; // None is read yet.
         rival_.reset();
     }
     /// The last one before settle(); none without any.

@@ -185,9 +185,9 @@ Result<std::unique_ptr<UdpDevice>, Refusal> UdpDevice::create(udp::Socket socket
     }
     udp::Session session(secret.value(), options.times.silence, options.place, options.seal);
     std::uint64_t sequence = 0;
-    if (auto nobody = await_device(socket, session, options, sequence))
+    if (auto refusal = await_device(socket, session, options, sequence))
     {
-        return std::move(*nobody);
+        return std::move(*refusal);
     }
     const DeviceInfo info = with_delay(*session.info(), options.transport_delay);
     std::unique_ptr<UdpDevice> device(

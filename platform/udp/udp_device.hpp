@@ -47,7 +47,7 @@ struct UdpDeviceOptions
     /// A device that has fallen silent keeps its place for so long, up to kWaitMax.
     Duration place{milliseconds(3'000)};
     /// Whose limits a run takes must have sent samples for so long before, up to kWaitMax, with
-    /// nobody else who wants to be the device. 0: the first one that describes itself is believed.
+    /// no other device describes itself. 0: the first one that describes itself is believed.
     Duration proof{milliseconds(300)};
     /// By the key that the driver has; lent, it outlives the device; null: whoever speaks is
     /// believed.

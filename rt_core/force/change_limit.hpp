@@ -19,13 +19,13 @@ struct ChangeRule
     /// make: kSlewShareMin_per_ms .. 1.
     double slew_share_per_ms{kSlewShare_per_ms};
     double hand_speed_max_m_per_s{1.0};   ///< More of a hand's way doesn't count. >= 0.
-    double object_speed_max_m_per_s{0.5}; ///< Likewise of an object's.
+    double object_speed_max_m_per_s{0.5}; ///< More of an object's way doesn't count. >= 0.
     /// Of the tool: the square root of its angular stiffness over its stiffness. 0: a sphere.
     double arm_m{0.0};
 };
 
 /// The last stage before the device: bounds by how much a force changes from one period to the
-/// next, whatever the stages before it say.
+/// next, for all forces of the stages before it.
 ///
 ///     |F' - F| <= K (hand + arm x turned + objects) + slew x T
 ///     |M' - M| <= A turned + K x arm x (hand + objects) + slew of the torque x T
@@ -75,7 +75,7 @@ private:
     ChangeRule rule_;
     double period_s_;
     Steps slew_; ///< In one period.
-    Steps most_; ///< Likewise, of the device.
+    Steps most_; ///< The device's largest in one period.
     Vec3 hand_m_{0.0, 0.0, 0.0};
     Vec3 turned_rad_{0.0, 0.0, 0.0};
     Vec3 last_n_{0.0, 0.0, 0.0};

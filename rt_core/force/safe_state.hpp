@@ -106,7 +106,7 @@ private:
     bool is_too_fast_{false};
     bool is_fading_{false};          ///< What the last frame let out, from before a cause.
     Vec3 damping_n_{0.0, 0.0, 0.0};  ///< Of what it let out.
-    Vec3 damping_nm_{0.0, 0.0, 0.0}; ///< Likewise.
+    Vec3 damping_nm_{0.0, 0.0, 0.0}; ///< The torque's.
 };
 
 } // namespace tactus

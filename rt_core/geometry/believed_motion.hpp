@@ -21,7 +21,7 @@ namespace tactus
                                    const Vec3& center_m,
                                    double radius_m) noexcept TACTUS_NONBLOCKING;
 
-/// How fast an object that a tool may touch is believed to move, whatever is said of it: a force
+/// How fast an object that a tool may touch is believed to move at most: a force
 /// can't change faster by that than by stiffness x speed.
 struct BelievedSpeed
 {

@@ -42,9 +42,9 @@ struct ToolPeriod
     double twist_rad{0.0};                 ///< The angle between them, 0 .. pi.
     bool is_touching{false};               ///< ToolOutput::in_contact.
     double object_way_m{0.0};              ///< ToolOutput's, believed.
-    double object_turn_rad{0.0};           ///< Likewise.
+    double object_turn_rad{0.0};           ///< ToolOutput's.
     Vec3 carried_m{0.0, 0.0, 0.0};         ///< ToolOutput's: the proxy's way with objects.
-    Vec3 carried_rad{0.0, 0.0, 0.0};       ///< Likewise.
+    Vec3 carried_rad{0.0, 0.0, 0.0};       ///< ToolOutput's.
     double surface_damping_n_s_per_m{0.0}; ///< PeriodContext's.
     FrameFault faults{FrameFault::none};   ///< The frame's of this tool: faults_of().
     ForceOff causes{ForceOff::none};       ///< What the caller knows of by itself.

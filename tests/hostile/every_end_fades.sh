@@ -101,7 +101,7 @@ case $device in
             wait_until 'some four seconds of forces' has_forces 8000 # Two a frame.
         }
         ends TERM fades 0 start_unread
-        check report.json frames '>' 3000 # A thousand after the word that nobody read.
+        check report.json frames '>' 3000 # A thousand after the output was closed.
 
         # Nor do the other programs end so.
         code=0

@@ -31,7 +31,7 @@ struct ForceWish
     }
 };
 
-/// Likewise for a device that turns: `torque` in angles.
+/// For a device that turns: `torque` in angles.
 struct WrenchWish
 {
     ForceWish force;

@@ -91,7 +91,7 @@ void Authority::step()
     }
 }
 
-/// All that offer the name, of a model with whatever hash.
+/// All that offer the name, of a model with any hash.
 std::vector<const Catalogue::Offer*> Authority::candidates() const
 {
     return is_scene_ ? catalogue_.servers_of_scene({name_.name})

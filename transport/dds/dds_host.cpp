@@ -40,9 +40,9 @@ constexpr auto kJoiningMaxBeforeOthers = std::chrono::seconds(1);
 constexpr auto kLetInAgain = std::chrono::milliseconds(100);
 /// Lines a second of controllers that come and go.
 constexpr std::uint32_t kVisitLines = 40;
-/// Each step has so long for requests and for pieces, so that poses go out every 10 ms whatever is
-/// asked for. What isn't done waits for the next step; of requests Cyclone keeps 16 a controller
-/// and gives them in turn.
+/// Each step has so long for requests and for pieces, so that poses go out every 10 ms with
+/// any number of requests. What isn't done waits for the next step; of requests Cyclone keeps 16 a
+/// controller and gives them in turn.
 constexpr auto kRequestsMax = std::chrono::milliseconds(2);
 constexpr auto kServingMax = std::chrono::milliseconds(4);
 /// Pieces that one process may ask for in a second. A controller has 256 wishes and asks for each

@@ -33,7 +33,7 @@ public:
         std::uint64_t bytes_sent{0}; ///< Payload.
         std::uint64_t requests{0};
         std::uint64_t requests_refused{0}; ///< A bad name, an unknown piece, too many.
-        std::uint64_t renewed{0}; ///< Times that writers were made anew for who was deaf to them.
+        std::uint64_t renewed{0}; ///< Times that writers were replaced that were not heard.
     };
     struct Subscriber
     {
@@ -89,7 +89,7 @@ private:
     {
         Subscription subscription;
         std::shared_ptr<Process> process;
-        double got_bytes{0.0}; ///< Likewise.
+        double got_bytes{0.0}; ///< As its process has.
         Joining joining{Joining::not_wanted};
         Clock::time_point let_in{};
         std::uint64_t writer{0}; ///< Handle of the last request's.

@@ -18,7 +18,7 @@ namespace
 
 /// Between two looks for what doesn't come.
 constexpr auto kLookEvery = std::chrono::milliseconds(20);
-/// What nobody has asked for again for so long isn't wanted any more.
+/// A piece that was not asked for again for so long isn't wanted any more.
 constexpr auto kForgotten = std::chrono::seconds(2);
 /// So long another host may come where all that are there have sent what is wrong.
 constexpr auto kAnotherAfter = std::chrono::seconds(1);
@@ -251,7 +251,7 @@ void DdsLink::put_first(const Catalogue::Offer& offer)
     first_heard_ = Clock::now();
 }
 
-/// The model keeps its name, whatever that host calls it.
+/// The model keeps its name where that host calls it another.
 void DdsLink::take_over(const Catalogue::Offer& offer)
 {
     const std::string name = offer_.name;

@@ -19,7 +19,7 @@ namespace tactus::dds
 {
 
 /// One model's pieces from any host on the domain that serves that model (that hash) at present.
-/// Their hashes prove them, so it matters to nobody who sends them.
+/// Their hashes prove them, so any host may send them.
 ///
 /// A piece that doesn't come for kSilence is asked of others, kHostsAtOnce at the same time. One
 /// that answers in the place of a silent one is asked first from then on; one that has sent what

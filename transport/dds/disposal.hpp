@@ -22,7 +22,8 @@ public:
     Disposal(const Disposal&) = delete;
     Disposal& operator=(const Disposal&) = delete;
 
-    /// What owns them; nobody else does. Null has no effect. Never waits; any thread.
+    /// `owner`: the only one of what has to be deleted. Null has no effect. Never waits; any
+    /// thread.
     void dispose(std::shared_ptr<void> owner);
 
 private:

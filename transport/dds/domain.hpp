@@ -48,7 +48,7 @@ public:
     [[nodiscard]] std::int32_t participant() const noexcept { return participant_.get(); }
     /// Who is there, and who we are.
     [[nodiscard]] Participants& participants() const noexcept { return *participants_; }
-    /// For what is over, where nobody may wait for its end.
+    /// For what is over, where its end must not be waited for.
     [[nodiscard]] Disposal& disposal() const noexcept { return *disposal_; }
 
 private:

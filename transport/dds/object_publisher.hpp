@@ -49,8 +49,8 @@ public:
     void step();
 
     /// Another writer takes the place of the one that tells what moves, as soon as it is heard by
-    /// as many, or after 250 ms: until then both are there, so nobody misses a beat. Three times a
-    /// second at most; false when it is not due.
+    /// as many, or after 250 ms: until then both are there, so no controller misses one. Three
+    /// times a second at most; false when it is not due.
     bool try_renew_motion(std::chrono::steady_clock::time_point now);
 
     /// When step() has something to do though nothing moves; far off when nothing was ever shown.

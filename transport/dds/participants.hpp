@@ -44,7 +44,7 @@ public:
     /// All but us that are: program, process and machine, in order; each once. Some 10 us each.
     [[nodiscard]] std::set<std::string> names() const;
     /// The program with its process and machine, as it tells them; with DDS Security also its
-    /// certificate's name, which nobody else can tell. 10 us.
+    /// certificate's name, which no other participant can use. 10 us.
     [[nodiscard]] std::string name_of(const ParticipantId& who) const;
     /// Whether it is called so: MACHINE, MACHINE:PROCESS or cert:HEX (is_valid_server). 10 us.
     [[nodiscard]] bool is_called(const ParticipantId& who, const std::string& server) const;

@@ -131,7 +131,7 @@ TEST(WishQueue, forgets_the_oldest_generation_when_full_and_generations_may_wrap
     EXPECT_EQ(sut.front().key.number, 2U);
 }
 
-/// Whatever is asked for in whatever order, against a list that is kept in order.
+/// Random requests in a random order, against a list that is kept in order.
 TEST(WishQueue, is_in_the_order_of_a_list_that_is_searched)
 {
     constexpr std::size_t kCapacity = 40;

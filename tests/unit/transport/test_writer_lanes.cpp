@@ -173,7 +173,7 @@ TEST_F(Lanes, are_renewed_where_pieces_stay_away_for_300_ms)
 {
     auto sut = Subscription::create(*host_, ControllerId{1}, "controller", 100).value();
     const auto start = Backoff::Clock::now();
-    sut.set_credit({100, 228, 80}); // From before: nobody knows why.
+    sut.set_credit({100, 228, 80}); // Older than what was sent since.
     EXPECT_EQ(sut.try_heal(start), nullptr);
     EXPECT_EQ(sut.try_heal(start + std::chrono::seconds(2)), nullptr);
     sut.set_credit({100, 228, 70});
