@@ -37,7 +37,7 @@ echo "the viewer's memory: $before KiB before, $after KiB after four requests fo
 # Forty that are slow, again and again: who asks is answered meanwhile.
 for url in "$served" "$page/state" "$page/metrics"; do
     coproc slow { attack "$url" slow; }
-    attacking=$slow_PID
+    attacking=$!
     started+=("$attacking")
     read -r word <&"${slow[0]}"
     [[ "$word" == ready ]] || fault "the attacker: $word"
