@@ -77,6 +77,20 @@ Result<std::unique_ptr<HapticDevice>, Refusal> make_rail(const DeviceWish& wish)
     return std::unique_ptr<HapticDevice>(std::make_unique<Rail>(wish, height_m));
 }
 
+// A real one talks to its hardware. This rail ends with its program.
+bool stop_motors() { return true; }
+
+class RailGuard final : public DeviceGuard
+{
+public:
+    bool brake() noexcept override { return stop_motors(); }
+};
+
+Result<std::unique_ptr<DeviceGuard>, Refusal> make_rail_guard(const DeviceWish& /*wish*/)
+{
+    return std::unique_ptr<DeviceGuard>(std::make_unique<RailGuard>());
+}
+
 } // namespace
 
-TACTUS_DEVICE_PLUGIN(make_rail);
+TACTUS_DEVICE_PLUGIN(make_rail, make_rail_guard);
