@@ -139,7 +139,7 @@ build_programs() { # build_programs PROGRAM...
 
 # Labels of what tells nothing about this machine: checks of the sources, pages and packages, builds
 # by other compilers, benchmarks, and runs of many minutes. `.ci/run` has them.
-readonly left_out='^(bench|extended|guard|other_builds|packages|pictures)$'
+readonly left_out='^(bench|extended|guard|hostile|other_builds|packages|pictures)$'
 
 # Names of the tests that were not run, one per line: from ctest's JUnit file, and from those that
 # the test programs wrote.
