@@ -5,7 +5,7 @@
 # device of the omega class and one of the touch class, beside that of an honest host.
 source "$(dirname "$0")/../integration/hrtc/common.sh"
 source "$(dirname "$0")/force_figures.sh"
-readonly lying_host=$4 attack=$5
+readonly lying_host=$4 attack=${5#host_}
 readonly tool_m=0.002
 declare -A growth fall share excess
 # In N: what a force may grow by in a period. A hand that is dragged goes by 0.33 mm itself, and the
