@@ -204,30 +204,26 @@ stop_programs() {
     programs=()
 }
 
-start_program() { # start_program NAME OPTION...
-    local name=$1
+start_program() { # start_program READY NAME OPTION...: until its log has a line with READY.
+    local ready=$1 name=$2
     local log="$demo/$name.log"
-    "$build/bin/$name" "${@:2}" >"$log" 2>&1 &
+    "$build/bin/$name" "${@:3}" >"$log" 2>&1 &
     programs+=("$!")
     trap stop_programs EXIT
     trap 'exit 2' INT TERM
-    sleep 0.5 # Long enough for a wrong file or network set-up to show.
-    if ! kill -0 "${programs[-1]}" 2>/dev/null; then
-        cat "$log" >&2
-        fail 2 "$name ended at once; its last words are above"
-    fi
+    until grep -q "$ready" "$log"; do
+        kill -0 "${programs[-1]}" 2>/dev/null || {
+            cat "$log" >&2
+            fail 2 "$name ended before it was ready; its last words are above"
+        }
+        sleep 0.1 # It reads models first.
+    done
 }
 
 start_view() { # start_view OPTION...: tells where, and opens a browser where there is a screen.
-    start_program spm_view "$@" --port 0 # A free one.
-    local url=''
-    while url=$(sed -n 's/^\(http[^ ]*\) shows .*/\1/p' "$demo/spm_view.log") && [[ -z "$url" ]]; do
-        kill -0 "${programs[-1]}" 2>/dev/null || {
-            cat "$demo/spm_view.log" >&2
-            fail 2 'spm_view ended before it showed anything; its last words are above'
-        }
-        sleep 0.1 # It reads the models first.
-    done
+    local url
+    start_program ' shows ' spm_view "$@" --port 0 # A free one.
+    url=$(sed -n 's/^\(http[^ ]*\) shows .*/\1/p' "$demo/spm_view.log")
     echo "View: $url"
     if [[ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]] && command -v xdg-open >/dev/null; then
         xdg-open "$url" >/dev/null 2>&1 || true
@@ -270,7 +266,7 @@ run_demo() { # run_demo SECONDS [DOMAIN [WITH_SCENE [WITH_VIEW]]]
             "times below are those of an ordinary thread."
         realtime=(--allow-no-rt)
     fi
-    start_program spm_publish "$served" "${network[@]}"
+    start_program 'ready on DDS domain' spm_publish "$served" "${network[@]}"
     if [[ -n "${4:-}" ]]; then
         start_view "${models[@]}" "${network[@]}"
     fi
