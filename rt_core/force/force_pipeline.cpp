@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/force/force_pipeline.hpp"
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/force/angular_stiffness.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
 #include "rt_core/math/rotation.hpp"
@@ -42,6 +43,7 @@ ChangeRule rule_of(const PipelineSetup& setup) noexcept
 PipelineSetup pipeline_setup(const ToolSpec& tool, const DeviceLimits& device, double period_s,
                              double speed_max_m_per_s) noexcept
 {
+    TACTUS_ASSERT(tool.stiffness_n_per_m > 0.0);
     const double angular_nm_per_rad = angular_stiffness_nm_per_rad(tool);
     PipelineSetup setup;
     setup.conditioner.device = device;

@@ -30,7 +30,7 @@ struct PipelineSetup
 /// What a device that is held by this tool allows at this period, with nothing hung on it. Hands
 /// above `speed_max_m_per_s` get no force. What the tool's stiffness is beyond the device's cap
 /// doesn't count.
-/// - `device` has no fault, `period_s` > 0, `tool.stiffness_n_per_m` > 0.
+/// - `device` has no fault, `period_s` > 0, `tool.stiffness_n_per_m` > 0 (asserted).
 [[nodiscard]] PipelineSetup pipeline_setup(const ToolSpec& tool, const DeviceLimits& device,
                                            double period_s,
                                            double speed_max_m_per_s) noexcept TACTUS_NONBLOCKING;
