@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <arpa/inet.h>
+#include <bit>
 #include <cstdio>
 #include <cstdlib>
 #include <netinet/in.h>
@@ -68,15 +69,22 @@ RawRtps::Datagram begin_message(const RawRtps::Guid& writer, std::uint8_t kind, 
 
 RawRtps::Datagram RawRtps::later_motion(const Guid& writer, std::uint64_t host_epoch)
 {
-    constexpr std::uint16_t kPayload = 4 + 8 + 8 + 8 + 4 + 4;
+    constexpr std::array<double, 8> kPlace{0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+    constexpr std::uint16_t kPayload = 4 + 8 + 8 + 8 + 4 + 4 + 4 + 4 + 64;
     Datagram datagram = begin_message(writer, 0x15, 0x05, 20 + kPayload);
     append_sequence(datagram, kMuchLater);
     datagram.insert(datagram.end(), {0, 1, 0, 0}); // Little-endian CDR.
     append(datagram, host_epoch);
-    append(datagram, std::uint64_t{1}); // Serial.
-    append(datagram, std::uint64_t{1}); // Time.
-    append(datagram, std::uint32_t{1}); // Objects that there are.
-    append(datagram, std::uint32_t{0}); // That have moved.
+    append(datagram, ~std::uint64_t{0}); // Serial: none is later.
+    append(datagram, std::uint64_t{1});  // Time.
+    append(datagram, std::uint32_t{1});  // Objects that there are.
+    append(datagram, std::uint32_t{1});  // That have moved.
+    append(datagram, std::uint32_t{0});  // Its number.
+    append(datagram, std::uint32_t{1});  // Its generation.
+    for (const double value : kPlace)
+    {
+        append(datagram, std::bit_cast<std::uint64_t>(value));
+    }
     return datagram;
 }
 

@@ -15,7 +15,8 @@ public:
     using Datagram = std::vector<std::uint8_t>;
     using Guid = std::array<std::uint8_t, 16>;
 
-    /// A sample of a host's motion, in the name of that writer, with the sequence number 2^40.
+    /// A sample of a host's motion, in the name of that writer, with the sequence number 2^40 and
+    /// the largest serial number: object 0 is at the origin.
     [[nodiscard]] static Datagram later_motion(const Guid& writer, std::uint64_t host_epoch);
     /// A heartbeat in its name: all before 2^40 is gone.
     [[nodiscard]] static Datagram later_heartbeat(const Guid& writer, std::uint64_t host_epoch);

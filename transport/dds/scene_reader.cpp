@@ -249,6 +249,21 @@ std::optional<Refused> SceneReader::take_record(Host& host, const tactus_v5_Obje
     return std::nullopt;
 }
 
+/// Another writer counts from its own beginning: what a packet in the last one's name counted up
+/// to is forgotten.
+void SceneReader::begin_with(Host& host, std::uint64_t writer)
+{
+    if (host.motion_writer == 0 || host.motion_writer == writer)
+    {
+        return;
+    }
+    host.motion_serial = 0;
+    for (auto& [number, object] : host.objects)
+    {
+        object.serial = 0;
+    }
+}
+
 /// A packet in a writer's name that tells of a much later sample makes Cyclone take all others of
 /// that writer for old.
 void SceneReader::hear(std::uint64_t epoch, Host& host, std::uint64_t writer)
@@ -279,7 +294,8 @@ void SceneReader::take_motion(std::uint64_t epoch, Host& host, const Take& take)
             {
                 return;
             }
-            hear(epoch, host, info.publication_handle);
+            begin_with(host, info.publication_handle);
+            bool is_news = motion.serial > host.motion_serial;
             for (std::uint32_t i = 0; i < motion.moved._length; ++i)
             {
                 const tactus_v5_MovedObject& moved = motion.moved._buffer[i];
@@ -289,11 +305,19 @@ void SceneReader::take_motion(std::uint64_t epoch, Host& host, const Take& take)
                     continue; // Its record is on its way, or it is gone or a stranger.
                 }
                 SeenObject& object = known->second;
+                is_news = is_news && motion.serial > object.serial;
                 if (try_move(object, motion.serial, moved.pose))
                 {
                     object.host_time_ns = motion.host_time_ns;
                     take(SceneNews::moves, object);
                 }
+            }
+            // One that is passed over as old is as good as none: by and by another writer is asked
+            // for.
+            if (is_news)
+            {
+                host.motion_serial = motion.serial;
+                hear(epoch, host, info.publication_handle);
             }
             settle_disputed(host, motion.objects, take);
             host.is_complete = host.is_complete || host.known() >= motion.objects;

@@ -119,7 +119,8 @@ private:
         bool is_gone{false};
         Clock::time_point since{};
         Clock::time_point heard{};      ///< Its motion, or that it may be.
-        std::uint64_t motion_writer{0}; ///< Handle of the last one.
+        std::uint64_t motion_writer{0}; ///< Handle of the last one that was heard.
+        std::uint64_t motion_serial{0}; ///< What it had counted up to.
 
         /// As far as the host has told of them.
         [[nodiscard]] std::size_t known() const
@@ -135,6 +136,7 @@ private:
     [[nodiscard]] std::optional<Refused>
     take_record(Host& host, const tactus_v5_ObjectRecord& record, const Take& take);
     void take_motion(std::uint64_t epoch, Host& host, const Take& take);
+    static void begin_with(Host& host, std::uint64_t writer);
     void hear(std::uint64_t epoch, Host& host, std::uint64_t writer);
     static void settle_disputed(Host& host, std::uint32_t objects, const Take& take);
     void look_at_strangers(std::uint64_t epoch, Host& host, const Take& take);
