@@ -125,13 +125,14 @@ const ToolForce& ForcePipeline::fade(double elapsed_s, ForceOff cause) noexcept
 void ForcePipeline::look(const ToolState& tool, const ToolOutput& output,
                          const DeviceRecord& device, const PeriodContext& context) noexcept
 {
-    look_at_device(tool, device);
+    const bool is_place = look_at_device(tool, device);
     period_.elapsed_s = context.elapsed_s;
     period_.elapsed_periods = std::max(tool.elapsed_periods, 1U);
     period_.surface_damping_n_s_per_m = context.surface_damping_n_s_per_m;
     period_.force_left = context.force_left;
     period_.causes = context.causes | when(!device.connected, ForceOff::disconnect) |
-                     when(!device.deadman_held, ForceOff::deadman);
+                     when(!device.deadman_held, ForceOff::deadman) |
+                     when(tool.valid && !is_place, ForceOff::garbage);
     period_.faults = faults_of(output);
     period_.is_touching = output.in_contact;
     period_.object_way_m = output.object_way_m;
@@ -140,12 +141,14 @@ void ForcePipeline::look(const ToolState& tool, const ToolOutput& output,
     period_.carried_rad = output.carried_rad;
 }
 
-/// A hand that isn't where it says doesn't turn.
-void ForcePipeline::look_at_device(const ToolState& tool, const DeviceRecord& device) noexcept
+/// Whether the hand is at a place. One that isn't where it says doesn't turn.
+bool ForcePipeline::look_at_device(const ToolState& tool, const DeviceRecord& device) noexcept
 {
     const HandPlace hand = device.hand.value_or(HandPlace{tool.position_m, tool.rotation});
     period_.hand_m = hand.position_m;
-    if (tool.valid && hand.position_m.allFinite() && hand.rotation != period_.hand_rotation)
+    const bool is_place =
+        hand.position_m.allFinite() && is_rotation(hand.rotation, kRotationTolerance);
+    if (tool.valid && is_place && hand.rotation != period_.hand_rotation)
     {
         period_.turned_rad +=
             rotation_vector(orthonormalised(hand.rotation * period_.hand_rotation.transpose()));
@@ -156,13 +159,15 @@ void ForcePipeline::look_at_device(const ToolState& tool, const DeviceRecord& de
     period_.has_turning = device.angular_velocity_rad_per_s.has_value();
     period_.turning_rad_per_s = device.angular_velocity_rad_per_s.value_or(kZero);
     period_.sample_time_ns = tool.sample_time_ns;
+    return is_place;
 }
 
 void ForcePipeline::take_frame(const ToolState& tool, const ToolOutput& output) noexcept
 {
     const Vec3 stretch = output.proxy_m - tool.position_m;
     const Vec3 twist =
-        angular_share_m2_ > 0.0 && output.proxy_rotation.allFinite()
+        angular_share_m2_ > 0.0 && is_rotation(output.proxy_rotation, kRotationTolerance) &&
+                is_rotation(tool.rotation, kRotationTolerance)
             ? rotation_vector(orthonormalised(output.proxy_rotation * tool.rotation.transpose()))
             : kZero;
     period_.stretch_m = stretch.norm();

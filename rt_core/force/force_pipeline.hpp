@@ -73,7 +73,7 @@ public:
 private:
     void look(const ToolState& tool, const ToolOutput& output, const DeviceRecord& device,
               const PeriodContext& context) noexcept;
-    void look_at_device(const ToolState& tool, const DeviceRecord& device) noexcept;
+    [[nodiscard]] bool look_at_device(const ToolState& tool, const DeviceRecord& device) noexcept;
     void take_frame(const ToolState& tool, const ToolOutput& output) noexcept;
 
     WrenchConditioner conditioner_;

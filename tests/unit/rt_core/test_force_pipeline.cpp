@@ -253,6 +253,40 @@ private:
     std::uint32_t run_{0};
 };
 
+TEST(ForcePipeline, gives_no_force_to_a_hand_whose_rotation_is_none)
+{
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const std::array<Mat3, 4> none{Mat3(Mat3::Zero()), Mat3(Mat3::Constant(nan)),
+                                   Mat3(2.0 * Mat3::Identity()), Mat3(-Mat3::Identity())};
+    for (const Mat3& rotation : none)
+    {
+        for (const bool is_box : {false, true})
+        {
+            for (const bool is_held : {false, true}) // The device's own word, beside the tool's.
+            {
+                PipedTool tool(piped(kOmegaClass, is_box));
+                tool.press(0.004);
+                tool.steps(300);
+                ASSERT_GT(tool.sent_n().norm(), 1.0);
+                tool.state.rotation = rotation;
+                if (is_held)
+                {
+                    tool.device.hand = HandPlace{tool.state.position_m, rotation};
+                }
+                const double before_n = tool.sent_n().norm();
+                EXPECT_TRUE(has_cause(tool.step().causes, ForceOff::garbage));
+                EXPECT_LE(tool.sent_n().norm(), before_n);
+                tool.steps(60);
+                EXPECT_EQ(tool.sent_n().norm(), 0.0);
+                tool.state.rotation = Mat3::Identity();
+                tool.device.hand.reset();
+                tool.steps(300);
+                EXPECT_GT(tool.sent_n().norm(), 1.0);
+            }
+        }
+    }
+}
+
 } // namespace
 
 TEST(ForcePipeline, holds_the_law_on_change_in_every_pair_of_periods_whatever_happens)
