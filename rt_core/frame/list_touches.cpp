@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "rt_core/frame/list_touches.hpp"
 
+#include <algorithm>
+
 namespace tactus
 {
 
@@ -15,8 +17,8 @@ void list_touches(const Frame& frame, std::span<const PairOutput> pairs,
         {
             const Tool& tool = frame.tool(pair.tool);
             const double radius_m = tool.spec().radius_m;
-            const double soon_m = radius_m + kTouchSlack_m + belief.soon_m(tool.speed_m_per_s());
-            if (!tool.spec().passes_through && pair.lower_m <= soon_m &&
+            const double soon_m = std::max(belief.soon_m(tool.speed_m_per_s()), tool.leap_m());
+            if (!tool.spec().passes_through && pair.lower_m <= radius_m + kTouchSlack_m + soon_m &&
                 is_in_reach(pair, radius_m) == is_near)
             {
                 const Ball reach = tool.reach_ball();

@@ -156,7 +156,7 @@ bool Tool::is_jump(const NearObject& object) const noexcept
 {
     const Ball reach = reach_ball();
     const double way_m = way_in_ball_m(*object.before, *object.now, reach.center, reach.radius);
-    return way_m * spec_.stiffness_n_per_m > spec_.force_max_n &&
+    return way_m > leap_m() &&
            (output_.in_contact || object.lower_m <= spec_.radius_m + kTouchSlack_m + way_m);
 }
 

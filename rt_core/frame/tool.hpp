@@ -89,6 +89,11 @@ public:
         const Ball core = ball();
         return {core.center, core.radius + spec_.radius_m + kTouchSlack_m};
     }
+    /// What is farther is a jump of an object: the way that makes the tool's largest force.
+    [[nodiscard]] double leap_m() const noexcept
+    {
+        return spec_.force_max_n / spec_.stiffness_n_per_m;
+    }
     /// How fast it may go.
     [[nodiscard]] double speed_m_per_s() const noexcept
     {
