@@ -33,16 +33,31 @@ namespace tactus
                        });
 }
 
-/// Whether a server may be called so: 1 to 80 bytes of [A-Za-z0-9._:-]. It is called by its
-/// machine, MACHINE or MACHINE:PROCESS, or with DDS Security by its certificate, cert:HEX.
+/// Whether a server may be called so: by its machine and perhaps its process, MACHINE or
+/// MACHINE:PROCESS, or with DDS Security by its certificate, cert: and 12 digits of 0-9 a-f. A
+/// machine's name has 1 to 64 characters of A-Z a-z 0-9 . _ -
 [[nodiscard]] constexpr bool is_valid_server(std::string_view server) noexcept
 {
-    constexpr std::size_t kMaxServerBytes = 80;
-    return !server.empty() && server.size() <= kMaxServerBytes &&
-           std::all_of(server.begin(), server.end(),
-                       [](char c) {
-                           return c == ':' || is_valid_name({&c, 1});
-                       });
+    constexpr std::size_t kMachineBytes = 64; // HOST_NAME_MAX of Linux.
+    constexpr std::size_t kProcessDigits = 10;
+    constexpr std::size_t kCertificateDigits = 12;
+    const auto is_of = [](std::string_view text, std::string_view characters)
+    { return !text.empty() && text.find_first_not_of(characters) == std::string_view::npos; };
+    const std::size_t colon = server.find(':');
+    const std::string_view first = server.substr(0, colon);
+    if (colon == std::string_view::npos || first != "cert")
+    {
+        const std::string_view process =
+            colon == std::string_view::npos ? "0" : server.substr(colon + 1);
+        return !first.empty() && first.size() <= kMachineBytes &&
+               std::all_of(first.begin(), first.end(),
+                           [](char c) {
+                               return is_valid_name({&c, 1});
+                           }) &&
+               process.size() <= kProcessDigits && is_of(process, "0123456789");
+    }
+    const std::string_view certificate = server.substr(colon + 1);
+    return certificate.size() == kCertificateDigits && is_of(certificate, "0123456789abcdef");
 }
 
 /// Which model or scene is meant: by name, or by name and hash or server. Without those the first
@@ -74,7 +89,7 @@ struct ModelSelector
         {
             return Refusal{"'" + printable(pin) +
                            "' behind @ is neither a hash of 32 hexadecimal digits nor a server, "
-                           "MACHINE[:PROCESS] or cert:HEX"};
+                           "MACHINE[:PROCESS] or cert: and 12 digits of 0-9 a-f"};
         }
         selector.server = selector.hash ? "" : pin;
     }

@@ -509,8 +509,8 @@ std::string take_failover(Options& options, const RawOptions& raw)
     {
         if (!is_valid_server(server))
         {
-            return fmt::format("--failover: '{}' is no server, MACHINE[:PROCESS] or cert:HEX, nor "
-                               "any",
+            return fmt::format("--failover: '{}' is no server, MACHINE[:PROCESS] or cert: and 12 "
+                               "digits of 0-9 a-f, nor any",
                                printable(server));
         }
         if (server == "any")
