@@ -54,6 +54,9 @@ for device in omega touch; do
         at_most "what is beyond the law on change, $name," "${excess[$name]}" 0.0001
         [[ "$attack" != materials ]] || was_held_up "$name.json" \
             || at_most "the largest fall a period, $name," "${fall[$name]}" 0.5
+        # What outruns its limit is told.
+        [[ "$variant" != 'strike 0.025' ]] || was_held_up "$name.json" \
+            || check "$name.json" safety.begun.jump '>=' 1
         # A loop that is held up meets more of an object's way in a frame than a period's.
         was_held_up "$name.json" \
             || at_most "the largest growth a period, $name," "${growth[$name]}" \
