@@ -19,6 +19,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -292,13 +293,21 @@ TEST(SceneChanges, tell_how_far_an_object_at_the_tool_went_and_took_it_along)
     EXPECT_EQ(sut.step(0.5 * sut.model.diagonal_m).object_way_m, 0.0);
 }
 
-/// By a tool of 2 mm at 1 m/s and an object at 0.5 m/s: 5 mm off at once, and 30 mm more within
-/// 20 ms. A tool without a force touches nothing.
-TEST(SceneTouches, are_what_a_tool_with_a_force_may_meet_within_20_ms_and_near_ones_say_so)
+/// A tool so far beside the object, and what is listed of the two.
+struct ListedCase
+{
+    double gap_m;
+    std::size_t listed;
+    bool is_in_reach;
+};
+
+/// Of an object at 0.5 m/s, for this tool and for one like it without a force, which touches
+/// nothing.
+void expect_listed(const ToolSpec& tool, std::span<const ListedCase> cases)
 {
     const TestModel& model = small_model(0);
     RigOptions options = with_room_for_all();
-    options.tools.assign(2, ToolSpec{0.002, 500.0, 8.0, 1.0});
+    options.tools.assign(2, tool);
     options.tools[0].wants_distance = options.tools[1].wants_distance = true;
     options.tools[1].passes_through = true;
     FrameRig rig(model, options);
@@ -311,14 +320,7 @@ TEST(SceneTouches, are_what_a_tool_with_a_force_may_meet_within_20_ms_and_near_o
             outermost = corner_m.x() > outermost.x() ? corner_m : outermost;
         }
     }
-    struct Case
-    {
-        double gap_m;
-        std::size_t listed;
-        bool is_in_reach;
-    };
-    for (const Case& at : {Case{0.0069, 1, true}, Case{0.0071, 1, false}, Case{0.0369, 1, false},
-                           Case{0.0371, 0, false}, Case{0.0069, 1, true}})
+    for (const ListedCase& at : cases)
     {
         const Vec3 goal_m = outermost + Vec3(at.gap_m, 0.0, 0.0);
         FrameOutput output;
@@ -337,6 +339,24 @@ TEST(SceneTouches, are_what_a_tool_with_a_force_may_meet_within_20_ms_and_near_o
             EXPECT_LE((touches[0].place_m - goal_m).norm(), 1e-6);
         }
     }
+}
+
+/// By a tool of 2 mm at 1 m/s: 5 mm off at once, and 30 mm more within 20 ms.
+TEST(SceneTouches, are_what_a_tool_with_a_force_may_meet_within_20_ms_and_near_ones_say_so)
+{
+    constexpr std::array<ListedCase, 5> kCases{{{0.0069, 1, true},
+                                                {0.0071, 1, false},
+                                                {0.0369, 1, false},
+                                                {0.0371, 0, false},
+                                                {0.0069, 1, true}}};
+    expect_listed({0.002, 500.0, 8.0, 1.0}, kCases);
+}
+
+/// At 0.1 m/s 12 mm more within 20 ms, but 24 mm make 12 N.
+TEST(SceneTouches, are_also_what_a_leap_that_is_no_jump_may_bring)
+{
+    constexpr std::array<ListedCase, 2> kCases{{{0.0309, 1, false}, {0.0311, 0, false}}};
+    expect_listed({0.002, 500.0, 12.0, 0.1}, kCases);
 }
 
 TEST(SceneChanges, an_object_that_comes_beside_a_touch_leaves_its_force_as_it_is)

@@ -351,33 +351,6 @@ TEST(MovedObject, that_leaps_over_a_hand_is_felt_step_by_step_whatever_is_believ
     }
 }
 
-/// From where no tool may touch it soon, over a hand at rest, by less than the way that counts as a
-/// jump.
-TEST(MovedObject, that_leaps_from_farther_off_is_carried_no_faster_than_is_believed)
-{
-    for (const double leap_m : {0.021, 0.0238})
-    {
-        for (const double off_m : {0.009, 0.013, 0.016, 0.02})
-        {
-            LoopRigOptions options;
-            options.device = kOmegaClass;
-            options.press_m = -off_m - 0.01 * tactus::test::small_model(0).diagonal_m;
-            options.has_door = true;
-            options.object_speed_m_per_s = 0.5;
-            options.meanwhile = [leap_m](LoopRig& rig, std::uint64_t frame)
-            {
-                ObjectPose pose = rig.placed();
-                pose.translation_m.x() += frame < kSettled ? 0.0 : leap_m;
-                rig.door().put(0, pose, rig.clock().now());
-            };
-            LoopRig rig(options);
-            rig.run();
-            EXPECT_LE(rig.door().uses()[0].step_max_m, 0.501e-3)
-                << leap_m << " m from " << off_m << " m";
-        }
-    }
-}
-
 TEST(MovedObject, of_an_honest_host_is_felt_as_if_all_were_believed)
 {
     const auto shift = [](std::uint64_t frame) { return swing(frame, 0.02); }; // 0.16 m/s.
