@@ -78,7 +78,10 @@ Result<std::unique_ptr<HapticDevice>, Refusal> make_rail(const DeviceWish& wish)
 }
 
 // A real one talks to its hardware. This rail ends with its program.
-bool stop_motors() { return true; }
+bool stop_motors()
+{
+    return true;
+}
 
 class RailGuard final : public DeviceGuard
 {
