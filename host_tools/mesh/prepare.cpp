@@ -4,6 +4,7 @@
 
 #include "host_tools/mesh/detail/clean.hpp"
 #include "host_tools/mesh/detail/manifold.hpp"
+#include "host_tools/mesh/detail/winding.hpp"
 
 #include <fmt/format.h>
 
@@ -194,11 +195,11 @@ void put_on_grid(const TriangleMesh& mesh, const Box& box, double scale, Prepare
     out.quantisation_m = std::sqrt(worst) * out.quantum_m;
 }
 
-void make_manifold(PreparedMesh& out)
+void make_manifold(TriangleMesh& mesh, PreparedMesh& out)
 {
-    auto& positions = out.mesh.positions;
+    auto& positions = mesh.positions;
     const auto split =
-        detail::split_into_manifold(out.mesh.faces, static_cast<std::uint32_t>(positions.size()));
+        detail::split_into_manifold(mesh.faces, static_cast<std::uint32_t>(positions.size()));
     positions.reserve(positions.size() + split.copy_of.size());
     for (const std::uint32_t vertex : split.copy_of)
     {
@@ -225,20 +226,31 @@ bool is_flat(const QuantisedMesh& mesh, const std::array<std::uint32_t, 3>& face
 
 void write_notes(PreparedMesh& out)
 {
-    const auto note = [&out](std::size_t count, std::string_view what)
+    const auto note = [&out](std::size_t count, std::string_view one, std::string_view many,
+                             std::string_view what)
     {
         if (count > 0)
         {
-            out.notes.push_back(fmt::format("{} {}", count, what));
+            out.notes.push_back(fmt::format("{} {} {}", count, count == 1 ? one : many, what));
         }
     };
-    note(out.welded_vertices, "vertices welded to one with the same position");
-    note(out.isolated_vertices, "vertices dropped that no face uses");
-    note(out.degenerate_faces, "degenerate faces dropped (two corners in one place)");
-    note(out.duplicate_faces, "duplicate faces dropped");
-    note(out.cut_edges, "edges cut open (more than two faces, or two with the same direction)");
-    note(out.added_vertices, "vertices added where several fans of faces met");
-    note(out.flat_faces, "faces kept without area on the grid");
+    const auto note_vertices = [&](std::size_t count, std::string_view what)
+    { note(count, "vertex", "vertices", what); };
+    const auto note_pieces = [&](std::size_t count, std::string_view what)
+    { note(count, "closed piece", "closed pieces", what); };
+    note_vertices(out.welded_vertices, "welded to one with the same position");
+    note_vertices(out.isolated_vertices, "dropped that no face uses");
+    note(out.degenerate_faces, "degenerate face", "degenerate faces",
+         "dropped (two corners in one place)");
+    note(out.duplicate_faces, "duplicate face", "duplicate faces", "dropped");
+    note(out.cut_edges, "edge", "edges",
+         "cut open (more than two faces, or two with the same direction)");
+    note_vertices(out.added_vertices, "added where several fans of faces met");
+    note(out.flat_faces, "face", "faces", "kept without area on the grid");
+    note_pieces(out.turned_pieces,
+                "turned outwards that looked inwards; --keep-winding leaves that");
+    note_pieces(out.turned_voids, "turned inwards, as a void of the closed piece around it; "
+                                  "--keep-winding leaves that");
 }
 
 } // namespace
@@ -285,10 +297,15 @@ Result<PreparedMesh, Refusal> prepare_mesh(const TriangleMesh& source,
         return scale.error();
     }
     out.quantum_m = choose_quantum(box.largest_extent() * scale.value(), options.position_bits);
+    make_manifold(mesh, out);
+    if (!options.keeps_winding)
+    {
+        const detail::TurnedPieces turned = detail::turn_closed_pieces(mesh);
+        out.turned_pieces = turned.outward;
+        out.turned_voids = turned.inward;
+    }
     put_on_grid(mesh, box, scale.value(), out);
     out.mesh.faces = std::move(mesh.faces);
-    mesh = {};
-    make_manifold(out);
     out.flat_faces = static_cast<std::size_t>(
         std::count_if(out.mesh.faces.begin(), out.mesh.faces.end(),
                       [&out](const auto& face) { return is_flat(out.mesh, face); }));

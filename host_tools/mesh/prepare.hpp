@@ -33,6 +33,7 @@ struct PrepareOptions
     std::optional<double>
         fit_diagonal_m{}; ///< Scales the model to this diagonal, whatever its unit.
     unsigned position_bits{kMinPositionBits}; ///< kMinPositionBits .. kMaxPositionBits.
+    bool keeps_winding{false};                ///< Closed pieces that are inside out stay so.
 };
 
 /// A mesh on the integer grid and where the grid lies: source_m = origin_m + quantum_m x integer.
@@ -52,11 +53,14 @@ struct PreparedMesh
     std::size_t cut_edges{0};         ///< Opened: not two faces in opposite directions.
     std::size_t added_vertices{0};    ///< Copies that give each fan a vertex of its own.
     std::size_t flat_faces{0};        ///< Kept, though their corners lie on one line of the grid.
+    std::size_t turned_pieces{0};     ///< Closed pieces that were inside out.
+    std::size_t turned_voids{0};      ///< Closed pieces in others that had to face inwards.
     std::vector<std::string> notes;   ///< One line for each of these that is not zero.
 };
 
 /// Scales, welds equal positions, drops what is degenerate or there twice, puts the mesh on the
-/// grid and cuts it into 2-manifold pieces. The same input gives the same result on every machine;
+/// grid, cuts it into 2-manifold pieces and turns closed ones that look the wrong way (a closed
+/// piece within another one is a void). The same input gives the same result on every machine;
 /// vertices and faces keep their order, copies of vertices come last. A face's opposite is kept:
 /// together they are a two-sided sheet and part into two.
 /// Nearly linear in the mesh: 4 M faces take 4 s and, with the source, 70 B a face at the peak.

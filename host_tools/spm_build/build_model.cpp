@@ -58,8 +58,8 @@ Result<Outcome, Refusal> build_model(const TriangleMesh& mesh, const std::string
                                      std::vector<std::string>& notes)
 {
     const auto start = std::chrono::steady_clock::now();
-    const auto prepared = prepare_mesh(
-        mesh, {options.metres_per_unit, options.fit_diagonal_m, options.position_bits});
+    const auto prepared = prepare_mesh(mesh, {options.metres_per_unit, options.fit_diagonal_m,
+                                              options.position_bits, options.keeps_winding});
     if (!prepared)
     {
         return Refusal{source + ": " + prepared.error().text};

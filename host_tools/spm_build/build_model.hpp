@@ -27,6 +27,7 @@ struct ModelOptions
     std::optional<double> fit_diagonal_m;
     std::optional<double> region_size_m;
     unsigned position_bits{kMinPositionBits};
+    bool keeps_winding{false};
     std::uint32_t base_faces{500};
     unsigned threads{std::max(1U, std::thread::hardware_concurrency())};
 };

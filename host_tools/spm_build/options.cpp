@@ -48,6 +48,9 @@ void declare_options(CommandLine& line, Options& options)
                     "Scale the model to this bounding-box diagonal, in metres, whatever its size")
         .number_between(kMinDiagonal_m, kMaxDiagonal_m)
         .excludes(unit);
+    line.begin_task("Inside and outside", "spm_build part.stl --keep-winding -o part.spm");
+    line.add_flag("--keep-winding", options.model.keeps_winding,
+                  "Leave closed pieces as they are that look inside out");
     line.begin_task("Encoding", "spm_build part.stl --unit mm --position-bits 20 -o part.spm");
     line.add_option("--position-bits", options.model.position_bits, "Bits of a coordinate")
         .number_between(kMinPositionBits, kMaxPositionBits)

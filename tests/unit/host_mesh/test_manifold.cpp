@@ -208,7 +208,8 @@ void check_soup(const std::vector<Face>& faces, std::uint32_t vertices)
             expected.push_back(f);
         }
     }
-    const auto sut = prepare_mesh(mesh, {.fit_diagonal_m = 1.0, .position_bits = 24});
+    const auto sut =
+        prepare_mesh(mesh, {.fit_diagonal_m = 1.0, .position_bits = 24, .keeps_winding = true});
     RC_ASSERT(sut.has_value() == !expected.empty());
     if (!sut)
     {
