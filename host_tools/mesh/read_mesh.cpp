@@ -158,28 +158,6 @@ Result<TriangleMesh, Refusal> read_mesh(const std::filesystem::path& path)
 namespace detail
 {
 
-void PolygonSink::add(std::span<const std::uint32_t> corners)
-{
-    smaller_ += corners.size() < 3 ? 1U : 0U;
-    larger_ += corners.size() > 3 ? 1U : 0U;
-    for (std::size_t i = 2; i < corners.size(); ++i)
-    {
-        mesh_.faces.push_back({corners[0], corners[i - 1], corners[i]});
-    }
-}
-
-void PolygonSink::add_notes(std::vector<std::string>& notes) const
-{
-    if (larger_ > 0)
-    {
-        notes.push_back(fmt::format("{} polygons with more than 3 corners cut into fans", larger_));
-    }
-    if (smaller_ > 0)
-    {
-        notes.push_back(fmt::format("{} polygons with fewer than 3 corners dropped", smaller_));
-    }
-}
-
 void note_missing_line_end(std::string_view text, std::vector<std::string>& notes)
 {
     if (!text.empty() && text.back() != '\n')

@@ -47,7 +47,7 @@ public:
                                        "{} vertices",
                                        largest_line_, largest_index_, file_.mesh.positions.size())};
         }
-        polygons_.add_notes(file_.notes);
+        polygons_.finish(file_.notes);
         if (left_out_ > 0)
         {
             file_.notes.push_back(

@@ -172,7 +172,7 @@ private:
             polygons.add(corners);
             cursor_.skip_line();
         }
-        polygons.add_notes(file_.notes);
+        polygons.finish(file_.notes);
         return std::nullopt;
     }
 

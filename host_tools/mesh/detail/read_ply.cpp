@@ -125,7 +125,7 @@ public:
         {
             return Refusal{values_.where() + "data after the last element"};
         }
-        polygons_.add_notes(file_.notes);
+        polygons_.finish(file_.notes);
         return std::move(file_);
     }
 

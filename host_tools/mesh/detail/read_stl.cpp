@@ -100,7 +100,7 @@ public:
             cursor_.skip_line();
             word = lower(cursor_.next_token());
         }
-        polygons_.add_notes(file_.notes);
+        polygons_.finish(file_.notes);
         return std::move(file_);
     }
 

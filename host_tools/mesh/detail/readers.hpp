@@ -2,11 +2,11 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "host_tools/mesh/detail/polygon_sink.hpp"
 #include "host_tools/mesh/read_mesh.hpp"
 #include "platform/base/refusal.hpp"
 
-#include <cstdint>
-#include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -19,21 +19,6 @@ namespace tactus::detail
 [[nodiscard]] Result<MeshFile, Refusal> read_obj(std::string_view text);
 [[nodiscard]] Result<MeshFile, Refusal> read_stl(std::string_view bytes);
 [[nodiscard]] Result<MeshFile, Refusal> read_off(std::string_view text);
-
-/// Cuts polygons into fans and counts what a user should hear about.
-class PolygonSink
-{
-public:
-    explicit PolygonSink(TriangleMesh& mesh) : mesh_(mesh) {}
-
-    void add(std::span<const std::uint32_t> corners);
-    void add_notes(std::vector<std::string>& notes) const;
-
-private:
-    TriangleMesh& mesh_;
-    std::uint64_t larger_{0};  ///< More than three corners.
-    std::uint64_t smaller_{0}; ///< Fewer than three.
-};
 
 /// Text formats end in a line end; one that doesn't may have lost digits of its last number.
 void note_missing_line_end(std::string_view text, std::vector<std::string>& notes);

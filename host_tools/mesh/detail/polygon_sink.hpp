@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "host_tools/mesh/triangle_mesh.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace tactus::detail
+{
+
+/// Turns polygons into triangles. A polygon with n corners becomes n - 2 faces, in its place among
+/// the mesh's faces. Formats may name vertices before they give them their places, so polygons are
+/// fans at first, and finish() cuts those again that a fan doesn't fit.
+class PolygonSink
+{
+public:
+    explicit PolygonSink(TriangleMesh& mesh) : mesh_(mesh) {}
+
+    /// Equal neighbours among more than three corners count once.
+    void add(std::span<const std::uint32_t> corners);
+
+    /// Cuts the polygons, once every vertex has its place; the corners must name vertices. Adds a
+    /// note for polygons that have too few corners and for such as cross themselves.
+    void finish(std::vector<std::string>& notes);
+
+private:
+    struct Fan
+    {
+        std::size_t first_face;
+        std::uint32_t corners;
+    };
+
+    TriangleMesh& mesh_;
+    std::vector<std::uint32_t> corners_;
+    std::vector<Fan> fans_;    ///< Of more than three corners.
+    std::uint64_t smaller_{0}; ///< Fewer than three.
+};
+
+} // namespace tactus::detail
