@@ -315,7 +315,7 @@ std::size_t PoseDoor::take_passages() noexcept
 {
     std::size_t changes = 0;
     Passage passage;
-    while (changes < changes_.size() / 2 && passages_.try_pop(passage)) // The rest is for moves.
+    while (changes < kTakenAFrame && passages_.try_pop(passage))
     {
         const std::size_t object = passage.object;
         SceneChange& change = changes_[changes++];

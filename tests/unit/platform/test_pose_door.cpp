@@ -612,7 +612,10 @@ TEST(PoseDoor, tells_that_an_object_feels_otherwise_in_its_turn)
         ++waiting;
     }
     EXPECT_EQ(waiting, PoseDoor::kWaiting);
-    EXPECT_EQ(sut.refresh(kStart).size(), kMaxSceneChanges);
+    sut.put(0, pose_of(2.0), kStart);
+    const auto crowded = sut.refresh(kStart);
+    ASSERT_EQ(crowded.size(), PoseDoor::kTakenAFrame + 1) << "a move has room beside them";
+    EXPECT_EQ(crowded.back().kind, SceneChangeKind::object_moves);
     EXPECT_TRUE(sut.try_feel(0, honey));
 }
 
@@ -642,10 +645,10 @@ TEST(PoseDoor, takes_no_more_comings_than_may_wait_and_gives_a_frame_what_it_tak
     }
     EXPECT_FALSE(sut.try_come(PoseDoor::kWaiting, 1, {}, pose_of(1.0), kStart));
     EXPECT_FALSE(sut.try_go(0));
-    for (std::size_t first = 0; first < PoseDoor::kWaiting; first += kMaxSceneChanges)
+    for (std::size_t first = 0; first < PoseDoor::kWaiting; first += PoseDoor::kTakenAFrame)
     {
         const auto changes = sut.refresh(kStart);
-        ASSERT_EQ(changes.size(), kMaxSceneChanges);
+        ASSERT_EQ(changes.size(), PoseDoor::kTakenAFrame);
         EXPECT_EQ(changes[0].number, first);
     }
     EXPECT_TRUE(sut.refresh(kStart).empty());
