@@ -107,9 +107,10 @@ inline constexpr std::uint32_t kMaxContacts = 32;
 /// Pairs of faces that meet and are kept, of a tool that is a mesh and an object; 8 B each. With
 /// more the report says that it is truncated.
 inline constexpr std::uint32_t kMaxMeetingFaces = 1'024;
-/// Of a tool that is felt and wants no pairs so many are enough: it lies deep in the object, and no
-/// contact tells a way out. Two equal meshes in one place have ten pairs a face, all of them for
-/// exact arithmetic. 161 were seen where a tool of 980 faces lies half in the bunny of 69 k.
+/// So many faces that meet a tool, or pairs of a mesh tool that wants none of them listed, are
+/// enough: it lies deep in the object, and no contact tells a way out. Two equal meshes in one
+/// place have ten pairs a face, all of them for exact arithmetic. 161 were seen where a tool of 980
+/// faces lies half in the bunny of 69 k.
 inline constexpr std::uint32_t kEnoughMeetingFaces = 256;
 static_assert(kEnoughMeetingFaces > kMaxContacts && kEnoughMeetingFaces <= kMaxMeetingFaces);
 
@@ -144,9 +145,9 @@ inline constexpr std::uint32_t kFrameWalks = 8;
 /// A tool that is a mesh has thousands of faces near an object where another is one shape: a query
 /// may look at this many times what Budgets says for a pair. Then FrameFault::node_budget_spent.
 inline constexpr std::uint32_t kMeshBudgetFactor = 16;
-/// To refine the two it may look at so many times that, for either model, now and a little ahead.
-/// What was not come to is looked at in the next frame, when what was is split; until then it is
-/// coarse for the query: FrameFault::node_budget_spent, too.
+/// To refine the two it may look at so many times that at most, for either model, now and a little
+/// ahead. What was not come to is looked at in the next frame, when what was is split; until then
+/// it is coarse for the query: FrameFault::node_budget_spent, too.
 inline constexpr std::uint32_t kMeshRefineFactor = 4;
 static_assert(kMeshRefineFactor < kMeshBudgetFactor, "what is coarse still can be asked about");
 /// Balls that the predictor ranks, 56 B each: five for each ball of the pairs that are near. Enough
@@ -359,7 +360,7 @@ inline constexpr double kJumpTurning_rad_per_s = 1'000.0;
 
 // --- Names ---------------------------------------------------------------------------------------
 
-/// A model's or tool's name: at most this many bytes of [A-Za-z0-9._-]. A longer one is refused.
+/// A model's or tool's name: at most this many bytes of UTF-8. A longer one is refused.
 inline constexpr std::size_t kMaxNameBytes = 63;
 
 } // namespace tactus

@@ -136,6 +136,9 @@ public:
     static constexpr std::uint32_t kReserve = kBlockFaces + 1;
     [[nodiscard]] bool has_room_for(std::uint32_t changed_faces) const noexcept TACTUS_NONBLOCKING;
 
+    /// The number of the last change, of no other tree of the pool: what was proven of the tree
+    /// holds while this is the same.
+    [[nodiscard]] std::uint64_t last_change() const noexcept { return last_change_; }
     [[nodiscard]] TreeRef root() const noexcept { return root_; }
     [[nodiscard]] const Node& node(std::uint32_t index) const noexcept { return nodes_[index]; }
     [[nodiscard]] const BlockGeometry& block(std::uint32_t index) const noexcept
@@ -170,6 +173,8 @@ public:
     }
     /// Volume of the whole tree; empty when the tree is.
     [[nodiscard]] Box box() const noexcept TACTUS_NONBLOCKING;
+    /// The box of one of its nodes or blocks, errors added.
+    [[nodiscard]] Box box_of(TreeRef ref) const noexcept TACTUS_NONBLOCKING;
     /// The face that a prim stands for; its lasting name, used for ties and answers.
     [[nodiscard]] FaceId face_of(PrimId prim) const noexcept
     {
@@ -256,6 +261,7 @@ private:
     std::span<Prim> prims_;
     std::array<std::uint32_t, kTreeLevels> dirty_heads_{};
     TreeRef root_;
+    std::uint64_t last_change_{0};
     std::uint8_t owner_;
     TreeShare share_;                     ///< With what was freed and waits for refit.
     std::uint32_t marked_block_{kNoNode}; ///< First of its list, as the two below.

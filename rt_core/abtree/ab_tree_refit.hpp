@@ -127,6 +127,7 @@ void BasicAbTree<Volume>::give_back_freed() noexcept
 template <typename Volume>
 void BasicAbTree<Volume>::mark(TreeRef ref) noexcept
 {
+    last_change_ = pool_->next_change();
     const std::uint32_t index = ref.index();
     if (ref.is_block())
     {
@@ -193,6 +194,16 @@ typename Volume::Box BasicAbTree<Volume>::box() const noexcept
     const Box box =
         Volume::of_vertices(*kernels_, block.coordinates.front().data(), block.vertices);
     return box.inflated(largest_error_quanta(sides_[index]) * quantum_m_);
+}
+
+template <typename Volume>
+typename Volume::Box BasicAbTree<Volume>::box_of(TreeRef ref) const noexcept
+{
+    const std::uint32_t index = ref.index();
+    const std::uint32_t parent = ref.is_block() ? sides_[index].parent : nodes_[index].parent;
+    return parent == kNoNode
+               ? box()
+               : nodes_[parent].box_of(ref.is_block() ? sides_[index].child : nodes_[index].child);
 }
 
 template <typename Volume>

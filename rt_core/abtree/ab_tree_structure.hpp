@@ -596,6 +596,7 @@ template <typename Volume>
 void BasicAbTree<Volume>::free_block(std::uint32_t block) noexcept
 {
     TACTUS_ASSERT(is_block_in_use(block));
+    last_change_ = pool_->next_change();
     sides_[block].in_use = false;
     blocks_[block].faces = 0;
     --blocks_used_;

@@ -89,14 +89,19 @@ void halve_block(BlockGeometry& block, BlockSide& side, std::uint32_t moved, Blo
 /// The largest error of the block's faces, in quanta.
 [[nodiscard]] float largest_error_quanta(const BlockSide& side) noexcept TACTUS_NONBLOCKING;
 
-[[nodiscard]] inline std::uint32_t face_count(const BlockGeometry& block) noexcept
+/// Counts the bits of a block's 16 lanes: std::popcount is a call where the processor may lack the
+/// instruction.
+[[nodiscard]] inline std::uint32_t count_lanes(std::uint32_t bits) noexcept
 {
-    // std::popcount is a call where the processor may lack the instruction.
-    std::uint32_t bits = block.faces;
     bits -= (bits >> 1U) & 0x5555U;
     bits = (bits & 0x3333U) + ((bits >> 2U) & 0x3333U);
     bits = (bits + (bits >> 4U)) & 0x0F0FU;
     return (bits + (bits >> 8U)) & 31U;
+}
+
+[[nodiscard]] inline std::uint32_t face_count(const BlockGeometry& block) noexcept
+{
+    return count_lanes(block.faces);
 }
 
 } // namespace tactus

@@ -82,6 +82,9 @@ public:
         }
     }
 
+    /// The number of a change of any of its trees; from 1.
+    [[nodiscard]] std::uint64_t next_change() noexcept { return ++changes_; }
+
     /// Keeps as many blocks and nodes for a new tree, or what is not kept for others.
     [[nodiscard]] TreeShare promise(const TreeCapacities& least) noexcept
     {
@@ -179,6 +182,7 @@ private:
     PoolRoom node_room_;
     std::uint32_t free_block_{kNoNode}; ///< First of its list, as below.
     std::uint32_t free_node_{kNoNode};
+    std::uint64_t changes_{0};
 };
 
 using TreePool = BasicTreePool<AabbVolume>;

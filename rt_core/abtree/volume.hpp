@@ -68,6 +68,12 @@ struct AabbVolume
     {
         return kernels.child_gaps(rows.low.front().data(), probe, mask, bound, gaps);
     }
+    /// The same from a box.
+    static std::uint32_t child_gaps(const Kernels& kernels, const Rows& rows, const KernelBox& box,
+                                    std::uint32_t mask, float bound, float* gaps) noexcept
+    {
+        return kernels.box_gaps(rows.low.front().data(), box, mask, bound, gaps);
+    }
 };
 
 } // namespace tactus

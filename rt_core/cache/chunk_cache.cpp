@@ -6,7 +6,9 @@
 #include "rt_core/limits.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <optional>
 
 namespace tactus
 {
@@ -31,31 +33,36 @@ QuantumBox extent_of(const ModelHeader& header) noexcept
     return extent;
 }
 
-/// Of a chunk of an index page.
-QuantumBox box_of(const IndexPage& index, const QuantumBox& page_box, std::size_t chunk) noexcept
+/// Those of eight boxes from `first` on, of `open` ones, that a wider ball meets.
+std::uint32_t met_of(std::uint32_t open, std::span<const WantedBall> balls, double wider,
+                     const IndexPage& index, const QuantumBox& page_box,
+                     std::uint32_t first) noexcept
 {
-    const InfluenceBox steps = index.box(chunk);
-    QuantumBox box;
-    for (std::size_t axis = 0; axis < 3; ++axis)
+    std::uint32_t met = 0;
+    for (std::uint32_t left = open; left != 0; left &= left - 1)
     {
-        const std::uint32_t step = index_step(page_box.low[axis], page_box.high[axis]);
-        const auto at = [&](std::uint16_t steps_up)
-        { return page_box.low[axis] + static_cast<std::int32_t>(step * steps_up); };
-        box.low[axis] = at(steps.low[axis]);
-        box.high[axis] = at(steps.high[axis]);
+        const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
+        const QuantumBox box = box_of(index, page_box, first + i);
+        const bool is_met = std::ranges::any_of(
+            balls,
+            [&](const WantedBall& wanted) {
+                return meets({wanted.ball.center, wanted.ball.radius * wider}, box);
+            });
+        met |= is_met ? 1U << i : 0U;
     }
-    return box;
+    return met;
 }
 
 } // namespace
 
 ChunkCache::ChunkCache(CachePool& pool, const Kept& kept, const ModelHeader& header,
-                       PageSlots slots, PageTable& pages) noexcept
+                       PageSlots slots, PageTable& pages, const Kernels& kernels) noexcept
     : pool_(&pool)
     , header_(header)
     , extent_(extent_of(header))
     , slots_(slots)
     , pages_(&pages)
+    , kernels_(&kernels)
     , index_meta_(pool.index_metas)
     , chunk_wishes_(pool.chunk_wishes, pages.owner(), kept.pages)
     , index_wishes_(pool.index_wishes, pages.owner(), kept.index_pages)
@@ -109,8 +116,7 @@ void ChunkCache::open() noexcept
     TACTUS_ASSERT(has_base_);
     is_open_ = true;
     fill_cursor_ = 0;
-    urgent_.begin_anew();
-    patient_.begin_anew();
+    begin_again();
 }
 
 void ChunkCache::want_base(std::uint32_t first_cell, std::uint32_t frame) noexcept
@@ -187,8 +193,7 @@ void ChunkCache::adopt(const DoorEvent& arrival, std::uint32_t frame) noexcept
     TACTUS_ASSERT(inserted);
     ++index_pages_used_;
     index_wishes_.arrive(arrival.key.number, frame);
-    urgent_.begin_anew(); // It has not been searched yet.
-    patient_.begin_anew();
+    forget(IndexPageId{arrival.key.number}); // It has not been searched yet.
 }
 
 void ChunkCache::request_missing(std::span<const RankedRegion> regions, const Budgets& budgets,
@@ -196,6 +201,12 @@ void ChunkCache::request_missing(std::span<const RankedRegion> regions, const Bu
                                  FrameFault& faults) noexcept
 {
     frame_ = frame;
+    work.budget.spend(WorkCost::search);
+    const bool has_expired = chunk_wishes_.take_expired();
+    if (index_wishes_.take_expired() || has_expired)
+    {
+        begin_again(); // What was asked for in vain is to be asked for again.
+    }
     const IndexSearch::Balls urgent = to_quanta(regions, true);
     const IndexSearch::Balls patient = to_quanta(regions, false);
     const bool is_far = urgent.empty() && patient.empty();
@@ -210,9 +221,7 @@ void ChunkCache::request_missing(std::span<const RankedRegion> regions, const Bu
         most.requests -= budgets.requests / kPatientShare;
         most.regions -= budgets.regions / kPatientShare;
     }
-    ask_beside(urgent_, most, work, faults);
     search(urgent_, most, work, faults);
-    ask_beside(patient_, budgets, work, faults);
     search(patient_, budgets, work, faults);
 }
 
@@ -244,21 +253,7 @@ IndexSearch::Balls ChunkCache::to_quanta(std::span<const RankedRegion> regions,
     return balls;
 }
 
-/// What the round left out because only its wider balls met it.
-void ChunkCache::ask_beside(IndexSearch& search, const Budgets& most, WorkCounters& work,
-                            FrameFault& faults) noexcept
-{
-    for (auto met = search.take_met(); met; met = search.take_met())
-    {
-        const Want want = want_of(met->ball, &search);
-        if (!try_touch(met->chunk, want, work))
-        {
-            want_chunk(met->chunk, want, most, work, faults);
-        }
-    }
-}
-
-/// Some of the pages of a search's round, until the frame has done `most`.
+/// What is due of a search, and some of the pages of its round, until the frame has done `most`.
 void ChunkCache::search(IndexSearch& search, const Budgets& most, WorkCounters& work,
                         FrameFault& faults) noexcept
 {
@@ -267,21 +262,43 @@ void ChunkCache::search(IndexSearch& search, const Budgets& most, WorkCounters& 
         work.skipped.add(Skip::searches, search.balls().empty() ? 0 : 1);
         return;
     }
+    const BallLanes lanes(search.balls(), search.wider());
+    constexpr std::uint32_t kGroups = IndexSearch::kGroups;
+    const std::uint32_t groups =
+        kGroups * (most.regions - std::min(most.regions, work.regions_searched));
+    const std::uint32_t group_cost =
+        WorkCost::index_group +
+        static_cast<std::uint32_t>(search.balls().size()) * WorkCost::index_ball;
+    std::uint32_t looked = 0;
+    const auto look = [&](IndexSearch::NearPage& near)
+    {
+        const std::uint32_t more = look_at(near, {search, lanes, most}, work, faults);
+        work.budget.spend(more * group_cost);
+        looked += more;
+    };
+    // A page is looked at whatever work was spent before; what is left stays due.
+    const auto may_look = [&]
+    { return looked + kGroups <= groups && (looked == 0 || !work.budget.is_spent()); };
+    while (may_look())
+    {
+        IndexSearch::NearPage* const near = search.next_due();
+        if (near == nullptr)
+        {
+            break;
+        }
+        look(*near);
+    }
     // The upper level is cheap to look at: sixteen entries count as much as one page.
-    const std::uint32_t entries =
-        16 * (most.regions - std::min(most.regions, work.regions_searched));
-    for (std::uint32_t looked = 0;
-         looked < entries && work.regions_searched < most.regions && !search.is_at_rest(); ++looked)
+    const std::uint32_t entries = 16 / kGroups * groups;
+    for (std::uint32_t entry = 0; entry < entries && may_look() && search.is_on_round(); ++entry)
     {
         const IndexPageId page = search.next(frame_);
-        const QuantumBox box = header_.index_entry(page).box;
-        if (std::ranges::any_of(search.balls(),
-                                [&](const WantedBall& wanted) { return meets(wanted.ball, box); }))
+        if (search.may_come_to(header_.index_entry(page).box))
         {
-            ++work.regions_searched;
-            search_page(page, search, most, work, faults);
+            look(search.add(page));
         }
     }
+    work.regions_searched += (looked + kGroups - 1) / kGroups;
 }
 
 void ChunkCache::request_everything(const Budgets& budgets, WorkCounters& work,
@@ -298,22 +315,23 @@ void ChunkCache::request_everything(const Budgets& budgets, WorkCounters& work,
         const IndexPageId page{chunk.value >> kChunksPerIndexPageLog2};
         if (find_index_page(page) == IdTable::kAbsent)
         {
-            want_index_page(page, nullptr, work, faults); // What verifies the chunk comes first.
+            // What verifies the chunk comes first.
+            static_cast<void>(try_want_index_page(page, work, faults));
             return;
         }
-        const Want want = want_of({}, nullptr);
+        const Want want = want_of(0, 0);
         if (!try_touch(chunk, want, work))
         {
-            want_chunk(chunk, want, budgets, work, faults);
+            static_cast<void>(try_want(chunk, want, budgets, work, faults));
         }
         fill_cursor_ = fill_cursor_ + 1 == chunks ? 0 : fill_cursor_ + 1;
     }
 }
 
-ChunkCache::Want ChunkCache::want_of(const WantedBall& ball, IndexSearch* search) const noexcept
+ChunkCache::Want ChunkCache::want_of(std::uint32_t level, std::uint32_t touch_level) const noexcept
 {
-    const std::uint32_t age = kLevelAge * ball.level;
-    return {frame_ - age, unused_since() - age, age, ball, search};
+    const std::uint32_t age = kLevelAge * level;
+    return {frame_ - kLevelAge * touch_level, unused_since() - age, age, level};
 }
 
 std::uint32_t ChunkCache::unused_since() const noexcept
@@ -321,45 +339,106 @@ std::uint32_t ChunkCache::unused_since() const noexcept
     return std::min(urgent_.last_round_began(), patient_.last_round_began());
 }
 
-void ChunkCache::search_page(IndexPageId page, IndexSearch& search, const Budgets& most,
-                             WorkCounters& work, FrameFault& faults) noexcept
+/// Looks at the groups of a page that are due: asks for what a ball meets there, and finds how far
+/// the balls may go before they are due again. How many groups it looked at.
+std::uint32_t ChunkCache::look_at(IndexSearch::NearPage& near, const Look& look, WorkCounters& work,
+                                  FrameFault& faults) noexcept
 {
-    const std::uint32_t slot = find_index_page(page);
-    if (slot == IdTable::kAbsent)
+    const QuantumBox box = header_.index_entry(near.page).box;
+    if (!near.is_met)
     {
-        want_index_page(page, &search, work, faults);
-        return;
+        if (const std::optional<double> gap = look.search.gap_to(box, look.search.wider()))
+        {
+            near.until.fill(look.search.until(*gap));
+            return 0;
+        }
+        near.due = IndexSearch::kAllGroups;
     }
-    TACTUS_ASSERT(index_meta_[slot].page == page);
+    const std::uint32_t slot = find_index_page(near.page);
+    near.is_met = slot != IdTable::kAbsent;
+    if (!near.is_met)
+    {
+        if (!try_want_index_page(near.page, work, faults))
+        {
+            begin_again();
+        }
+        near.until.fill(IndexSearch::kNever);
+        return IndexSearch::kGroups;
+    }
+    TACTUS_ASSERT(index_meta_[slot].page == near.page);
     index_meta_[slot].touched = frame_;
     const IndexPage& index = slots_.index_pages[slot];
-    const QuantumBox box = header_.index_entry(page).box;
-    std::uint64_t known = 0;
-    for (const WantedBall& wanted : search.balls())
+    for (std::uint32_t left = near.due; left != 0; left &= left - 1)
     {
-        const std::uint64_t meeting = chunks_meeting(index, box, wanted.ball, known);
-        const Want want = want_of(wanted, &search);
-        for (std::uint64_t left = meeting & ~known; left != 0; left &= left - 1)
+        near.until[static_cast<std::size_t>(std::countr_zero(left))] = IndexSearch::kNever;
+    }
+    near.due &= (1U << ((index.chunks + 7) / 8)) - 1; // The last page may have fewer.
+    look_at_boxes(near, index, box, look, work, faults);
+    return static_cast<std::uint32_t>(std::popcount(near.due));
+}
+
+void ChunkCache::look_at_boxes(IndexSearch::NearPage& near, const IndexPage& index,
+                               const QuantumBox& page_box, const Look& look, WorkCounters& work,
+                               FrameFault& faults) noexcept
+{
+    const KernelPage page = look.lanes.page(page_box);
+    const std::span<const WantedBall> balls = look.search.balls();
+    std::array<float, IndexSearch::kGroups> gaps{};
+    gaps.fill(IndexSearch::kNever);
+    std::uint64_t known = ~(~std::uint64_t{0} >> (kChunksPerIndexPage - index.chunks));
+    std::uint32_t waiting = 0;
+    for (std::size_t first = 0, end = 0; first < balls.size(); first = end)
+    {
+        const std::uint32_t level = balls[first].level;
+        while (end < balls.size() && balls[end].level == level)
+        {
+            ++end;
+        }
+        std::uint64_t met = 0;
+        for (std::uint32_t left = near.due; left != 0; left &= left - 1)
+        {
+            const auto group = static_cast<std::uint32_t>(std::countr_zero(left));
+            const NearBoxes seen = kernels_->near_boxes(
+                &index.low[0][std::size_t{8} * group], page, look.lanes.from(first),
+                static_cast<std::uint32_t>(end - first), known >> 8 * group & 0xffU);
+            const std::uint32_t opened = met_of(seen.open, balls.subspan(first, end - first),
+                                                look.search.wider(), index, page_box, 8 * group);
+            gaps[group] = std::min(gaps[group], opened == seen.open ? seen.gap : 0.0F);
+            met |= std::uint64_t{seen.met | opened} << 8 * group;
+        }
+        const Want want = want_of(level, look.search.touch_level(first));
+        for (std::uint64_t left = met; left != 0; left &= left - 1)
         {
             const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
-            const ChunkId chunk{(page.value << kChunksPerIndexPageLog2) + i};
+            const ChunkId chunk{(near.page.value << kChunksPerIndexPageLog2) + i};
             if (try_touch(chunk, want, work))
             {
                 continue;
             }
-            // What only the wider balls of the round meet is not asked for yet.
-            const QuantumBox chunk_box = box_of(index, box, i);
-            if (std::ranges::any_of(search.aimed_at(), [&chunk_box](const WantedBall& aimed)
-                                    { return meets(aimed.ball, chunk_box); }))
+            float& gap = gaps[i / 8];
+            if (const auto way = look.search.gap_to(box_of(index, page_box, i), 1.0))
             {
-                want_chunk(chunk, want, most, work, faults);
+                gap = std::min(gap, static_cast<float>(*way)); // Only the wider ones meet it.
             }
-            else
+            else if (!try_want(chunk, want, look.most, work, faults))
             {
-                search.add_beside({chunk, chunk_box});
+                waiting |= 1U << i / 8;
             }
         }
-        known = meeting;
+        known |= met;
+    }
+    if (waiting != 0 && !chunk_wishes_.has_credit())
+    {
+        begin_again();
+    }
+    for (std::uint32_t left = near.due; left != 0; left &= left - 1)
+    {
+        const auto group = static_cast<std::uint32_t>(std::countr_zero(left));
+        // A chunk of it may have given way to another meanwhile.
+        const bool is_still_due =
+            (waiting >> group & 1U) != 0 || near.until[group] == IndexSearch::kNow;
+        near.until[group] =
+            is_still_due ? IndexSearch::kNow : look.search.until(static_cast<double>(gaps[group]));
     }
 }
 
@@ -375,57 +454,53 @@ bool ChunkCache::try_touch(ChunkId chunk, const Want& want, WorkCounters& work) 
     return chunk_wishes_.is_under_way(chunk.value);
 }
 
-void ChunkCache::want_chunk(ChunkId chunk, const Want& want, const Budgets& most,
-                            WorkCounters& work, FrameFault& faults) noexcept
+/// Asks for what is neither.
+bool ChunkCache::try_want(ChunkId chunk, const Want& want, const Budgets& most, WorkCounters& work,
+                          FrameFault& faults) noexcept
 {
     if (work.requests < most.requests && !chunk_wishes_.has_credit())
     {
         give_page_back(want, work);
         // One page may not be enough when late answers to expired wishes took slots meanwhile. What
         // is only foretold may go without: it was worth asking for, no more.
-        if (want.ball.is_present() && !chunk_wishes_.has_credit())
+        if (is_present(want.level) && !chunk_wishes_.has_credit())
         {
             faults |= FrameFault::cache_full;
             if (pool_->barren_looks_ >= pages_->capacity())
             {
-                pool_->refuse(want.ball.of());
+                pool_->refuse(class_of(want.level));
             }
         }
     }
     if (work.requests >= most.requests || !chunk_wishes_.has_credit() ||
         !pool_->try_wish({ContentKind::chunk, chunk.value}, pages_->owner(), frame_))
     {
-        if (want.search != nullptr)
-        {
-            want.search->begin_anew(); // It is still to be asked for.
-        }
-        return;
+        return false;
     }
     chunk_wishes_.ask(chunk.value, frame_);
     ++work.requests;
     ++work.cache_misses;
+    return true;
 }
 
-void ChunkCache::want_index_page(IndexPageId page, IndexSearch* search, WorkCounters& work,
-                                 FrameFault& faults) noexcept
+/// Whether the page is on its way.
+bool ChunkCache::try_want_index_page(IndexPageId page, WorkCounters& work,
+                                     FrameFault& faults) noexcept
 {
     if (index_wishes_.is_under_way(page.value))
     {
-        return;
+        return true;
     }
     const bool has_credit = index_wishes_.has_credit() || try_evict_index_page();
     faults |= has_credit ? FrameFault::none : FrameFault::cache_full;
     if (!has_credit ||
         !pool_->try_wish({ContentKind::index_page, page.value}, pages_->owner(), frame_))
     {
-        if (search != nullptr)
-        {
-            search->begin_anew();
-        }
-        return;
+        return false;
     }
     index_wishes_.ask(page.value, frame_);
     ++work.requests;
+    return true;
 }
 
 /// Gives the least recently touched page back, of some, that is not pinned and was of no use for
@@ -470,6 +545,20 @@ std::uint32_t ChunkCache::lends_before(const WishList& wishes, std::uint32_t fra
     return wishes.has_more_than_its_own() ? (is_idle ? frame : lends_before_) - age : 0;
 }
 
+/// What is of no use gives way after two rounds of both searches.
+void ChunkCache::begin_again() noexcept
+{
+    urgent_.begin_again();
+    patient_.begin_again();
+}
+
+/// It has come or gone.
+void ChunkCache::forget(IndexPageId page) noexcept
+{
+    urgent_.forget(page);
+    patient_.forget(page);
+}
+
 std::uint32_t ChunkCache::find_index_page(IndexPageId page) const noexcept
 {
     return pool_->index_slot_of.find(PagePool::first_key(pages_->owner()) + page.value);
@@ -488,6 +577,9 @@ void ChunkCache::evict_unpinned(WorkCounters& work) noexcept
 
 void ChunkCache::evict(std::uint32_t slot, WorkCounters& work) noexcept
 {
+    const ChunkId chunk = pages_->meta(slot).chunk;
+    urgent_.forget(chunk);
+    patient_.forget(chunk);
     pages_->evict(slot);
     const bool freed = pool_->door.freed.try_push({ContentKind::chunk, slot});
     TACTUS_ASSERT(freed);
@@ -522,6 +614,7 @@ bool ChunkCache::try_evict_index_page() noexcept
 
 void ChunkCache::evict_index_page(std::uint32_t slot) noexcept
 {
+    forget(index_meta_[slot].page);
     pool_->index_slot_of.erase(PagePool::first_key(pages_->owner()) + index_meta_[slot].page.value);
     --index_pages_used_;
     index_meta_[slot] = IndexMeta{};

@@ -21,14 +21,15 @@ namespace tactus
 
 /// Which of a model's chunks and index pages are here, and what to ask for.
 ///
-/// Every frame it searches some index pages for chunks whose influence box meets a ranked ball
-/// (IndexSearch): first for pairs that touch or will soon, then for the rest, each with a part of
-/// the budget that the other can't take. Such a chunk is touched when it is here and asked for when
-/// it isn't. A page goes back when its slot is needed, no record of it is refined, and it was not
-/// touched in the last two rounds, the least recently touched first. What is wanted counts as
-/// touched kLevelAge frames later than what is only foretold of the same class, and that as much
-/// later than what the next class wants: prefetching never evicts what is of use, while present
-/// need may take the place of what was prefetched, and a touch that of what others only want.
+/// Every frame it looks for chunks whose influence box meets a ranked ball, where the certificates
+/// of its searches (IndexSearch) are used up: first for pairs that touch or will soon, then for the
+/// rest, each with a part of the budget that the other can't take. Such a chunk is touched when it
+/// is here and asked for when it isn't. A page goes back when its slot is needed, no record of it
+/// is refined, and it was not touched in the last two rounds, the least recently touched first.
+/// What is wanted counts as touched kLevelAge frames later than what is only predicted of the same
+/// class, and that as much later than what the next class wants: prefetching never evicts what is
+/// of use, while present need may take the place of what was prefetched, and a touch that of what
+/// others only want.
 ///
 /// Slots are in a pool of all models. When it has no more for this one, the page that goes back may
 /// be another model's that has more than what is kept for it.
@@ -47,7 +48,7 @@ public:
     /// The table is the model's; the pool is its table's. Both outlive the cache, which does not
     /// move.
     ChunkCache(CachePool& pool, const Kept& kept, const ModelHeader& header, PageSlots slots,
-               PageTable& pages) noexcept;
+               PageTable& pages, const Kernels& kernels) noexcept;
     ChunkCache(const ChunkCache&) = delete;
     ChunkCache& operator=(const ChunkCache&) = delete;
     ChunkCache(ChunkCache&&) = delete;
@@ -119,8 +120,14 @@ private:
         std::uint32_t touch{0};
         std::uint32_t evict_before{0};
         std::uint32_t age{0}; ///< So much longer another model's page was of no use.
-        WantedBall ball;
-        IndexSearch* search{nullptr}; ///< Goes on while it has to wait; null: asked again anyway.
+        std::uint32_t level{0};
+    };
+    /// What a frame looks for.
+    struct Look
+    {
+        IndexSearch& search;
+        const BallLanes& lanes;
+        const Budgets& most;
     };
 
     void take(const DoorEvent& event, std::uint32_t frame) noexcept TACTUS_NONBLOCKING;
@@ -129,18 +136,21 @@ private:
     void end_base(std::uint32_t frame) noexcept;
     [[nodiscard]] IndexSearch::Balls to_quanta(std::span<const RankedRegion> regions,
                                                bool are_urgent) const noexcept;
-    [[nodiscard]] Want want_of(const WantedBall& ball, IndexSearch* search) const noexcept;
+    [[nodiscard]] Want want_of(std::uint32_t level, std::uint32_t touch_level) const noexcept;
     void search(IndexSearch& search, const Budgets& most, WorkCounters& work,
                 FrameFault& faults) noexcept;
-    void ask_beside(IndexSearch& search, const Budgets& most, WorkCounters& work,
-                    FrameFault& faults) noexcept;
-    void search_page(IndexPageId page, IndexSearch& search, const Budgets& most, WorkCounters& work,
-                     FrameFault& faults) noexcept;
+    std::uint32_t look_at(IndexSearch::NearPage& near, const Look& look, WorkCounters& work,
+                          FrameFault& faults) noexcept;
+    void look_at_boxes(IndexSearch::NearPage& near, const IndexPage& index,
+                       const QuantumBox& page_box, const Look& look, WorkCounters& work,
+                       FrameFault& faults) noexcept;
     [[nodiscard]] bool try_touch(ChunkId chunk, const Want& want, WorkCounters& work) noexcept;
-    void want_chunk(ChunkId chunk, const Want& want, const Budgets& most, WorkCounters& work,
-                    FrameFault& faults) noexcept;
-    void want_index_page(IndexPageId page, IndexSearch* search, WorkCounters& work,
-                         FrameFault& faults) noexcept;
+    [[nodiscard]] bool try_want(ChunkId chunk, const Want& want, const Budgets& most,
+                                WorkCounters& work, FrameFault& faults) noexcept;
+    [[nodiscard]] bool try_want_index_page(IndexPageId page, WorkCounters& work,
+                                           FrameFault& faults) noexcept;
+    void forget(IndexPageId page) noexcept;
+    void begin_again() noexcept;
     /// What was not touched since was of no use in two rounds.
     [[nodiscard]] std::uint32_t unused_since() const noexcept;
     void give_page_back(const Want& want, WorkCounters& work) noexcept;
@@ -167,6 +177,7 @@ private:
     IndexSearch patient_{kFirstFrame}; ///< and for the rest.
     PageSlots slots_;
     PageTable* pages_;
+    const Kernels* kernels_;
     std::span<IndexMeta> index_meta_; ///< Of all models.
     std::uint32_t index_pages_used_{0};
     WishList chunk_wishes_;

@@ -3,8 +3,12 @@
 #include "rt_core/cache/index_search.hpp"
 
 #include "rt_core/base/assert.hpp"
+#include "rt_core/math/four_lanes.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
 
 namespace tactus
 {
@@ -12,97 +16,210 @@ namespace tactus
 namespace
 {
 
-bool holds(const WantedBall& outer, const WantedBall& inner) noexcept
+/// More than what double precision takes from a distance in quanta, as a share of it.
+constexpr double kRounding = 1e-12;
+
+/// How far a ball's centre moved, and how much the wider one grew.
+double way_between(const QuantumBall& before, const QuantumBall& now) noexcept
 {
-    const double room = outer.ball.radius - inner.ball.radius;
     double moved_sq = 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
-        const double way = outer.ball.center[axis] - inner.ball.center[axis];
-        moved_sq += way * way;
+        const double moved = now.center[axis] - before.center[axis];
+        moved_sq += moved * moved;
     }
-    return outer.level == inner.level && room >= 0.0 && moved_sq <= room * room;
+    return std::sqrt(moved_sq) + IndexSearch::kWider * std::max(now.radius - before.radius, 0.0);
+}
+
+std::int32_t in_range(double value) noexcept
+{
+    constexpr double kLow = std::numeric_limits<std::int32_t>::lowest();
+    constexpr double kHigh = std::numeric_limits<std::int32_t>::max();
+    return static_cast<std::int32_t>(std::clamp(value, kLow, kHigh));
 }
 
 } // namespace
 
-bool meets(const QuantumBall& ball, const QuantumBox& box) noexcept
+BallLanes::BallLanes(std::span<const WantedBall> balls, double wider) noexcept
+    : around_(balls[0].ball.center)
 {
-    double distance_sq = 0.0;
+    std::array<double, 4> most{};
+    for (const WantedBall& wanted : balls)
+    {
+        const double radius = wanted.ball.radius * wider;
+        KernelBall lane{{}, static_cast<float>(radius)};
+        most[3] = std::max(most[3], radius);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            const double at = wanted.ball.center[axis] - around_[axis];
+            lane.center[axis] = static_cast<float>(at);
+            most[axis] = std::max(most[axis], std::abs(at));
+        }
+        lanes_.push_back(lane);
+    }
+    size_ = most[0] + most[1] + most[2] + most[3];
+}
+
+KernelPage BallLanes::page(const QuantumBox& box) const noexcept
+{
+    // A step has less than 18 bits. Of all sizes' sum the gap is off by less than 8 x 2^-24.
+    constexpr double kSlack = 0x1p-20;
+    // Squares of what is larger may be no numbers any more: then single precision decides nothing.
+    constexpr double kLargest = 1e18;
+    KernelPage page{};
+    double size = size_;
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
-        const double gap = std::max({static_cast<double>(box.low[axis]) - ball.center[axis],
-                                     ball.center[axis] - static_cast<double>(box.high[axis]), 0.0});
-        distance_sq += gap * gap;
+        const double low = static_cast<double>(box.low[axis]) - around_[axis];
+        const double step = index_step(box.low[axis], box.high[axis]);
+        page.low[axis] = static_cast<float>(low);
+        page.step[axis] = static_cast<float>(step);
+        size += std::abs(low) + 65'535.0 * step;
     }
-    return distance_sq <= ball.radius * ball.radius;
+    page.slack = size < kLargest ? static_cast<float>(size * kSlack)
+                                 : std::numeric_limits<float>::infinity();
+    return page;
 }
 
 void IndexSearch::aim(const Balls& balls, std::uint32_t pages, std::uint32_t frame,
                       bool keeps_rounds) noexcept
 {
     pages_ = pages;
-    aimed_at_ = balls.view();
+    balls_ = balls.view();
+    wider_ = keeps_rounds ? kWider : 1.0;
     if (balls.empty())
     {
         // Nothing is of use here: whatever was touched before is not.
         is_kept_ = false;
-        beside_.clear();
-        balls_ = {};
+        has_due_ = false;
+        near_.clear();
         pages_left_ = 0;
         round_began_ = frame;
         last_round_began_ = frame;
         return;
     }
-    if (keeps_rounds && is_kept_ && holds(balls) &&
-        (pages_left_ > 0 || frame - ended_ <= kRestFrames))
+    const std::optional<double> way = keeps_rounds && is_kept_ ? way_of(balls) : std::nullopt;
+    way_ += way.value_or(0.0);
+    if (!way || !(way_ <= margin_) || (pages_left_ == 0 && frame - ended_ > kRestFrames))
     {
-        return;
+        is_kept_ = keeps_rounds && balls.size() <= kKeptBalls;
+        begin_round(balls, way.value_or(0.0), frame);
+        kept_.clear();
     }
-    is_kept_ = keeps_rounds && balls.size() <= kKeptBalls;
-    balls_ = balls.view();
-    beside_.clear();
-    pages_left_ = pages;
-    ended_ = frame;
     if (is_kept_)
     {
-        kept_.clear();
-        for (const WantedBall& ball : balls)
-        {
-            kept_.push_back(ball);
-            kept_[kept_.size() - 1].ball.radius *= 1.0 + kMargin;
-        }
-        balls_ = kept_.view();
+        keep(balls);
     }
+    find_due();
 }
 
-bool IndexSearch::holds(const Balls& balls) const noexcept
+/// How far the farthest ball went since the last frame; none where they are others, or others of
+/// them are of one level.
+std::optional<double> IndexSearch::way_of(const Balls& balls) const noexcept
 {
-    return std::ranges::equal(kept_, balls,
-                              [](const WantedBall& outer, const WantedBall& inner)
-                              { return tactus::holds(outer, inner); });
-}
-
-std::optional<IndexSearch::Met> IndexSearch::take_met() noexcept
-{
-    for (Beside& beside : beside_)
+    if (balls.size() != kept_.size())
     {
-        const auto met = std::ranges::find_if(aimed_at_, [&beside](const WantedBall& aimed)
-                                              { return meets(aimed.ball, beside.box); });
-        if (met != aimed_at_.end())
+        return std::nullopt;
+    }
+    double way = 0.0;
+    for (std::size_t i = 0; i < balls.size(); ++i)
+    {
+        const auto is_first = [i](const auto& of)
+        { return i > 0 && of[i].level != of[i - 1].level; };
+        if (is_first(balls) != is_first(kept_))
         {
-            const ChunkId chunk = beside.chunk;
-            beside = beside_[beside_.size() - 1];
-            beside_.pop_back();
-            return Met{chunk, *met};
+            return std::nullopt;
+        }
+        way = std::max(way, way_between(kept_[i].ball, balls[i].ball));
+    }
+    return way;
+}
+
+void IndexSearch::begin_round(const Balls& balls, double way, std::uint32_t frame) noexcept
+{
+    double smallest = balls[0].ball.radius;
+    std::array<double, 3> low = balls[0].ball.center;
+    std::array<double, 3> high = low;
+    for (const auto& [ball, level] : balls)
+    {
+        smallest = std::min(smallest, ball.radius);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            low[axis] = std::min(low[axis], ball.center[axis] - ball.radius * wider_);
+            high[axis] = std::max(high[axis], ball.center[axis] + ball.radius * wider_);
         }
     }
-    return std::nullopt;
+    margin_ = is_kept_
+                  ? std::clamp(way * kRestFrames, kLeastMargin * smallest, kMostMargin * smallest)
+                  : 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        region_.low[axis] = in_range(std::floor(low[axis] - margin_) - 1.0);
+        region_.high[axis] = in_range(std::ceil(high[axis] + margin_) + 1.0);
+    }
+    way_ = 0.0;
+    near_.clear();
+    turn_ = 0;
+    pages_left_ = pages_;
+    ended_ = frame;
+}
+
+/// The balls as the frame has them, each with its most urgent level of the round. Where one is more
+/// urgent than before, what it meets is to be touched again.
+void IndexSearch::keep(const Balls& balls) noexcept
+{
+    bool is_more_urgent = false;
+    for (std::size_t i = 0; i < balls.size(); ++i)
+    {
+        if (i == kept_.size())
+        {
+            kept_.push_back(balls[i]);
+        }
+        is_more_urgent = is_more_urgent || balls[i].level < kept_[i].level;
+        kept_[i] = {balls[i].ball, std::min(balls[i].level, kept_[i].level)};
+    }
+    for (NearPage& near : near_)
+    {
+        if (is_more_urgent)
+        {
+            near.until.fill(kNow);
+        }
+    }
+}
+
+void IndexSearch::find_due() noexcept
+{
+    static_assert(kGroups == 8);
+    const FourFloats way = FourFloats{} + static_cast<float>(way_);
+    turns_left_ = near_.size();
+    has_due_ = false;
+    for (NearPage& near : near_)
+    {
+        std::array<FourFloats, 2> until{};
+        std::memcpy(&until, near.until.data(), sizeof until);
+        near.due = bits_of(until[0] < way) | bits_of(until[1] < way) << 4U;
+        has_due_ = has_due_ || near.due != 0;
+    }
+}
+
+IndexSearch::NearPage* IndexSearch::next_due() noexcept
+{
+    while (turns_left_ > 0)
+    {
+        --turns_left_;
+        NearPage& near = near_[turn_];
+        turn_ = turn_ + 1 == near_.size() ? 0 : turn_ + 1;
+        if (near.due != 0)
+        {
+            return &near;
+        }
+    }
+    return nullptr;
 }
 
 IndexPageId IndexSearch::next(std::uint32_t frame) noexcept
 {
-    TACTUS_ASSERT(!is_at_rest());
+    TACTUS_ASSERT(is_on_round());
     const IndexPageId page{cursor_};
     TACTUS_ASSERT(page.value < pages_);
     cursor_ = cursor_ + 1 >= pages_ ? 0 : cursor_ + 1;
@@ -114,6 +231,74 @@ IndexPageId IndexSearch::next(std::uint32_t frame) noexcept
     --pages_left_;
     ended_ = frame;
     return page;
+}
+
+bool IndexSearch::may_come_to(const QuantumBox& box) const noexcept
+{
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        if (box.low[axis] > region_.high[axis] || box.high[axis] < region_.low[axis])
+        {
+            return false;
+        }
+    }
+    const double further = std::max(margin_ - way_, 0.0) * (1.0 + kRounding);
+    return std::ranges::any_of(
+        balls_,
+        [&](const WantedBall& wanted) {
+            return meets({wanted.ball.center, wanted.ball.radius * wider_ + further}, box);
+        });
+}
+
+IndexSearch::NearPage& IndexSearch::add(IndexPageId page) noexcept
+{
+    const NearPage near{page, kAllGroups, false, {}};
+    if (is_kept_ && near_.try_push_back(near))
+    {
+        return near_[near_.size() - 1];
+    }
+    is_kept_ = false;
+    unlisted_ = near;
+    return unlisted_;
+}
+
+std::optional<double> IndexSearch::gap_to(const QuantumBox& box, double wider) const noexcept
+{
+    double least = std::numeric_limits<double>::infinity();
+    for (const WantedBall& wanted : balls_)
+    {
+        const double far_sq = distance_sq(wanted.ball.center, box);
+        const double radius = wanted.ball.radius * wider;
+        if (far_sq <= radius * radius)
+        {
+            return std::nullopt;
+        }
+        least = std::min(least, std::sqrt(far_sq) * (1.0 - kRounding) - radius);
+    }
+    return std::max(least, 0.0);
+}
+
+IndexSearch::NearPage* IndexSearch::find(IndexPageId page) noexcept
+{
+    auto* const found = std::ranges::find(near_, page, &NearPage::page);
+    return found == near_.end() ? nullptr : found;
+}
+
+void IndexSearch::forget(IndexPageId page) noexcept
+{
+    if (NearPage* const near = find(page); near != nullptr)
+    {
+        near->is_met = false;
+        near->until.fill(kNow);
+    }
+}
+
+void IndexSearch::forget(ChunkId chunk) noexcept
+{
+    if (NearPage* const near = find({chunk.value >> kChunksPerIndexPageLog2}); near != nullptr)
+    {
+        near->until[chunk.value % kChunksPerIndexPage / 8] = kNow;
+    }
 }
 
 } // namespace tactus

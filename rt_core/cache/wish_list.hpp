@@ -12,6 +12,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 
 namespace tactus
 {
@@ -104,6 +105,8 @@ public:
         TACTUS_ASSERT(slots_had() < pool_->room_.capacity());
         pool_->room_.take_unasked(share_); // Its wish had expired: the slot was anybody's.
     }
+    /// Whether a wish expired since this was last asked.
+    [[nodiscard]] bool take_expired() noexcept { return std::exchange(has_expired_, false); }
     void give_back_slot() noexcept { pool_->room_.give_back(share_); }
     /// Whether the model has more than what is kept for it.
     [[nodiscard]] bool has_more_than_its_own() const noexcept
@@ -132,6 +135,7 @@ private:
     std::uint32_t first_key_;
     PoolShare share_;
     std::uint32_t under_way_{0};
+    bool has_expired_{false};
     LoadLatency latency_;
 };
 
@@ -148,6 +152,7 @@ inline void WishPool::expire(std::uint32_t frame, std::uint32_t timeout) noexcep
             WishList& list = *wish.list;
             list.forget(cursor_);
             list.give_back_slot();
+            list.has_expired_ = true;
         }
     }
 }

@@ -30,6 +30,9 @@ constexpr double kMostViscous = 1e6;
 /// After a longer step than this share of the radius other planes hold.
 constexpr double kLongMotion = 0.25;
 
+/// One that rests may be expected to go this share of the radius.
+constexpr double kLeastWay = 0.5;
+
 /// Of a tool's size, its arm.
 constexpr double kLeastArm = 1e-3;
 constexpr double kMostArm = 1e6;
@@ -237,6 +240,11 @@ void RigidProxy::go_on() noexcept
 double RigidProxy::way_to_m(const ToolGoal& goal) const noexcept
 {
     return way_of(way_to(goal)).length_m();
+}
+
+double RigidProxy::likely_way_m() const noexcept
+{
+    return last_pushes_.empty() ? kInfinity : std::max(2.0 * went_m_, kLeastWay * radius_m_);
 }
 
 /// The tool's origin and a turn about it, as the centre of its core goes.

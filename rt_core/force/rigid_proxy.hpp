@@ -78,6 +78,11 @@ public:
     /// Friction holds it, or it slides against it.
     [[nodiscard]] bool sticks() const noexcept { return sticks_; }
     [[nodiscard]] bool slides() const noexcept { return slides_; }
+    /// Surfaces hold it: it is not where the hand is until it is proven to be clear there.
+    [[nodiscard]] bool is_joined() const noexcept { return is_joined_; }
+    /// How far it may be expected to go in a frame. One that pushes goes twice as far as it went at
+    /// most, so that it asks for little of a surface that it rests on.
+    [[nodiscard]] double likely_way_m() const noexcept TACTUS_NONBLOCKING;
     /// From where it went to, with surfaces that are asked for there, it would go on.
     [[nodiscard]] bool goes_on() const noexcept { return goes_on_; }
     /// How far any point of the core has come in the last step, at most.

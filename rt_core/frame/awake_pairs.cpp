@@ -27,6 +27,10 @@ AwakePairs::AwakePairs(Arena& arena, std::span<const ToolSpec> tools, std::uint3
     {
         free_.push_back(i - 1);
     }
+    for (PairFront& front : memory_.fronts) // NOLINT(misc-const-correctness): it is lent.
+    {
+        free_fronts_.push_back(&front);
+    }
 }
 
 void AwakePairs::order() noexcept
@@ -39,6 +43,42 @@ void AwakePairs::order() noexcept
                                           ? place_of(a->parts()) < place_of(b->parts())
                                           : a->urgency() < b->urgency();
                            });
+    lend_fronts();
+}
+
+/// To the most urgent pairs of tools that are meshes; what comes from another pair is empty.
+void AwakePairs::lend_fronts() noexcept
+{
+    StaticVector<Pair*, PairFront::kFronts> first;
+    for (Pair* pair : order_)
+    {
+        if (pair->is_of_mesh() &&
+            (first.size() == memory_.fronts.size() || !first.try_push_back(pair)))
+        {
+            take_back_front(*pair);
+        }
+    }
+    for (Pair* pair : first)
+    {
+        PairFront* front = pair->exchange_front(nullptr);
+        if (front == nullptr)
+        {
+            front = free_fronts_.pop_back();
+            front->count = 0;
+            front->pause = 0;
+        }
+        pair->exchange_front(front);
+    }
+}
+
+void AwakePairs::take_back_front(Pair& pair) noexcept
+{
+    // NOLINTNEXTLINE(misc-const-correctness): it is lent again.
+    PairFront* const front = pair.exchange_front(nullptr);
+    if (front != nullptr)
+    {
+        free_fronts_.push_back(front);
+    }
 }
 
 void AwakePairs::begin(const PairParts& parts) noexcept
@@ -56,15 +96,35 @@ void AwakePairs::begin(const PairParts& parts) noexcept
     }
 }
 
-void AwakePairs::end(const Pair& pair) noexcept
+void AwakePairs::end(Pair& pair, ModelSet& models) noexcept
 {
-    free_.push_back(static_cast<std::uint32_t>(&pair - pairs_.data()));
+    const PairParts& parts = pair.parts();
+    models[parts.model.id].refiner.release(pair.object_closure());
+    if (parts.tool_model.model != nullptr)
+    {
+        models[parts.tool_model.id].refiner.release(pair.tool_closure());
+    }
+    const auto slot = static_cast<std::uint32_t>(&pair - pairs_.data());
+    free_.push_back(slot);
+    if (pair.is_of_mesh())
+    {
+        take_back_front(pair);
+    }
     auto* const at = std::ranges::find(awake_, &pair);
     std::move(at + 1, awake_.end(), at);
     (void)awake_.pop_back();
     for (std::uint32_t i = pair.tool() + 1; i < first_of_tool_.size(); ++i)
     {
         --first_of_tool_[i];
+    }
+}
+
+void AwakePairs::report() noexcept
+{
+    for (std::size_t i = 0; i < awake_.size(); ++i)
+    {
+        outputs_[i] = awake_[i]->output();
+        awake_[i]->remember();
     }
 }
 

@@ -5,6 +5,7 @@
 #include "rt_core/base/arena.hpp"
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/base/static_vector.hpp"
+#include "rt_core/frame/model_set.hpp"
 #include "rt_core/frame/pair.hpp"
 #include "rt_core/limits.hpp"
 
@@ -15,11 +16,11 @@
 namespace tactus
 {
 
-/// The pairs of tools and objects that are near each other, and where the next ones have room.
+/// The pairs of tools and objects that are near each other, their outputs, and where the next ones
+/// have room. Haptic thread.
 class AwakePairs
 {
 public:
-    AwakePairs() noexcept = default;
     /// Room for `most` pairs of such tools.
     AwakePairs(Arena& arena, std::span<const ToolSpec> tools, std::uint32_t most) noexcept;
 
@@ -40,15 +41,29 @@ public:
 
     /// There must be room.
     void begin(const PairParts& parts) noexcept TACTUS_NONBLOCKING;
-    void end(const Pair& pair) noexcept TACTUS_NONBLOCKING;
+    /// Releases what is open for the pair in its models.
+    void end(Pair& pair, ModelSet& models) noexcept TACTUS_NONBLOCKING;
+
+    /// The frame ends: takes what each pair found into outputs().
+    void report() noexcept TACTUS_NONBLOCKING;
+    /// What report() took, in the order of all().
+    [[nodiscard]] std::span<const PairOutput> outputs() const noexcept
+    {
+        return std::span(outputs_).first(awake_.size());
+    }
 
 private:
+    void lend_fronts() noexcept TACTUS_NONBLOCKING;
+    void take_back_front(Pair& pair) noexcept TACTUS_NONBLOCKING;
+
     std::span<Pair> pairs_;
     PairMemory memory_;
     StaticVector<std::uint32_t, kMaxPairs> free_;
+    StaticVector<PairFront*, PairFront::kFronts> free_fronts_;
     StaticVector<Pair*, kMaxPairs> awake_;
     std::array<std::uint32_t, kMaxTools + 1> first_of_tool_{}; ///< Where each tool's begin.
     StaticVector<Pair*, kMaxPairs> order_;
+    std::array<PairOutput, kMaxPairs> outputs_{};
 };
 
 } // namespace tactus

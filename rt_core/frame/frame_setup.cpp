@@ -40,48 +40,6 @@ ModelCapacities pool_capacities(const FrameSetup& setup) noexcept
     return sum;
 }
 
-bool try_take_model(std::optional<Model>& model, Arena& arena, ModelPools& pools, ModelId id,
-                    const FrameSetup& setup) noexcept
-{
-    const ModelSource& source = setup.models[id.value];
-    const std::span<std::byte> header_bytes = arena.take<std::byte>(source.header.size());
-    std::span<const std::byte> kept = source.header;
-    if (!arena.is_measuring())
-    {
-        std::ranges::copy(source.header, header_bytes.begin());
-        kept = header_bytes;
-    }
-    const ModelHeader header = ModelHeader::parse(kept).value();
-    const bool comes_later = is_guest(setup, id.value);
-    const PageSlots slots =
-        comes_later ? pools.slots.without_base() : pools.slots.of_model(arena, header.counts());
-    if (!comes_later && !arena.is_measuring() && !parse_base_mesh(source.base, header, slots.base))
-    {
-        return false;
-    }
-    const Kernels& kernels = setup.kernels != nullptr ? *setup.kernels : best_kernels();
-    model.emplace(arena, pools, id, header, slots, source.capacities, kernels);
-    model->cache.set_variant(setup.variant);
-    if (setup.static_when_it_fits && !comes_later && model->fits())
-    {
-        model->residence = Residence::filling;
-    }
-    return true;
-}
-
-ToolSpec described(const ToolSpec& tool, const ModelHeader& header) noexcept
-{
-    ToolSpec spec = tool;
-    if (auto* mesh = std::get_if<MeshCore>(&spec.core); mesh != nullptr)
-    {
-        const auto& extent = header.fields().extent_quanta;
-        const auto quantum_m = static_cast<double>(header.quantum_m());
-        mesh->origin_m = header.origin_m();
-        mesh->extent_m = quantum_m * Vec3(extent[0], extent[1], extent[2]);
-    }
-    return spec;
-}
-
 SceneCapacities capacities_of(const FrameSetup& setup) noexcept
 {
     SceneCapacities capacities = setup.capacities;

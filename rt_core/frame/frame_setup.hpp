@@ -83,14 +83,6 @@ enum class FrameRefusal : std::uint8_t
 /// What all models together bring to the pools, and what is for guests.
 [[nodiscard]] ModelCapacities pool_capacities(const FrameSetup& setup) noexcept;
 
-/// Copies the header, reads the base mesh and lays out one model. False when the base mesh is
-/// damaged. The header must parse.
-[[nodiscard]] bool try_take_model(std::optional<Model>& model, Arena& arena, ModelPools& pools,
-                                  ModelId id, const FrameSetup& setup) noexcept;
-
-/// The tool, a mesh with what its model's header says of it.
-[[nodiscard]] ToolSpec described(const ToolSpec& tool, const ModelHeader& header) noexcept;
-
 /// As they will be.
 [[nodiscard]] SceneCapacities capacities_of(const FrameSetup& setup) noexcept;
 

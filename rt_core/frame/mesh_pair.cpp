@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/frame/mesh_pair.hpp"
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/math/infinity.hpp"
 #include "rt_core/math/rounding.hpp"
@@ -21,14 +22,24 @@ constexpr double kLeastReach = 0.002;
 /// way that a contact takes to be refined, but by no more than the reach: so long a front is
 /// certified without looking.
 constexpr double kFramesAhead = 4.0;
-/// The cover for prefetching is looked for once in so many frames.
+/// Touches are looked for within this share of the way at least: a tool that knows less of what is
+/// beside it runs into it.
+constexpr double kLeastOfReach = 0.25;
+/// The cover for prefetching is looked for once in so many frames at most, and once the tool has
+/// moved this share of how far it looks, or looks farther or less far than that.
 constexpr std::uint32_t kCoverFrames = 8;
+constexpr double kCoverMoved = 0.1;
+constexpr double kCoverShrunk = 0.8;
 /// How far ahead in time faces are asked for, in units of Outlook::approach_m().
 constexpr double kPrefetchAhead = 4.0;
 
-WalkBudget budget_of(const Budgets& budgets, std::uint32_t factor) noexcept
+WalkBudget budget_of(const Budgets& budgets, WorkBudget& frame, std::uint32_t factor,
+                     std::uint32_t parts = 1) noexcept
 {
-    return {factor * budgets.nodes, factor * budgets.triangles};
+    WalkBudget budget{(factor * budgets.nodes + parts - 1) / parts,
+                      (factor * budgets.triangles + parts - 1) / parts};
+    budget.frame = &frame;
+    return budget;
 }
 
 /// As many balls as a cover may have; when there are too many, one grows.
@@ -80,12 +91,12 @@ CoreCover cover_near(const AbTree& tree, OtherSurface& other, double near_m) noe
 } // namespace
 
 void MeshPair::place(const Outlook& outlook, const MeshCore& core, const Model& tool_model,
-                     const Model& object_model, const Similarity& tool,
-                     const Budgets& budgets) noexcept
+                     const Model& object_model, const Similarity& tool, const Budgets& budgets,
+                     WorkBudget& frame) noexcept
 {
     tool_model_ = &tool_model;
     object_model_ = &object_model;
-    has_moved_on_ = false;
+    moved_on_m_ = 0.0;
     own_ball_ = {0.5 * core.extent_m, 0.5 * core.extent_m.norm() * kRoundedUp};
     for (std::size_t i = 0; i < kPlaces; ++i)
     {
@@ -96,30 +107,67 @@ void MeshPair::place(const Outlook& outlook, const MeshCore& core, const Model& 
         moved_m_[i] = now.motion_since(cores_[i]);
         cores_[i] = now;
     }
-    see_surfaces(budgets);
+    fit_searches();
+    cover_moved_m_ += moved_m_[0];
+    asks_otherwise_ = asks_about_meeting_ != is_meeting_;
+    asks_about_meeting_ = is_meeting_;
+    see_surfaces(budgets, frame);
 }
 
 /// The cores stay: what moved since the last frame is told from them. Only the first place is
 /// asked.
-void MeshPair::move(const Similarity& tool, const Budgets& budgets) noexcept
+void MeshPair::move(const Similarity& tool, const Budgets& budgets, WorkBudget& frame) noexcept
 {
+    const MeshPlacement before = placements_[0];
     placements_[0].place = tool;
-    has_moved_on_ = true;
-    see_surfaces(budgets);
+    moved_on_m_ += motion_between(before, placements_[0], own_ball_);
+    note_use();
+    see_surfaces(budgets, frame);
 }
 
-/// Anew, each with its allowance.
-void MeshPair::see_surfaces(const Budgets& budgets) noexcept
+/// By what the last frame's searches used of their allowance.
+void MeshPair::fit_searches() noexcept
 {
-    const WalkBudget to_refine = budget_of(budgets, kMeshRefineFactor);
+    note_use();
+    if (were_cut_short_)
+    {
+        search_parts_ = std::max(search_parts_ / kSearchGrowth, 1U);
+    }
+    else if (were_far_from_cut_)
+    {
+        search_parts_ = std::min(2 * search_parts_, kSearchParts);
+    }
+    were_cut_short_ = false;
+    were_far_from_cut_ = true;
+}
+
+void MeshPair::note_use() noexcept
+{
+    for (auto* surfaces : {&objects_, &tools_})
+    {
+        for (OtherSurface& surface : *surfaces)
+        {
+            const WalkBudget& budget = surface.budget();
+            were_cut_short_ = were_cut_short_ || budget.is_spent;
+            were_far_from_cut_ = were_far_from_cut_ &&
+                                 kSearchGrowth * budget.nodes_visited <= budget.nodes &&
+                                 kSearchGrowth * budget.triangles_tested <= budget.triangles;
+        }
+    }
+}
+
+/// Each with a whole allowance.
+void MeshPair::see_surfaces(const Budgets& budgets, WorkBudget& frame) noexcept
+{
+    const WalkBudget to_refine = budget_of(budgets, frame, kMeshRefineFactor, search_parts_);
     for (std::size_t i = 0; i < kPlaces; ++i)
     {
         objects_[i] = OtherSurface(object_model_->tree, placements_[i], to_refine);
         tools_[i] = OtherSurface(tool_model_->tree, placements_[i].inverse(), to_refine);
     }
-    covered_ = OtherSurface(object_model_->tree, placements_[0], budget_of(budgets, 1));
-    queried_ =
-        OtherSurface(object_model_->tree, placements_[0], budget_of(budgets, kMeshBudgetFactor));
+    covered_ = OtherSurface(object_model_->tree, placements_[0], budget_of(budgets, frame, 1));
+    queried_ = OtherSurface(object_model_->tree, placements_[0],
+                            budget_of(budgets, frame, kMeshBudgetFactor));
 }
 
 void MeshPair::rank(const Outlook& outlook, ModelId tool_model, ModelId object_model,
@@ -129,12 +177,7 @@ void MeshPair::rank(const Outlook& outlook, ModelId tool_model, ModelId object_m
     const double scale = placements_[0].place.scale;
     const double reach_m = Outlook::kKeepFactor * refine_reach_m(outlook);
     const double near_m = reach_m + kPrefetchAhead * outlook.approach_m().norm();
-    if (frames_until_cover_ == 0)
-    {
-        cover_ = cover_near(tool_model_->tree, covered_, near_m / scale);
-        frames_until_cover_ = kCoverFrames;
-    }
-    --frames_until_cover_;
+    find_cover(near_m);
     CoreCover of_object;
     for (const Ball& ball : cover_)
     {
@@ -142,6 +185,20 @@ void MeshPair::rank(const Outlook& outlook, ModelId tool_model, ModelId object_m
     }
     predictor.rank(prediction, object_model, of_object, reach_m, ranking);
     RegionPredictor::rank_present(tool_model, cover_, reach_m / scale, ranking);
+}
+
+void MeshPair::find_cover(double near_m) noexcept
+{
+    const bool is_other = near_m > cover_near_m_ || near_m < kCoverShrunk * cover_near_m_;
+    if (frames_until_cover_ == 0 && (is_other || cover_moved_m_ > kCoverMoved * near_m))
+    {
+        cover_near_m_ = (1.0 + kCoverMoved) * near_m;
+        cover_ =
+            cover_near(tool_model_->tree, covered_, cover_near_m_ / placements_[0].place.scale);
+        cover_moved_m_ = 0.0;
+        frames_until_cover_ = kCoverFrames;
+    }
+    frames_until_cover_ -= frames_until_cover_ > 0 ? 1U : 0U;
 }
 
 double MeshPair::refine_reach_m(const Outlook& outlook) noexcept
@@ -160,37 +217,62 @@ double MeshPair::ahead_m(std::size_t place, const Outlook& outlook) const noexce
     return std::min(std::max(kFramesAhead * moved_m_[place], way_m), refine_reach_m(outlook));
 }
 
+/// About the place where two faces meet, for what comes there in some frames. All that is exact
+/// already in the tool's ball stays; `scale` is of lengths here in the object's frame.
+RefineQuestion MeshPair::about_meeting(const Vec3& center_m, double radius_m, double scale,
+                                       RefineMemory& memory) const noexcept
+{
+    const double reach_m = kLeastReach * radius_m + kFramesAhead * moved_m_[0] / scale;
+    return {center_m, reach_m, 2.0 * radius_m + reach_m, &memory};
+}
+
 RefineQuestion MeshPair::ask_object(std::size_t place, const Outlook& outlook,
                                     RefineMemory& memory) noexcept
 {
+    memory.is_known = memory.is_known && !asks_otherwise_;
+    if (asks_about_meeting_)
+    {
+        return about_meeting(meeting_m_, cores_[0].radius(), 1.0, memory);
+    }
     return question({cores_[place].center(), cores_[place].radius()}, refine_reach_m(outlook),
-                    moved_m_[place], ahead_m(place, outlook), tools_[place], memory);
+                    moved_m_[place], ahead_m(place, outlook), tools_[place], memory,
+                    place == 0 ? &of_object_ : nullptr);
 }
 
 RefineQuestion MeshPair::ask_tool(std::size_t place, const Outlook& outlook) noexcept
 {
     const double scale = placements_[place].place.scale;
+    RefineMemory& memory = tool_memories_[place];
+    memory.is_known = memory.is_known && !asks_otherwise_;
+    if (asks_about_meeting_)
+    {
+        const Vec3 meeting_m = placements_[0].inverse().to_there(meeting_m_);
+        return about_meeting(meeting_m, own_ball_.radius, scale, memory);
+    }
     return question(own_ball_, refine_reach_m(outlook) / scale, moved_m_[place] / scale,
-                    ahead_m(place, outlook) / scale, objects_[place], tool_memories_[place]);
+                    ahead_m(place, outlook) / scale, objects_[place], memory,
+                    place == 0 ? &of_tool_ : nullptr);
 }
 
 /// For the faces within `reach_m` of a surface that is in a ball, in that ball's frame.
 RefineQuestion MeshPair::question(const Ball& ball, double reach_m, double moved_m, double ahead_m,
-                                  OtherSurface& surface, RefineMemory& memory) noexcept
+                                  OtherSurface& surface, RefineMemory& memory,
+                                  UnfinishedSearch* unfinished) noexcept
 {
-    return {ball.center,
-            ball.radius + reach_m,
-            ball.radius + Outlook::kKeepFactor * (reach_m + ahead_m),
-            &memory,
-            &surface,
-            ball.radius,
-            moved_m,
-            ahead_m};
+    return {.center_m = ball.center,
+            .reach_m = ball.radius + reach_m,
+            .keep_m = ball.radius + Outlook::kKeepFactor * (reach_m + ahead_m),
+            .memory = &memory,
+            .surface = &surface,
+            .span_m = ball.radius,
+            .moved_m = moved_m,
+            .ahead_m = ahead_m,
+            .unfinished = unfinished};
 }
 
 double MeshPair::certified_m(const RefineMemory& of_object) const noexcept
 {
-    if (has_moved_on_)
+    if (asks_about_meeting_)
     {
         return 0.0;
     }
@@ -202,24 +284,52 @@ double MeshPair::certified_m(const RefineMemory& of_object) const noexcept
     };
     const double object_m = beyond_m(*object_model_, of_object, cores_[0].radius());
     const double tool_m = beyond_m(*tool_model_, tool_memories_[0], own_ball_.radius);
-    return std::max(0.0, std::min(object_m, tool_m * placements_[0].place.scale / kRoundedUp));
+    const double near_m = std::min(object_m, tool_m * placements_[0].place.scale / kRoundedUp);
+    return std::max(0.0, near_m / kRoundedUp - moved_on_m_ * kRoundedUp);
 }
 
-void MeshPair::query(const Outlook& outlook, double certified_m, double contact_m, bool wants_pairs,
-                     ContactEnds* ends, DistanceAnswer& answer, ContactReport& contacts) noexcept
+double MeshPair::touch_m(double radius_m, double reach_m) const noexcept
 {
-    const MeshQuestion question{tool_model_->tree, object_model_->tree, placements_[0],
-                                outlook.reach_m(), contact_m,           ends,
-                                certified_m,       wants_pairs};
+    const double share = std::max(memory_.share / static_cast<double>(kProofShare), kLeastOfReach);
+    return share < 1.0 ? radius_m + share * (reach_m - radius_m) : reach_m;
+}
+
+void MeshPair::query(const Outlook& outlook, double certified_m, double contact_m,
+                     std::uint32_t enough, ContactEnds* ends, DistanceAnswer& answer,
+                     ContactReport& contacts) noexcept
+{
+    const MeshQuestion question{tool_model_->tree,
+                                object_model_->tree,
+                                placements_[0],
+                                outlook.reach_m(),
+                                contact_m,
+                                ends,
+                                certified_m,
+                                enough,
+                                front_};
     query_meshes(question, queried_, memory_, answer, report_, contacts);
     if (answer.nearest_face.is_none())
     {
         answer.tool_point_m = outlook.core().center();
     }
+    is_meeting_ = enough == 1 && report_.intersection == Intersection::proven &&
+                  !answer.nearest_face.is_none();
+    meeting_m_ = answer.nearest_point_m;
+}
+
+void MeshPair::note_lower(double lower_m) noexcept
+{
+    if (lower_m > 0.0)
+    {
+        TACTUS_ASSERT(report_.meeting.empty());
+        report_.intersection = Intersection::none;
+        report_.is_complete = true;
+    }
 }
 
 void MeshPair::rest(ContactReport& contacts) noexcept
 {
+    is_meeting_ = false;
     report_.clear();
     report_.intersection = Intersection::none;
     report_.is_complete = true;

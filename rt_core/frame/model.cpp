@@ -241,7 +241,7 @@ Model::Model(Arena& arena, ModelPools& shared, ModelId id, const ModelHeader& mo
     , pages(shared.cache.pages, id.value, slots)
     , cache(shared.cache,
             {kept_for(header, capacities).pages, kept_for(header, capacities).index_pages}, header,
-            slots, pages)
+            slots, pages, kernels)
     , tree(shared.tree, id, tree_part(kept_for(header, capacities)), header.quantum_m(), kernels)
     , forest(arena, shared.faces, id, kept_for(header, capacities).faces, header.counts(), slots,
              pages, tree)
@@ -453,6 +453,7 @@ void Model::refit(WorkCounters& work, FrameFault& faults) noexcept
     revision += refitted.blocks + refitted.nodes > 0 ? 1 : 0;
     work.blocks_refitted += refitted.blocks;
     work.nodes_refitted += refitted.nodes;
+    work.budget.spend((refitted.blocks + refitted.nodes) * WorkCost::refit);
     faults |= tree.is_complete() ? FrameFault::none : FrameFault::tree_full;
 }
 

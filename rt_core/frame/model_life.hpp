@@ -29,7 +29,6 @@ namespace tactus
 class ModelLife
 {
 public:
-    ModelLife() noexcept = default;
     explicit ModelLife(std::int64_t period_ns) noexcept;
 
     /// One frame, after what has arrived was adopted; `pairs` by urgency. A pair sees what comes of

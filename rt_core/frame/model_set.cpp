@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "rt_core/frame/model_set.hpp"
 
+#include "rt_core/frame/validate_model.hpp"
+
 #include <algorithm>
 
 namespace tactus
@@ -44,6 +46,33 @@ void ModelSet::let_rest(std::uint32_t frame) noexcept
     while (busy_.size() > left)
     {
         (void)busy_.pop_back();
+    }
+}
+
+void ModelSet::refit(bool all, WorkCounters& work, FrameFault& faults) noexcept
+{
+    std::uint32_t boxes = 0;
+    for (const ModelId id : busy_)
+    {
+        Model& model = *slots_[id.value].model;
+        if (all)
+        {
+            model.tree.mark_all();
+        }
+        boxes += model.tree.blocks_used() + model.tree.nodes_used();
+        model.refit(work, faults);
+    }
+    const std::uint32_t refitted = work.blocks_refitted + work.nodes_refitted;
+    work.skipped.add(Skip::boxes, boxes - std::min(boxes, refitted));
+}
+
+void ModelSet::report() noexcept
+{
+    for (const ModelId id : busy_)
+    {
+        const Model& model = *slots_[id.value].model;
+        validate(model);
+        outputs_[id.value] = model.output();
     }
 }
 

@@ -16,14 +16,16 @@
 namespace tactus
 {
 
-/// A frame's models, and which of them it looks at: those that a pair is of, and as long after as
-/// there is something left to do for them.
+/// A frame's models, their outputs, and which of them it looks at: those that a pair is of, and as
+/// long after as there is something left to do for them. Haptic thread.
 class ModelSet
 {
 public:
-    ModelSet() noexcept = default;
     /// Room for so many.
-    ModelSet(Arena& arena, std::size_t most) noexcept : slots_(arena.take<ModelSlot>(most)) {}
+    ModelSet(Arena& arena, std::size_t most) noexcept
+        : slots_(arena.take<ModelSlot>(most)), outputs_(arena.take<ModelOutput>(most))
+    {
+    }
 
     /// Where the next model is made; add() follows. Without memory, that is while it is measured,
     /// there is none.
@@ -54,8 +56,16 @@ public:
     /// The frame ends: those that no pair was of in it, and that have nothing left to do, rest.
     void let_rest(std::uint32_t frame) noexcept TACTUS_NONBLOCKING;
 
+    /// Fits the trees of busy models to the faces that changed, or `all` of them.
+    void refit(bool all, WorkCounters& work, FrameFault& faults) noexcept TACTUS_NONBLOCKING;
+    /// The frame ends: takes the state of busy models into outputs().
+    void report() noexcept TACTUS_NONBLOCKING;
+    /// One for each that there is room for.
+    [[nodiscard]] std::span<const ModelOutput> outputs() const noexcept { return outputs_; }
+
 private:
     std::span<ModelSlot> slots_;
+    std::span<ModelOutput> outputs_;
     std::uint32_t count_{0};
     StaticVector<ModelId, kMaxModels> busy_;
 };

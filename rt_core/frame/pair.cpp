@@ -91,7 +91,8 @@ PairMemory PairMemory::take(Arena& arena, std::span<const ToolSpec> tools,
     { return std::ranges::any_of(tools, needs) ? pairs : 0; };
     return {arena.take<ContactReport>(for_any(&wants_contacts)),
             arena.take<TouchReport>(for_any(&Tool::is_held_as_body)),
-            arena.take<MeshPair>(for_any(&is_mesh))};
+            arena.take<MeshPair>(for_any(&is_mesh)),
+            arena.take<PairFront>(std::min<std::size_t>(for_any(&is_mesh), PairFront::kFronts))};
 }
 
 Pair::Pair(const PairParts& parts, const PairMemory& memory, std::size_t index) noexcept
@@ -122,7 +123,8 @@ void Pair::place(const Budgets& budgets) noexcept
     if (mesh_ != nullptr && is_model_here_)
     {
         mesh_->place(outlook_, mesh_core_of(*parts_.tool), *parts_.tool_model.model,
-                     *parts_.model.model, in_frame(parts_.object->pose, stance.place), budgets);
+                     *parts_.model.model, in_frame(parts_.object->pose, stance.place), budgets,
+                     *parts_.rules->work);
     }
 }
 
@@ -316,11 +318,12 @@ RefineQuestion Pair::ahead_of(RefineQuestion question) const noexcept
 void Pair::ask_for_mesh() noexcept
 {
     MeshPair& mesh = *mesh_;
+    const bool may_meet = outlook_.has_known() && !(outlook_.known().lower_m > 0.0);
     for (std::size_t place = 0; place < MeshPair::kPlaces; ++place)
     {
-        const bool is_asked = place == 0
-                                  ? !outlook_.is_asleep()
-                                  : outlook_.looks_ahead() && !MeshPair::goes_along(outlook_);
+        const bool is_asked =
+            place == 0 ? !outlook_.is_asleep()
+                       : outlook_.looks_ahead() && !may_meet && !MeshPair::goes_along(outlook_);
         ask(is_asked, *parts_.model.model,
             mesh.ask_object(place, outlook_, refine_memories_[place]), of_object_);
         ask(is_asked, *parts_.tool_model.model, mesh.ask_tool(place, outlook_), of_tool_);
@@ -407,7 +410,7 @@ SurfaceRoom Pair::query_again(const SurfaceRoom& room, const Budgets& budgets, W
     look();
     if (mesh_ != nullptr && is_model_here_)
     {
-        mesh_->move(in_frame(pose, stance.place), budgets);
+        mesh_->move(in_frame(pose, stance.place), budgets, *parts_.rules->work);
     }
     if (touches_ != nullptr)
     {
@@ -502,44 +505,71 @@ void Pair::query_box() noexcept
     }
 }
 
+/// That a body meets the object is all that its force asks of a surface that it meets.
+std::uint32_t Pair::enough_meeting() const noexcept
+{
+    return touches_ != nullptr && !parts_.tool->spec().wants_contacts ? 1 : kEnoughMeetingFaces;
+}
+
 void Pair::query_core(const Budgets& budgets, WorkCounters& work, FrameFault& faults) noexcept
 {
     if (!outlook_.is_asleep())
     {
         LocalSurface& surface = surface_;
         WalkBudget budget{budgets.nodes, budgets.triangles};
+        budget.frame = &work.budget;
         if (!parts_.rules->variant.starts_warm)
         {
             query_memory_ = QueryMemory{};
         }
         work.skipped.add(Skip::starts, query_memory_.block != kNoNode ? 1 : 0);
         gather_surface(parts_.model.model->tree, outlook_.core(), outlook_.reach_m(), query_memory_,
-                       budget, surface, proof_share());
+                       budget, surface, proof_share(), enough_meeting());
         work.nodes_visited += budget.nodes_visited;
         work.triangles_tested += budget.triangles_tested;
         faults |= budget.is_spent ? FrameFault::node_budget_spent : FrameFault::none;
         faults |= surface.truncated ? FrameFault::surface_truncated : FrameFault::none;
+        narrow(surface.answer);
         outlook_.remember(surface.answer);
     }
-    report_core();
+    report_core(work);
 }
 
 /// Contacts for the caller and touches for the force, in the world.
-void Pair::report_core() noexcept
+void Pair::report_core(WorkCounters& work) noexcept
 {
     const ToolSpec& tool = parts_.tool->spec();
     const ObjectPose& pose = parts_.object->pose;
     const Model& model = *parts_.model.model;
     if (tool.wants_contacts)
     {
+        work.budget.spend(surface_.count * WorkCost::contact);
         report_contacts(outlook_.core(), tool.radius_m / pose.scale, model.tree, surface_,
                         model.header.is_closed(), *contacts_);
         place_in_world(pose, *contacts_);
     }
     if (touches_ != nullptr)
     {
-        report_touches(outlook_.core(), outlook_.reach_m(), model.tree, surface_, *touches_);
-        place_in_world(pose, *touches_);
+        touches_->clear();
+        if (surface_.answer.lower_m > 0.0) // Else the body stays where it is, or waits.
+        {
+            work.budget.spend(surface_.count * WorkCost::contact);
+            report_touches(outlook_.core(), outlook_.reach_m(), model.tree, surface_, *touches_);
+            place_in_world(pose, *touches_);
+        }
+    }
+}
+
+/// What a search that was cut short leaves open, the last answer may tell.
+void Pair::narrow(DistanceAnswer& answer) const noexcept
+{
+    if (answer.kind == AnswerKind::bracket && outlook_.has_known())
+    {
+        const DistanceAnswer known = outlook_.from_motion();
+        answer.upper_m = std::min(answer.upper_m, known.upper_m);
+        answer.lower_m = std::min(std::max(answer.lower_m, known.lower_m), answer.upper_m);
+        answer.kind =
+            answer.lower_m > outlook_.reach_m() ? AnswerKind::decided : AnswerKind::bracket;
     }
 }
 
@@ -549,10 +579,11 @@ void Pair::query_mesh(WorkCounters& work, FrameFault& faults) noexcept
     const ObjectPose& pose = parts_.object->pose;
     DistanceAnswer& answer = surface_.answer;
     ContactReport& contacts = *contacts_;
-    TouchReport* touches = touches_;
-    if (touches != nullptr)
+    // A tool that waits to be clear needs to know whether the two meet, and no more.
+    TouchReport* touches = parts_.tool->is_held() ? touches_ : nullptr;
+    if (touches_ != nullptr)
     {
-        touches->clear();
+        touches_->clear();
     }
     if (outlook_.is_asleep())
     {
@@ -561,14 +592,19 @@ void Pair::query_mesh(WorkCounters& work, FrameFault& faults) noexcept
     else
     {
         const double radius_m = tool.radius_m / pose.scale;
-        const double contact_m = touches != nullptr    ? outlook_.reach_m()
+        const double contact_m = touches != nullptr ? mesh_->touch_m(radius_m, outlook_.reach_m())
                                  : tool.wants_contacts ? radius_m
                                                        : -1.0;
         const FrameVariant& variant = parts_.rules->variant;
         const bool is_proven = variant.fixed_radius == 0.0 && variant.tolerance_m == 0.0;
+        // What is felt goes nowhere while anything meets: one pair tells that.
+        const std::uint32_t enough = tool.wants_pairs      ? kAllMeetingFaces
+                                     : tool.wants_contacts ? kEnoughMeetingFaces
+                                                           : 1;
         mesh_->query(outlook_, is_proven ? mesh_->certified_m(refine_memories_[0]) : 0.0, contact_m,
-                     tool.wants_pairs, touches != nullptr ? &touches->ends : nullptr, answer,
-                     contacts);
+                     enough, touches != nullptr ? &touches->ends : nullptr, answer, contacts);
+        narrow(answer);
+        mesh_->note_lower(answer.lower_m);
         outlook_.remember(answer);
         if (touches != nullptr)
         {
@@ -599,15 +635,17 @@ double Pair::rounding_m() const noexcept
            kOriginRounding * origin_m;
 }
 
-void Pair::rehearse(const SurfaceRoom& room, const Budgets& budgets) const noexcept
+void Pair::rehearse(const SurfaceRoom& room, const Budgets& budgets,
+                    WorkBudget& work) const noexcept
 {
     if (outlook_.has_known() && !outlook_.is_asleep() && mesh_ == nullptr && is_model_here_)
     {
         WalkBudget budget{budgets.nodes, budgets.triangles};
+        budget.frame = &work;
         QueryMemory memory = query_memory_;
         LocalSurface surface = room.surface();
         gather_surface(parts_.model.model->tree, outlook_.core(), outlook_.reach_m(), memory,
-                       budget, surface, proof_share());
+                       budget, surface, proof_share(), enough_meeting());
     }
 }
 
@@ -615,17 +653,17 @@ PlacedSurface Pair::placed() noexcept
 {
     const auto quantum_m = static_cast<double>(parts_.model.model->header.quantum_m());
     const ObjectPose& pose = parts_.object->pose;
-    return {&pose,
-            &surface_,
-            &feel_.felt(),
-            quantum_m,
-            outlook_.reach_m() * pose.scale,
-            lower_m_,
-            touches_,
-            upper_m_,
-            parts_.object_number,
-            &body_,
-            &parts_.model.model->tree.kernels()};
+    return {.pose = &pose,
+            .surface = &surface_,
+            .material = &feel_.felt(),
+            .quantum_m = quantum_m,
+            .reach_m = outlook_.reach_m() * pose.scale,
+            .lower_m = lower_m_,
+            .touches = touches_,
+            .upper_m = upper_m_,
+            .object = parts_.object_number,
+            .memory = &body_,
+            .kernels = &parts_.model.model->tree.kernels()};
 }
 
 PairOutput Pair::output() const noexcept
@@ -635,22 +673,22 @@ PairOutput Pair::output() const noexcept
     // Beyond reach as well; the force has no use for that.
     const bool is_exact =
         answer.kind == AnswerKind::decided && tells_distance() && !answer.nearest_face.is_none();
-    return {parts_.tool_index,
-            parts_.object_number,
-            is_exact ? AnswerKind::exact : answer.kind,
-            to_world(pose, answer.tool_point_m),
-            lower_m_,
-            upper_m_,
-            std::max(0.0, answer.certified_radius_m) * pose.scale,
-            answer.nearest_face,
-            to_world(pose, answer.nearest_point_m),
-            outlook_.is_asleep(),
-            answer.nearest_feature,
-            is_shed_,
-            is_joined_,
-            feel_.felt().damping_n_s_per_m,
-            parts_.tool->spec().wants_contacts ? contacts_ : nullptr,
-            mesh_ == nullptr ? nullptr : &mesh_->report()};
+    return {.tool = parts_.tool_index,
+            .object = parts_.object_number,
+            .kind = is_exact ? AnswerKind::exact : answer.kind,
+            .point_m = to_world(pose, answer.tool_point_m),
+            .lower_m = lower_m_,
+            .upper_m = upper_m_,
+            .certified_radius_m = std::max(0.0, answer.certified_radius_m) * pose.scale,
+            .nearest_face = answer.nearest_face,
+            .nearest_point_m = to_world(pose, answer.nearest_point_m),
+            .skipped = outlook_.is_asleep(),
+            .nearest_feature = answer.nearest_feature,
+            .is_shed = is_shed_,
+            .is_joined = is_joined_,
+            .damping_n_s_per_m = feel_.felt().damping_n_s_per_m,
+            .contacts = parts_.tool->spec().wants_contacts ? contacts_ : nullptr,
+            .mesh = mesh_ == nullptr ? nullptr : &mesh_->report()};
 }
 
 } // namespace tactus

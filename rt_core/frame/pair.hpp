@@ -32,6 +32,7 @@ struct PairRules
     FrameVariant variant;
     std::int64_t now_ns{0}; ///< This frame's.
     std::uint32_t frame{0};
+    WorkBudget* work{nullptr}; ///< This frame's.
 };
 
 /// A model and its name in the frame.
@@ -82,6 +83,7 @@ struct PairMemory
     std::span<ContactReport> contacts; ///< For tools that want them or are meshes.
     std::span<TouchReport> touches;    ///< For tools that are held as bodies.
     std::span<MeshPair> meshes;        ///< For tools that are meshes.
+    std::span<PairFront> fronts;       ///< For the most urgent of these.
 
     [[nodiscard]] static PairMemory take(Arena& arena, std::span<const ToolSpec> tools,
                                          std::size_t pairs) noexcept;
@@ -117,6 +119,12 @@ public:
     /// Whether it has something to give up.
     [[nodiscard]] bool is_awake() const noexcept { return !outlook_.is_asleep(); }
     [[nodiscard]] bool is_of_mesh() const noexcept { return mesh_ != nullptr; }
+    /// MeshPair::exchange_front(), of a tool that is a mesh.
+    PairFront* exchange_front(PairFront* front) noexcept TACTUS_NONBLOCKING
+    {
+        TACTUS_ASSERT(mesh_ != nullptr);
+        return mesh_->exchange_front(front);
+    }
 
     /// Adds what the pair may touch soon to the ranking, unless its models are here as a whole.
     void rank(RegionRanking& ranking) noexcept TACTUS_NONBLOCKING;
@@ -141,8 +149,8 @@ public:
                                           FrameFault& faults) noexcept TACTUS_NONBLOCKING;
 
     /// The last frame's query again, over what it kept; see Frame::rehearse().
-    void rehearse(const SurfaceRoom& room,
-                  const Budgets& budgets) const noexcept TACTUS_NONBLOCKING;
+    void rehearse(const SurfaceRoom& room, const Budgets& budgets,
+                  WorkBudget& work) const noexcept TACTUS_NONBLOCKING;
 
     /// Whether, in this frame, the object's model isn't resident and its box is in the tool's
     /// reach: the tool stops there.
@@ -218,6 +226,7 @@ private:
     {
         return tells_distance() ? ProofShare::all : ProofShare::most;
     }
+    [[nodiscard]] std::uint32_t enough_meeting() const noexcept;
     [[nodiscard]] double distance_reach_m() const noexcept;
     [[nodiscard]] bool measures_from_afar() const noexcept;
     [[nodiscard]] RefineQuestion ahead_of(RefineQuestion question) const noexcept;
@@ -237,7 +246,8 @@ private:
     [[nodiscard]] BoxGap gap_to_box() const noexcept TACTUS_NONBLOCKING;
     void query_box() noexcept TACTUS_NONBLOCKING;
     void query_core(const Budgets& budgets, WorkCounters& work, FrameFault& faults) noexcept;
-    void report_core() noexcept;
+    void narrow(DistanceAnswer& answer) const noexcept;
+    void report_core(WorkCounters& work) noexcept;
     void query_mesh(WorkCounters& work, FrameFault& faults) noexcept;
     [[nodiscard]] double rounding_m() const noexcept;
 

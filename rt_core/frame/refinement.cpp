@@ -14,37 +14,41 @@ namespace tactus
 namespace
 {
 
+/// A split near another surface costs as much as so many others, with the search for it.
+constexpr std::uint32_t kSurfaceSplit = 4;
+
 /// What merges may help against.
 constexpr FrameFault kNoRoom =
     FrameFault::forest_full | FrameFault::tree_full | FrameFault::cache_full;
 
 } // namespace
 
-std::uint32_t Refinement::run(const RefinementRound& round, std::span<Pair* const> order) noexcept
+std::uint32_t Refinement::run(FrameParts& parts, FrameAccount& account) noexcept
 {
-    const auto& [models, budgets, frame, work, faults] = round;
+    auto& [budgets, shares, work, faults, scene] = account;
+    ModelSet& models = parts.models;
     requests_.clear();
-    for (Pair* pair : order)
+    for (Pair* pair : parts.pairs.by_urgency())
     {
         pair->ask(requests_);
     }
     std::fill_n(services_.begin(), requests_.size(), Service{});
     group(models);
-    merge(round);
+    merge(parts, account);
     const std::uint32_t splits = std::min(budgets.splits, kMaxSplitsPerFrame);
     const SplitLimits limits{splits, pace_.splits_of(splits)};
-    share_splits(round, limits);
+    share_splits(parts, account, limits);
     const std::uint32_t before_filling = work.splits;
     for (const ModelId id : models.busy())
     {
-        models[id].fill(splits, frame, work, faults);
+        models[id].fill(splits, parts.rules.frame, work, faults);
         if (has_meshes_)
         {
             models[id].refit(work, faults);
         }
     }
     const std::uint32_t filled = work.splits - before_filling;
-    serve_again(round, limits);
+    serve_again(parts, account, limits);
     pace_.count(work.splits - filled);
     for (std::uint32_t i = 0; i < requests_.size(); ++i)
     {
@@ -61,16 +65,17 @@ std::uint32_t Refinement::run(const RefinementRound& round, std::span<Pair* cons
 }
 
 /// For all models, before any split. Where room is short, all that the budget allows.
-void Refinement::merge(const RefinementRound& round) noexcept
+void Refinement::merge(FrameParts& parts, FrameAccount& account) noexcept
 {
-    const auto& [models, budgets, frame, work, faults] = round;
+    auto& [budgets, shares, work, faults, scene] = account;
+    ModelSet& models = parts.models;
     constexpr std::uint32_t kLooksPerMerge = 5;
     Budgets steady = budgets;
     steady.merges = pace_.merges_of(std::min(budgets.merges, kMaxMergesPerFrame));
     steady.scanned = std::min(budgets.scanned, kLooksPerMerge * steady.merges);
     for (std::uint32_t i = 0; i < models.busy().size(); ++i)
     {
-        ModelSlot& slot = models.slot(models.in_turn(i, frame));
+        ModelSlot& slot = models.slot(models.in_turn(i, parts.rules.frame));
         const VertexForest& forest = slot.model->forest;
         const bool is_crowded =
             had_no_room_ || forest.active_in_pool() > 3 * (forest.capacity() / 4);
@@ -127,7 +132,7 @@ std::span<const RefineRequest> Refinement::requests_of(const ModelSlot& slot) co
 
 /// Each request that waits gets its part of the splits, class by class: first those that came off
 /// with nothing for longest, then those that saved some.
-void Refinement::share_splits(const RefinementRound& round, SplitLimits limits) noexcept
+void Refinement::share_splits(FrameParts& parts, FrameAccount& account, SplitLimits limits) noexcept
 {
     SplitShares shares(limits.now);
     StaticVector<std::uint32_t, kMaxRequests> waiting;
@@ -155,27 +160,31 @@ void Refinement::share_splits(const RefinementRound& round, SplitLimits limits) 
     for (const std::uint32_t i : waiting)
     {
         Closure& closure = *requests_[i].closure;
-        const std::uint32_t before = round.work.splits;
+        const std::uint32_t before = account.work.splits;
         const SplitShares::Share share =
             shares.take(requests_[i].urgency.of, closure.saved, before);
-        serve(round, i, {share.limit, std::min(share.limit, limits.later)});
-        closure.saved = shares.save(closure.saved, share.equal, round.work.splits - before);
+        serve(parts, account, i, {share.limit, std::min(share.limit, limits.later)});
+        closure.saved = shares.save(closure.saved, share.equal, account.work.splits - before);
         closure.waited = share.equal == 0 ? closure.waited + 1 : 0;
     }
 }
 
 /// First those that are late still, with all that is left; then what may wait.
-void Refinement::serve_again(const RefinementRound& round, SplitLimits limits) noexcept
+void Refinement::serve_again(FrameParts& parts, FrameAccount& account, SplitLimits limits) noexcept
 {
-    const WorkCounters& work = round.work;
+    const WorkCounters& work = account.work;
     for (std::uint32_t i = 0; i < requests_.size() && work.splits < limits.now; ++i)
     {
         // One that stopped short of the budget gets no farther unless others split since.
         const Service& last = services_[i];
         const bool may_go_on = last.limits.now < limits.now || last.splits != work.splits;
-        if (may_go_on && requests_[i].is_late())
+        // Near another surface the search for what is left is dear.
+        const bool has_had_enough =
+            requests_[i].is_near_surface() &&
+            has_fault(last.found, FrameFault::split_budget_spent | FrameFault::chunk_late);
+        if (may_go_on && !has_had_enough && requests_[i].is_late())
         {
-            serve(round, i, limits);
+            serve(parts, account, i, limits);
         }
     }
     for (std::uint32_t i = 0; i < requests_.size(); ++i)
@@ -184,18 +193,27 @@ void Refinement::serve_again(const RefinementRound& round, SplitLimits limits) n
         const bool may_wait = requests_[i].is_open() && !requests_[i].is_late();
         if (may_wait && services_[i].limits.later < limits.later)
         {
-            serve(round, i, limits);
+            serve(parts, account, i, limits);
         }
     }
 }
 
-void Refinement::serve(const RefinementRound& round, std::uint32_t request,
+void Refinement::serve(FrameParts& parts, FrameAccount& account, std::uint32_t request,
                        SplitLimits limits) noexcept
 {
-    const auto& [models, budgets, frame, work, faults] = round;
-    Model& model = models[requests_[request].model];
+    auto& [budgets, shares, work, faults, scene] = account;
+    Model& model = parts.models[requests_[request].model];
+    work.budget.spend(WorkCost::refining);
     model.refit(work, faults); // What others split, or was merged, is where it is looked for.
-    const FrameFault found = model.refiner.refine(requests_[request], limits, budgets, frame, work);
+    SplitLimits own = limits;
+    if (requests_[request].is_near_surface())
+    {
+        const std::uint32_t left = limits.now - std::min(limits.now, work.splits);
+        own.now = std::min(limits.now, work.splits) + (left + kSurfaceSplit - 1) / kSurfaceSplit;
+        own.later = std::min(own.now, limits.later);
+    }
+    const FrameFault found =
+        model.refiner.refine(requests_[request], own, budgets, parts.rules.frame, work);
     services_[request] = {limits, work.splits, found};
     if (has_meshes_)
     {

@@ -3,11 +3,7 @@
 #pragma once
 
 #include "rt_core/base/realtime.hpp"
-#include "rt_core/frame/model_set.hpp"
-#include "rt_core/frame/pair.hpp"
-#include "rt_core/records/frame_input.hpp"
-#include "rt_core/records/frame_output.hpp"
-#include "rt_core/records/work_counters.hpp"
+#include "rt_core/frame/frame_parts.hpp"
 #include "rt_core/refine/work_pace.hpp"
 
 #include <array>
@@ -17,38 +13,28 @@
 namespace tactus
 {
 
-/// What a frame refines, with what, and where it tells of it.
-struct RefinementRound
-{
-    ModelSet& models;
-    const Budgets& budgets;
-    std::uint32_t frame;
-    WorkCounters& work;
-    FrameFault& faults;
-};
-
 /// A frame's second stage: gathers what its pairs ask of their models, merges what all left behind,
 /// and shares the frame's splits among those that wait (SplitShares). What may wait, merges and
 /// splits ahead of the tools, goes on at a steady pace (WorkPace). Haptic thread.
 class Refinement
 {
 public:
-    Refinement() noexcept = default;
     /// Where tools are meshes others ask how near their surface is, so trees are refitted at once.
     explicit Refinement(bool has_meshes) noexcept : has_meshes_(has_meshes) {}
 
-    /// `order`: the pairs, the most urgent first. Returns the most urgent class of those that found
-    /// no room for a face, kUrgencyClasses where all did.
-    [[nodiscard]] std::uint32_t run(const RefinementRound& round,
-                                    std::span<Pair* const> order) noexcept TACTUS_NONBLOCKING;
+    /// Returns the most urgent class of the pairs that found no room for a face, kUrgencyClasses
+    /// where all did.
+    [[nodiscard]] std::uint32_t run(FrameParts& parts,
+                                    FrameAccount& account) noexcept TACTUS_NONBLOCKING;
 
 private:
     void group(ModelSet& models) noexcept;
     [[nodiscard]] std::span<const RefineRequest> requests_of(const ModelSlot& slot) const noexcept;
-    void merge(const RefinementRound& round) noexcept;
-    void share_splits(const RefinementRound& round, SplitLimits limits) noexcept;
-    void serve_again(const RefinementRound& round, SplitLimits limits) noexcept;
-    void serve(const RefinementRound& round, std::uint32_t request, SplitLimits limits) noexcept;
+    void merge(FrameParts& parts, FrameAccount& account) noexcept;
+    void share_splits(FrameParts& parts, FrameAccount& account, SplitLimits limits) noexcept;
+    void serve_again(FrameParts& parts, FrameAccount& account, SplitLimits limits) noexcept;
+    void serve(FrameParts& parts, FrameAccount& account, std::uint32_t request,
+               SplitLimits limits) noexcept;
     [[nodiscard]] std::uint32_t refused_class() const noexcept;
     [[nodiscard]] FrameFault lateness_of(std::uint32_t request) const noexcept;
 

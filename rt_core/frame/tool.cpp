@@ -3,6 +3,7 @@
 #include "rt_core/frame/tool.hpp"
 
 #include "rt_core/geometry/believed_motion.hpp"
+#include "rt_core/math/infinity.hpp"
 #include "rt_core/math/rotation.hpp"
 
 #include <algorithm>
@@ -29,6 +30,19 @@ Vec3 rotation_between(const Mat3& from, const Mat3& to) noexcept
 {
     return from == to ? Vec3(0.0, 0.0, 0.0)
                       : rotation_vector(orthonormalised(to * from.transpose()));
+}
+
+/// How far a body may be expected to go in a frame; infinity where it has no expectation.
+double likely_way_m(const auto& body) noexcept
+{
+    if constexpr (requires { body.likely_way_m(); })
+    {
+        return body.likely_way_m();
+    }
+    else
+    {
+        return kInfinity;
+    }
 }
 
 } // namespace
@@ -113,12 +127,20 @@ void Tool::let_carry(auto& body, std::span<const NearObject> objects) noexcept
     motion_.carried_rad = rotation_between(before.rotation, now.rotation);
 }
 
-/// Where the body is now it looks as far as it may go for the goal.
+bool Tool::is_held() const noexcept
+{
+    const auto* const rigid = std::get_if<RigidProxy>(&body_);
+    return rigid != nullptr ? rigid->is_joined() : !spec_.passes_through;
+}
+
+/// Where the body is now it looks as far as it may go for the goal. Of a mesh all that is in reach
+/// costs a hundred times as much as of another body.
 void Tool::stand(const auto& body) noexcept
 {
+    const double likely_m = is_mesh(spec_) ? likely_way_m(body) : kInfinity;
+    const double way_m = std::min({body.way_to_m(goal_), way_left_m_, likely_m});
     stance_.place = body.place();
-    stance_.reach_m =
-        body.radius_m() * (1.0 + kReachMargin) + std::min(body.way_to_m(goal_), way_left_m_);
+    stance_.reach_m = body.radius_m() * (1.0 + kReachMargin) + way_m;
     if constexpr (requires { body.feels_beyond_m(); })
     {
         stance_.reach_m += body.feels_beyond_m();

@@ -37,6 +37,10 @@ public:
         return !spec.passes_through && !std::holds_alternative<PointCore>(spec.core);
     }
 
+    /// Surfaces hold it in this frame: not of one that passes through, nor of a body that waits to
+    /// be proven clear where the hand is.
+    [[nodiscard]] bool is_held() const noexcept TACTUS_NONBLOCKING;
+
     /// The frame begins: a new sample, and objects that it was near to in the last frame.
     /// `period_s` > 0 is the loop's. Returns what is wrong with the sample.
     [[nodiscard]] FrameFault begin(const ToolState& sample, double period_s,

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace tactus
 {
@@ -25,6 +26,37 @@ Vec3 farthest_corner(const Box& box, const Vec3& direction) noexcept
 {
     return {std::copysign(box.half.x(), direction.x()), std::copysign(box.half.y(), direction.y()),
             std::copysign(box.half.z(), direction.z())};
+}
+
+bool is_inside(const Box& box, const Vec3& point) noexcept
+{
+    return std::abs(point.x()) <= box.half.x() && std::abs(point.y()) <= box.half.y() &&
+           std::abs(point.z()) <= box.half.z();
+}
+
+bool has_corner_inside(const Box& box, const Triangle& triangle) noexcept
+{
+    return is_inside(box, triangle[0]) || is_inside(box, triangle[1]) ||
+           is_inside(box, triangle[2]);
+}
+
+/// The middle of what is in the box, if anything is. Rounded.
+double middle_inside(const Box& box, const Segment& segment) noexcept
+{
+    double low = 0.0;
+    double high = 1.0;
+    for (Eigen::Index axis = 0; axis < 3; ++axis)
+    {
+        const double way = segment.to[axis] - segment.from[axis];
+        if (way != 0.0)
+        {
+            const double first = (-box.half[axis] - segment.from[axis]) / way;
+            const double second = (box.half[axis] - segment.from[axis]) / way;
+            low = std::max(low, std::min(first, second));
+            high = std::min(high, std::max(first, second));
+        }
+    }
+    return clamp_to_unit(0.5 * (low + high));
 }
 
 bool is_beyond_a_side(const Box& box, const Triangle& triangle) noexcept
@@ -82,15 +114,19 @@ double local_length(const Box& box, const Triangle& triangle) noexcept
     return std::sqrt(longest_sq);
 }
 
+/// From the box to a point that is not inside, each coordinate rounded once.
+Vec3 gap_to(const Box& box, const Vec3& point) noexcept
+{
+    return {excess(point.x(), box.half.x()), excess(point.y(), box.half.y()),
+            excess(point.z(), box.half.z())};
+}
+
 /// Of edges of the triangle and the box, and of a corner of the box and the face.
 class BoxDistance
 {
 public:
     BoxDistance(const Box& box, const Triangle& triangle) noexcept
-        : box_(box)
-        , triangle_(triangle)
-        , length_(local_length(box, triangle))
-        , face_(triangle, length_)
+        : box_(box), triangle_(triangle), length_(local_length(box, triangle))
     {
         TACTUS_ASSERT(box.half.x() >= 0.0);
         TACTUS_ASSERT(box.half.y() >= 0.0);
@@ -99,48 +135,35 @@ public:
 
     ClosestPoints find() noexcept
     {
-        double upper = kInfinity;
-        std::array<double, 3> distance{};
-        for (std::size_t i = 0; i < 3; ++i)
+        if (const std::optional<std::size_t> nearest = find_nearest_corner())
         {
-            const Triple<double> gap = SegmentAndBox<double>(edge(i), box_).approach().gap;
-            distance[i] = std::sqrt(dot(gap, gap));
-            upper = std::min(upper, distance[i] + kFilterMargin * length_);
+            decide_triangle_corner(*nearest);
+            return found();
         }
-        const Vec3 corner = corner_towards_face();
-        if (face_.height_of(corner) - kFilterMargin * length_ <= upper)
+        if (meet(box_, triangle_))
+        {
+            return find_shared_point();
+        }
+        see_edges();
+        double upper = kInfinity;
+        for (const double distance : edge_distance_)
+        {
+            upper = std::min(upper, distance + kFilterMargin * length_);
+        }
+        const FaceFilter face(triangle_, length_);
+        const Vec3 corner = corner_towards(face.unit_normal());
+        if (face.height_of(corner) - kFilterMargin * length_ <= upper)
         {
             decide_corner(corner);
         }
         for (std::size_t i = 0; i < 3; ++i)
         {
-            if (distance[i] - kFilterMargin * length_ <= std::min(upper, best_.distance))
+            if (edge_distance_[i] - kFilterMargin * length_ <= std::min(upper, best_.distance))
             {
                 decide_edge(i);
             }
         }
-        TACTUS_ASSERT(best_.distance < std::numeric_limits<double>::infinity());
-        best_.distance_error = kernel_error(0.0, length_);
-        return best_;
-    }
-
-    /// Where an edge meets the box; if none does, the face cuts through the box, and so through the
-    /// diagonal to the corner on its side.
-    ClosestPoints find_shared_point() noexcept
-    {
-        for (std::size_t i = 0; i < 3; ++i)
-        {
-            decide_edge(i);
-        }
-        if (!(best_.distance > kTouching * length_))
-        {
-            return meeting_at(best_.on_triangle, TriangleFeature::interior, best_.feature);
-        }
-        const Vec3 corner = corner_towards_face();
-        const double height = face_.unit_normal().dot(corner);
-        const double share = height == 0.0 ? 0.0 : face_.unit_normal().dot(triangle_[0]) / height;
-        return meeting_at(corner * std::clamp(share, 0.0, 1.0), TriangleFeature::interior,
-                          TriangleFeature::interior);
+        return found();
     }
 
 private:
@@ -150,10 +173,96 @@ private:
     }
 
     /// The box's centre is the origin.
-    [[nodiscard]] Vec3 corner_towards_face() const noexcept
+    [[nodiscard]] Vec3 corner_towards(const Vec3& normal) const noexcept
     {
-        const Vec3& normal = face_.unit_normal();
         return farthest_corner(box_, normal.dot(triangle_[0]) < 0.0 ? Vec3(-normal) : normal);
+    }
+
+    [[nodiscard]] const ClosestPoints& found() noexcept
+    {
+        TACTUS_ASSERT(best_.distance < kInfinity);
+        best_.distance_error = kernel_error(0.0, length_);
+        return best_;
+    }
+
+    /// The triangle's corner that is nearest to the box, where that is proven: both others are
+    /// farther along the way from the box to it, by more than is rounded.
+    [[nodiscard]] std::optional<std::size_t> find_nearest_corner() const noexcept
+    {
+        constexpr double kLeastSq = 1e-200;
+        std::size_t nearest = 0;
+        Vec3 gap = gap_to(box_, triangle_[0]);
+        for (std::size_t i = 1; i < 3; ++i)
+        {
+            const Vec3 other = gap_to(box_, triangle_[i]);
+            nearest = other.squaredNorm() < gap.squaredNorm() ? i : nearest;
+            gap = nearest == i ? other : gap;
+        }
+        const double rounding_sq = kFilterMargin * kFilterMargin * gap.squaredNorm();
+        const auto is_beyond = [&](std::size_t i)
+        {
+            const Vec3 way = triangle_[i] - triangle_[nearest];
+            const double along = gap.dot(way);
+            return along > 0.0 && along * along > rounding_sq * way.squaredNorm();
+        };
+        return gap.squaredNorm() > kLeastSq && is_beyond((nearest + 1) % 3) &&
+                       is_beyond((nearest + 2) % 3)
+                   ? std::optional(nearest)
+                   : std::nullopt;
+    }
+
+    void decide_triangle_corner(std::size_t i) noexcept
+    {
+        const auto corner = to_triple<DoubleDouble>(triangle_[i]);
+        const auto half = to_triple<DoubleDouble>(box_.half);
+        keep_if_nearer(
+            corner, {excess(corner.x, half.x), excess(corner.y, half.y), excess(corner.z, half.z)},
+            static_cast<TriangleFeature>(i));
+    }
+
+    /// Of a triangle that meets the box without a corner in it. Where an edge meets the box; if
+    /// none does, the face cuts through the box, and so through the diagonal to the corner on its
+    /// side.
+    [[nodiscard]] ClosestPoints find_shared_point() noexcept
+    {
+        for (std::size_t i = 0; i < 3; ++i)
+        {
+            const Segment segment = edge(i);
+            const double parameter = middle_inside(box_, segment);
+            if (const Vec3 point = point_at(segment, parameter); is_inside(box_, point))
+            {
+                return meeting_at(point, TriangleFeature::interior, feature_of_edge(i, parameter));
+            }
+        }
+        see_edges();
+        for (std::size_t i = 0; i < 3; ++i)
+        {
+            if (edge_distance_[i] <= kFilterMargin * length_)
+            {
+                decide_edge(i);
+            }
+        }
+        if (!(best_.distance > kTouching * length_))
+        {
+            return meeting_at(best_.on_triangle, TriangleFeature::interior, best_.feature);
+        }
+        const Vec3 normal = FaceFilter(triangle_, length_).unit_normal();
+        const Vec3 corner = corner_towards(normal);
+        const double height = normal.dot(corner);
+        const double share = height == 0.0 ? 0.0 : normal.dot(triangle_[0]) / height;
+        return meeting_at(corner * std::clamp(share, 0.0, 1.0), TriangleFeature::interior,
+                          TriangleFeature::interior);
+    }
+
+    /// In double.
+    void see_edges() noexcept
+    {
+        for (std::size_t i = 0; i < 3; ++i)
+        {
+            const BoxApproach<double> at = SegmentAndBox<double>(edge(i), box_).approach();
+            edge_parameter_[i] = at.parameter;
+            edge_distance_[i] = std::sqrt(dot(at.gap, at.gap));
+        }
     }
 
     void decide_corner(const Vec3& corner) noexcept
@@ -167,7 +276,8 @@ private:
     void decide_edge(std::size_t i) noexcept
     {
         const Segment segment = edge(i);
-        const auto at = SegmentAndBox<DoubleDouble>(segment, box_).approach();
+        const auto at =
+            SegmentAndBox<DoubleDouble>(segment, box_).approach_near(edge_parameter_[i]);
         keep_if_nearer(to_triple<DoubleDouble>(segment.from) +
                            at.parameter * difference<DoubleDouble>(segment.to, segment.from),
                        at.gap, feature_of_edge(i, to_double(at.parameter)));
@@ -192,7 +302,8 @@ private:
     const Box& box_;
     const Triangle& triangle_;
     double length_;
-    FaceFilter face_;
+    std::array<double, 3> edge_parameter_{};
+    std::array<double, 3> edge_distance_{};
     DoubleDouble best_sq_{kInfinity};
     ClosestPoints best_{.distance = kInfinity};
 };
@@ -201,22 +312,27 @@ private:
 
 bool meet(const Box& box, const Triangle& triangle) noexcept
 {
-    return !is_beyond_a_side(box, triangle) && !is_on_one_side_of(triangle, box) &&
-           !has_edge_between_along(0, box, triangle) && !has_edge_between_along(1, box, triangle) &&
-           !has_edge_between_along(2, box, triangle);
+    return has_corner_inside(box, triangle) ||
+           (!is_beyond_a_side(box, triangle) && !is_on_one_side_of(triangle, box) &&
+            !has_edge_between_along(0, box, triangle) &&
+            !has_edge_between_along(1, box, triangle) && !has_edge_between_along(2, box, triangle));
 }
 
 ClosestPoints closest_points(const Box& box, const Triangle& triangle) noexcept
 {
-    return solve_in_range(std::array{box.half, triangle[0], triangle[1], triangle[2]},
-                          [](const auto& points) noexcept
-                          {
-                              const Box near_box{points[0]};
-                              const Triangle near{points[1], points[2], points[3]};
-                              BoxDistance distance(near_box, near);
-                              return meet(near_box, near) ? distance.find_shared_point()
-                                                          : distance.find();
-                          });
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+        if (is_inside(box, triangle[i]))
+        {
+            return meeting_at(triangle[i], TriangleFeature::interior,
+                              static_cast<TriangleFeature>(i));
+        }
+    }
+    return solve_in_range(
+        std::array{box.half, triangle[0], triangle[1], triangle[2]},
+        [](const auto& points) noexcept {
+            return BoxDistance(Box{points[0]}, {points[1], points[2], points[3]}).find();
+        });
 }
 
 } // namespace tactus

@@ -4,6 +4,7 @@
 
 #include "rt_core/base/assert.hpp"
 #include "rt_core/geometry/box_triangle.hpp"
+#include "rt_core/geometry/closest_features.hpp"
 #include "rt_core/geometry/segment_triangle.hpp"
 #include "rt_core/math/rounding.hpp"
 
@@ -38,6 +39,34 @@ Mat3 frame_along(const Vec3& way) noexcept
     axes.col(1) = second;
     axes.col(2) = first.cross(second);
     return axes;
+}
+
+/// From a box to a point, each coordinate rounded once.
+Vec3 gap_from(const Vec3& half, const Vec3& point) noexcept
+{
+    return {excess(point.x(), half.x()), excess(point.y(), half.y()), excess(point.z(), half.z())};
+}
+
+double squared_length(const Vec3& v) noexcept
+{
+    return v.squaredNorm();
+}
+
+CornersAtCore::Row beyond_sq(const std::array<CornersAtCore::Row, 3>& place,
+                             const Vec3& half) noexcept
+{
+    CornersAtCore::Row sum{};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        const double end = half[static_cast<Eigen::Index>(axis)];
+        for (std::size_t i = 0; i < sum.size(); ++i)
+        {
+            const double beyond = std::abs(place[axis][i]) - end;
+            const double gap = 0.5 * (beyond + std::abs(beyond)); // Or zero, without a choice.
+            sum[i] += gap * gap;
+        }
+    }
+    return sum;
 }
 
 /// Of products with a rotation, relative to the largest coordinate.
@@ -123,6 +152,24 @@ Vec3 PlacedCore::placed_support(const void* core, const Vec3& direction) noexcep
     return placed.scale_ * (placed.axes_ * farthest);
 }
 
+/// Rows of numbers, which the compiler takes several of at once.
+CornersAtCore::Row heights_along(const Vec3& axis, const std::array<CornerRow, 3>& corners,
+                                 const Vec3& center) noexcept
+{
+    CornersAtCore::Row heights{};
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+        const CornerRow& row = corners[i];
+        const double share = axis[static_cast<Eigen::Index>(i)];
+        const double middle = center[static_cast<Eigen::Index>(i)];
+        for (std::size_t k = 0; k < row.size(); ++k)
+        {
+            heights[k] += share * (static_cast<double>(row[k]) - middle);
+        }
+    }
+    return heights;
+}
+
 ClosestPoints to_closest_points(const GjkAnswer& answer) noexcept
 {
     ClosestPoints result;
@@ -188,17 +235,85 @@ double PlacedCore::rounding_of(const Triangle& in_box_frame) const noexcept
     return kRotationRounding * (largest_coordinate(in_box_frame) + half_.norm());
 }
 
-double PlacedCore::lower_bound(const Triangle& triangle) const noexcept
+CoreBounds PlacedCore::bounds(const Triangle& triangle) const noexcept
 {
     const Triangle near = to_box_frame(triangle);
-    double distance_sq = 0.0;
-    for (int axis = 0; axis < 3; ++axis)
+    return bounds(near,
+                  {gap_from(half_, near[0]).squaredNorm(), gap_from(half_, near[1]).squaredNorm(),
+                   gap_from(half_, near[2]).squaredNorm()},
+                  kInfinity);
+}
+
+void PlacedCore::see(const std::array<CornerRow, 3>& corners, CornersAtCore& seen) const noexcept
+{
+    for (std::size_t i = 0; i < 3; ++i)
     {
-        const auto [low, high] = std::minmax({near[0][axis], near[1][axis], near[2][axis]});
-        const double gap = std::max({low - half_[axis], -half_[axis] - high, 0.0});
-        distance_sq += gap * gap;
+        seen.place[i] = heights_along(axes_.col(static_cast<Eigen::Index>(i)), corners, center_);
     }
-    return std::sqrt(distance_sq) / kRoundedUp - rounding_of(near);
+    seen.beyond_sq = beyond_sq(seen.place, half_);
+}
+
+CoreBounds PlacedCore::bounds(const CornersAtCore& seen,
+                              const std::array<std::uint8_t, 3>& triangle,
+                              double limit) const noexcept
+{
+    const auto corner = [&seen](std::size_t i)
+    { return Vec3(seen.place[0][i], seen.place[1][i], seen.place[2][i]); };
+    const auto [a, b, c] = triangle;
+    return bounds({corner(a), corner(b), corner(c)},
+                  {seen.beyond_sq[a], seen.beyond_sq[b], seen.beyond_sq[c]}, limit);
+}
+
+/// Along each axis of the box, and along the way from it to the nearest corner: across that the box
+/// is on one side, and the triangle at least as far away as its corner that is least far along.
+CoreBounds PlacedCore::bounds(const Triangle& near, const std::array<double, 3>& beyond_sq,
+                              double limit) const noexcept
+{
+    const double farthest = std::sqrt(std::max({beyond_sq[0], beyond_sq[1], beyond_sq[2]}));
+    const double rounding = 2.0 * kRotationRounding * (farthest + 2.0 * half_.norm());
+    double apart_sq = 0.0;
+    for (Eigen::Index axis = 0; axis < 3; ++axis)
+    {
+        const double low = std::min({near[0][axis], near[1][axis], near[2][axis]});
+        const double high = std::max({near[0][axis], near[1][axis], near[2][axis]});
+        const double gap = std::max(std::max(low, -high) - half_[axis], 0.0);
+        apart_sq += gap * gap;
+    }
+    CoreBounds found;
+    found.lower = std::sqrt(apart_sq) - rounding;
+    if (found.lower > limit)
+    {
+        return found;
+    }
+    const auto* const nearest = std::ranges::min_element(beyond_sq);
+    const Vec3 way = gap_from(half_, near[static_cast<std::size_t>(nearest - beyond_sq.begin())]);
+    const double upper = std::sqrt(*nearest);
+    if (upper > 0.0)
+    {
+        found.lower = std::max(found.lower, apart_along(way, near) / upper - rounding);
+    }
+    found.upper = is_convex_body() ? kInfinity : upper + rounding;
+    found.meet = way == Vec3(0.0, 0.0, 0.0) && std::holds_alternative<Box>(core_);
+    return found;
+}
+
+/// How far the triangle is beyond the box along a way of any length, times that.
+double PlacedCore::apart_along(const Vec3& way, const Triangle& near) const noexcept
+{
+    return std::min({way.dot(near[0]), way.dot(near[1]), way.dot(near[2])}) -
+           way.cwiseAbs().dot(half_);
+}
+
+CoreSeparation PlacedCore::separation(const Triangle& triangle) const noexcept
+{
+    const Triangle near = to_box_frame(triangle);
+    const std::array<Vec3, 3> ways{gap_from(half_, near[0]), gap_from(half_, near[1]),
+                                   gap_from(half_, near[2])};
+    const Vec3& way = *std::ranges::min_element(ways, {}, &squared_length);
+    const double length = way.norm();
+    return length > 0.0 ? CoreSeparation{axes_ * (-way / length),
+                                         apart_along(way, near) / length - 2.0 * rounding_of(near)}
+                        : CoreSeparation{};
 }
 
 CoreCover PlacedCore::cover(double enough) const noexcept

@@ -210,6 +210,34 @@ struct PlaneHit
     std::uint32_t lanes; ///< Those that are below.
 };
 
+/// An index page as the kernels see its boxes: around a point, in quanta.
+struct KernelPage
+{
+    // NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): kernel_source.inc.
+    float low[3];  ///< The corner of its own box from which its boxes count their steps.
+    float step[3]; ///< The length of a step.
+    // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
+    float slack; ///< More than what rounding takes from or adds to any gap.
+};
+/// An index page's rows have so many boxes: three rows of low steps, then three of high ones.
+inline constexpr int kIndexRow = 64;
+
+/// A ball around the same point, in quanta.
+struct KernelBall
+{
+    // NOLINTNEXTLINE(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): likewise.
+    float center[3];
+    float radius;
+};
+
+/// How eight boxes lie to some balls.
+struct NearBoxes
+{
+    std::uint32_t met;  ///< Boxes that a ball surely meets.
+    std::uint32_t open; ///< Boxes that single precision can't decide.
+    float gap;          ///< No ball is nearer than this to any of the others.
+};
+
 /// A LocalTriangle: its name, then three coordinates of each corner.
 inline constexpr std::size_t kTriangleBytes = 40;
 inline constexpr std::size_t kTriangleCornersAt = 4;
@@ -320,10 +348,11 @@ struct Kernels
     /// The faces in `mask` that are not proven to be farther than `bound` and their error from a
     /// box, along the frame's axes and their normals. `box` is low x, y, z, high x, y, z in metres,
     /// and `center` what the rows are around; `slack` is how far their vertices are off beyond
-    /// 2^-22 of themselves.
+    /// 2^-22 of themselves. Where none is left, all in `mask` are at least `least_gap` away, errors
+    /// taken off.
     std::uint32_t (*near_rows)(const TriangleRows& rows, const float* box,
                                const KernelProbe& center, std::uint32_t mask, float bound,
-                               float slack) noexcept TACTUS_NONBLOCKING;
+                               float slack, float& least_gap) noexcept TACTUS_NONBLOCKING;
 
     /// The faces in `mask` of a block that are not proven to be farther than `bound` from a box,
     /// along its own axes and the frame's; and the block's vertices around the box's centre.
@@ -359,6 +388,12 @@ struct Kernels
     /// lower bound, and is good to rule out others.
     void (*pair_distances)(const PairRows& rows, std::uint32_t count,
                            PairDistances& distances) noexcept TACTUS_NONBLOCKING;
+
+    /// How eight boxes of an index page lie to `count` balls; boxes in `known` are left out.
+    /// `steps` is the first of them in the page's first row.
+    NearBoxes (*near_boxes)(const std::uint16_t* steps, const KernelPage& page,
+                            const KernelBall* balls, std::uint32_t count,
+                            std::uint32_t known) noexcept TACTUS_NONBLOCKING;
 };
 
 /// What single precision rounds in the bounds between boxes and between faces, as a share of the

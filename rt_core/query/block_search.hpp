@@ -22,10 +22,11 @@ struct QueryMemory
 /// Shows `search` the blocks that matter, the remembered one first and then nearest first.
 ///
 /// A search has `bound()`, in quanta from the probe, beyond which nothing matters;
-/// `test_block(index)`, false when the budget is spent; and `leave(gap)` for what was not come to,
-/// at least so many quanta from the probe. Afterwards it remembers the block with the nearest face.
-template <typename Search>
-void search_blocks(const AbTree& tree, const KernelProbe& probe, WalkBudget& budget,
+/// `test_block(index)`, false when the budget is spent or enough is known; and `leave(gap)` for
+/// what was not come to, at least so many quanta from the probe. Afterwards it remembers the block
+/// with the nearest face.
+template <typename Probe, typename Search>
+void search_blocks(const AbTree& tree, const Probe& probe, WalkBudget& budget,
                    const QueryMemory& memory, Search& search) noexcept
 {
     const std::uint32_t warm =

@@ -226,12 +226,67 @@ ClosestPoints closest_of(const PlacedCore& core, const Triangle& triangle,
     return closest;
 }
 
+/// Faces of a surface within a distance, by their places in it. Those that may be the nearest
+/// kMaxContacts come first: when they are measured, few others need to be.
+class NearFirst
+{
+public:
+    NearFirst(const LocalSurface& surface, const AbTree& tree, double within_m) noexcept
+    {
+        Places all;
+        for (std::uint32_t i = 0; i < surface.count; ++i)
+        {
+            if (surface.distances_m[i] <= within_m)
+            {
+                all.push_back(static_cast<std::uint16_t>(i));
+            }
+        }
+        if (all.size() <= kMaxContacts)
+        {
+            places_ = all;
+            return;
+        }
+        const auto rank = [&](std::uint16_t i)
+        { return std::pair(surface.distances_m[i], tree.face_of(surface.triangles[i].prim)); };
+        Places ranked = all;
+        std::ranges::nth_element(ranked, ranked.begin() + kMaxContacts, {}, rank);
+        const auto first_after = rank(ranked[kMaxContacts]);
+        for (const bool is_near : {true, false})
+        {
+            for (const std::uint16_t i : all)
+            {
+                if ((rank(i) < first_after) == is_near)
+                {
+                    places_.push_back(i);
+                }
+            }
+        }
+    }
+
+    [[nodiscard]] const std::uint16_t* begin() const noexcept { return places_.begin(); }
+    [[nodiscard]] const std::uint16_t* end() const noexcept { return places_.end(); }
+
+private:
+    using Places = StaticVector<std::uint16_t, kMaxLocalTriangles>;
+    static_assert(kMaxLocalTriangles <= 0xFFFF);
+
+    Places places_;
+};
+
+/// Whether there is room for a contact of this face, at least so far away.
+bool may_be_kept(double distance_m, FaceId face, const ContactSet& contacts) noexcept
+{
+    return !contacts.full() || comes_before(Contact{.face = face, .distance_m = distance_m},
+                                            contacts[kMaxContacts - 1]);
+}
+
 void add_contacts(const PlacedCore& core, double radius_m, const AbTree& tree,
                   const LocalSurface& surface, ContactReport& report) noexcept
 {
-    for (std::uint32_t i = 0; i < surface.count; ++i)
+    for (const std::uint16_t i : NearFirst(surface, tree, radius_m))
     {
-        if (surface.distances_m[i] > radius_m)
+        const FaceId face = tree.face_of(surface.triangles[i].prim);
+        if (!report.is_complete && !may_be_kept(surface.distances_m[i], face, report.contacts))
         {
             continue;
         }
@@ -241,7 +296,6 @@ void add_contacts(const PlacedCore& core, double radius_m, const AbTree& tree,
         {
             continue;
         }
-        const FaceId face = tree.face_of(surface.triangles[i].prim);
         if (!keep_nearest(make_contact(closest, triangle, face), report.contacts))
         {
             report.is_complete = false;
@@ -260,6 +314,22 @@ bool is_over(const Vec3& point, const Triangle& triangle, const Vec3& normal) no
         }
     }
     return true;
+}
+
+/// No point of the triangle is farther from its first corner.
+double size_of(const Triangle& triangle) noexcept
+{
+    return kWidened * std::sqrt(std::max((triangle[1] - triangle[0]).squaredNorm(),
+                                         (triangle[2] - triangle[0]).squaredNorm()));
+}
+
+/// Whether a point within the reach of the triangle's plane may be over it.
+bool may_be_over(const CoreCorners& points, double reach_m, const Triangle& triangle,
+                 double size_m) noexcept
+{
+    const double far_m = kWidened * (reach_m + size_m);
+    return std::ranges::any_of(points, [&](const Vec3& point)
+                               { return (point - triangle[0]).squaredNorm() <= far_m * far_m; });
 }
 
 /// Corners of the core that stand over a face, on either side.
@@ -284,6 +354,30 @@ void add_corners(const CoreCorners& corners, double reach_m, const Triangle& tri
     }
 }
 
+/// Whether a contact of the triangle, at least so far away, would be kept in some direction.
+bool may_be_an_end(const Triangle& triangle, double size_m, double distance_m,
+                   const ContactEnds& ends) noexcept
+{
+    return ends.is_empty ||
+           (may_be_farther_in_any(triangle, size_m, distance_m, ends.reaches_m) &&
+            is_farther_in_any(most_end_reaches(triangle, distance_m), ends.reaches_m));
+}
+
+/// Adds the slab of a face that is `distance_m` away, without its nearest point, if that proves
+/// hardly less.
+bool try_add_slab(const PlacedCore& core, const Triangle& triangle, double distance_m,
+                  TouchReport& touches) noexcept
+{
+    constexpr double kHardlyLess = 0.95;
+    const CoreSeparation plane = core.separation(triangle);
+    const bool proves_it = plane.distance > 0.0 && plane.distance >= kHardlyLess * distance_m;
+    if (proves_it)
+    {
+        keep_slab(plane.normal, plane.distance, touches);
+    }
+    return proves_it;
+}
+
 /// Between points that are the nearest but for rounding everything is on its own side of the plane
 /// across them; where they are not found as well as that, no direction is proven.
 void add_slab(const Vec3& normal, const ClosestPoints& closest, TouchReport& touches) noexcept
@@ -304,14 +398,23 @@ void report_touches(const PlacedCore& core, double reach_m, const AbTree& tree,
     touches.clear();
     touches.covered_m = reach_m;
     const CoreCorners corners = core.corners();
-    for (std::uint32_t i = 0; i < surface.count; ++i)
+    for (const std::uint16_t i : NearFirst(surface, tree, reach_m))
     {
-        if (surface.distances_m[i] > reach_m)
+        const Triangle triangle = to_triangle(surface.triangles[i].corners_m);
+        const FaceId face = tree.face_of(surface.triangles[i].prim);
+        const double lower_m = surface.distances_m[i];
+        const double size_m = size_of(triangle);
+        if (may_be_over(corners, reach_m, triangle, size_m))
+        {
+            add_corners(corners, reach_m, triangle, face, touches);
+        }
+        const bool is_of_use = !touches.is_truncated ||
+                               may_be_kept(lower_m, face, touches.nearest) ||
+                               may_be_an_end(triangle, size_m, lower_m, touches.ends);
+        if (!is_of_use && try_add_slab(core, triangle, lower_m, touches))
         {
             continue;
         }
-        const Triangle triangle = to_triangle(surface.triangles[i].corners_m);
-        const FaceId face = tree.face_of(surface.triangles[i].prim);
         const ClosestPoints closest = core.closest(triangle);
         if (closest.distance <= reach_m)
         {
@@ -319,7 +422,6 @@ void report_touches(const PlacedCore& core, double reach_m, const AbTree& tree,
             add_slab(contact.normal, closest, touches);
             keep_ends(contact, touches.ends);
             const bool has_room = keep_nearest(contact, touches.nearest);
-            add_corners(corners, reach_m, triangle, face, touches);
             touches.is_truncated = touches.is_truncated || !has_room;
         }
     }

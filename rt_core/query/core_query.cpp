@@ -3,12 +3,14 @@
 #include "rt_core/query/core_query.hpp"
 
 #include "rt_core/base/assert.hpp"
+#include "rt_core/geometry/separations.hpp"
 #include "rt_core/math/infinity.hpp"
 #include "rt_core/query/nearest_triangles.hpp"
 #include "rt_core/query/probe.hpp"
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 namespace tactus
 {
@@ -16,58 +18,101 @@ namespace tactus
 namespace
 {
 
-/// One query. Kernels bound distances from the core's centre; its ball turns them into bounds from
-/// the core.
+static_assert(kBlockVertices == CornersAtCore::kCorners);
+
+/// More quanta than any model has, and far from what overflows.
+constexpr double kMostQuanta = 0x1p100;
+
+/// The oriented box round a core, as the kernels see it.
+KernelBox make_kernel_box(const PlacedCore& core, float quantum_m) noexcept
+{
+    KernelBox box{};
+    box.center = make_probe(core.center(), quantum_m);
+    float sum = 0.0F;
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+        const auto along = static_cast<Eigen::Index>(i);
+        box.half_along[i] = round_up_to_float(
+            std::min(core.half()[along] / static_cast<double>(quantum_m), kMostQuanta));
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            box.axes[i][axis] =
+                static_cast<float>(core.axes()(static_cast<Eigen::Index>(axis), along));
+            box.half[axis] += std::abs(box.axes[i][axis]) * box.half_along[i];
+        }
+    }
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+        sum += box.half[i] + box.half_along[i];
+    }
+    box.center.slack += sum * kPairMargin;
+    return box;
+}
+
+/// One query. Kernels bound the distances of boxes from the one round the core.
 class CoreSearch
 {
 public:
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): each block fills corners_.
     CoreSearch(const AbTree& tree, const PlacedCore& core, double reach_m, ProofShare share,
-               WalkBudget& budget, LocalSurface& surface) noexcept
+               std::uint32_t enough, WalkBudget& budget, LocalSurface& surface) noexcept
         : tree_(tree)
         , core_(core)
         , quantum_(static_cast<double>(tree.quantum_m()))
         , reach_(reach_m)
         , share_(static_cast<double>(share_of(share)))
+        , enough_(enough)
         , budget_(budget)
-        , probe_(make_probe(core.center(), tree.quantum_m()))
+        , box_(make_kernel_box(core, tree.quantum_m()))
         , triangles_(surface)
     {
+        if (core.is_convex_body())
+        {
+            separations_.emplace(core);
+        }
     }
 
     void run(QueryMemory& memory) noexcept
     {
-        search_blocks(tree_, probe_, budget_, memory, *this);
+        search_blocks(tree_, box_, budget_, memory, *this);
         memory.block = nearest_block_ == kNoNode ? memory.block : nearest_block_;
     }
 
     [[nodiscard]] float bound() const noexcept
     {
-        const double quanta = (core_.radius() + worth_m()) / quantum_;
+        const double quanta = worth_m() / quantum_;
         return quanta < kFarQuanta ? round_up_to_float(quanta)
                                    : std::numeric_limits<float>::infinity();
     }
 
-    void leave(float gap) noexcept { open_ = std::min(open_, from_core(gap)); }
+    void leave(float gap) noexcept { open_ = std::min(open_, static_cast<double>(gap) * quantum_); }
 
-    /// False when the budget is spent.
+    /// False when the budget is spent, or enough is known.
     [[nodiscard]] bool test_block(std::uint32_t index) noexcept
     {
         const BlockGeometry& block = tree_.block(index);
         if (!budget_.take_triangles(face_count(block)))
         {
-            open_ = 0.0; // Its parent's bound may have gone with it.
+            open_ = std::min(open_, 0.0); // Its parent's bound may have gone with it.
             return false;
         }
         const BlockSide& side = tree_.side(index);
         TACTUS_ASSERT(side.in_use);
-        FaceBounds bounds; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
-        bound_faces(tree_.kernels(), block, block.faces, probe_, bounds);
+        core_.see(block.coordinates, corners_);
+        if (separations_ && is_apart(block, side))
+        {
+            return true;
+        }
         for (std::uint32_t lanes = block.faces; lanes != 0; lanes &= lanes - 1)
         {
             const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
             const double error = static_cast<double>(error_in_quanta(side.errors[lane])) * quantum_;
-            test_face({index, lane, (side.coarse >> lane & 1U) != 0, error},
-                      from_core(bounds.lower[lane]) - error);
+            test_face({index, lane, (side.coarse >> lane & 1U) != 0, error});
+            if (met_ >= enough_)
+            {
+                open_ = std::min(open_, 0.0);
+                return false;
+            }
         }
         return true;
     }
@@ -77,7 +122,8 @@ public:
         Findings found;
         found.exact_lower_m = exact_lower_;
         found.upper_m = upper_;
-        found.open_m = tree_.is_complete() ? open_ : 0.0;
+        // No face is nearer than one that meets the core, wherever it is.
+        found.open_m = tree_.is_complete() ? std::max(open_, 0.0) : 0.0;
         found.pruned_m = upper_ > reach_ ? worth_m() : kInfinity;
         found.dropped_m = triangles_.dropped_m();
         DistanceAnswer answer = answer_from(found, reach_);
@@ -101,67 +147,168 @@ private:
         double error_m;
     };
 
-    /// What is farther changes nothing. Never grows: what was left out stays farther.
-    [[nodiscard]] double worth_m() const noexcept { return std::max(reach_, share_ * upper_); }
-
-    /// Both roundings are relative and far below the margin of the kernels.
-    [[nodiscard]] double from_core(float quanta) const noexcept
+    /// Of a face: what little work tells, and of a convex body in reach the distance.
+    struct Measure
     {
-        return static_cast<double>(quanta) * quantum_ - core_.radius();
+        CoreBounds bounds;
+        std::optional<ClosestPoints> closest;
+    };
+
+    /// What is farther changes nothing. Never grows: what was left out stays farther.
+    [[nodiscard]] double worth_m() const noexcept
+    {
+        return upper_ > reach_ ? std::max(reach_, share_ * upper_)
+                               : std::max(std::min(reach_, triangles_.dropped_m()), upper_);
     }
 
-    void test_face(const Face& face, double lower_m) noexcept
+    /// Along one direction a convex body is so far from the whole block that it does not matter.
+    [[nodiscard]] bool is_apart(const BlockGeometry& block, const BlockSide& side) noexcept
     {
-        const Triangle triangle = to_triangle(block_triangle(tree_.block(face.block), face.lane));
-        double lower = lower_m;
-        if (lower <= worth_m())
+        budget_.spend(WorkCost::block_row);
+        const double error = static_cast<double>(largest_error_quanta(side)) * quantum_;
+        const double worth = worth_m() + error;
+        const double apart = separations_->see(block.coordinates, block.vertices, corners_, worth);
+        if (apart > worth && side.coarse != 0)
         {
-            lower = std::max(lower, core_.lower_bound(triangle) - face.error_m);
+            open_ = std::min(open_, apart - error);
         }
-        if (lower > worth_m())
+        return apart > worth;
+    }
+
+    void test_face(const Face& face) noexcept
+    {
+        const double worth = worth_m();
+        const Measure known = measure_within(face, worth + face.error_m);
+        double lower = known.bounds.lower - face.error_m;
+        if (face.is_coarse && lower <= worth && lower < open_)
         {
-            open_ = face.is_coarse ? std::min(open_, lower) : open_;
+            // As refinement measures it: what that holds for far enough is not open here.
+            const ClosestPoints closest = measure(face, known);
+            lower = closest.distance - closest.distance_error - face.error_m;
+        }
+        open_ = face.is_coarse ? std::min(open_, lower) : open_;
+        if (lower > worth)
+        {
             return;
         }
-        const ClosestPoints closest = core_.closest(triangle);
         if (face.is_coarse)
         {
-            open_ = std::min(open_, closest.distance - closest.distance_error - face.error_m);
-            bound_by_corners(triangle);
-            return;
+            bound_by_corners(face, known.bounds);
         }
-        add_exact(face, closest);
+        else
+        {
+            add_exact(face, known);
+        }
     }
 
-    void add_exact(const Face& face, const ClosestPoints& closest) noexcept
+    [[nodiscard]] Measure measure_within(const Face& face, double limit_m) noexcept
     {
-        const double lower = std::max(0.0, closest.distance - closest.distance_error);
+        const BlockGeometry& block = tree_.block(face.block);
+        const std::array<std::uint8_t, 3> corners{
+            block.corners[0][face.lane], block.corners[1][face.lane], block.corners[2][face.lane]};
+        Measure found{core_.bounds(corners_, corners, limit_m), std::nullopt};
+        if (separations_ && found.bounds.lower <= limit_m)
+        {
+            found.bounds.lower = std::max(found.bounds.lower, separations_->bound(corners));
+            if (found.bounds.lower <= limit_m)
+            {
+                measure_body(face, limit_m, found);
+            }
+        }
+        return found;
+    }
+
+    void measure_body(const Face& face, double limit_m, Measure& found) noexcept
+    {
+        constexpr double kHardlyMore = 1.05; // What would be gained by one more direction.
+        budget_.spend(WorkCost::gjk);
+        Vec3 direction(0.0, 0.0, 0.0); // As PlacedCore::closest(), so with its bits.
+        const GjkAnswer answer = gjk_distance(core_.body(), triangle_of(face), direction, limit_m);
+        const ClosestPoints closest = to_closest_points(answer);
+        if (answer.lower > kHardlyMore * found.bounds.lower)
+        {
+            separations_->add(direction);
+        }
+        found.bounds.lower =
+            std::max(found.bounds.lower, closest.distance - closest.distance_error);
+        found.bounds.upper = closest.distance + closest.distance_error;
+        found.bounds.meet = closest.meet;
+        if (!(answer.lower > limit_m)) // Else it ended there.
+        {
+            found.closest = closest;
+        }
+    }
+
+    [[nodiscard]] Triangle triangle_of(const Face& face) const noexcept
+    {
+        return to_triangle(block_triangle(tree_.block(face.block), face.lane));
+    }
+
+    [[nodiscard]] ClosestPoints measure(const Face& face, const Measure& known) const noexcept
+    {
+        return known.closest ? *known.closest : measure(triangle_of(face));
+    }
+    [[nodiscard]] ClosestPoints measure(const Triangle& triangle) const noexcept
+    {
+        budget_.spend(separations_ ? WorkCost::gjk : WorkCost::measured);
+        return core_.closest(triangle);
+    }
+
+    void add_exact(const Face& face, const Measure& known) noexcept
+    {
         const PrimId prim = tree_.side(face.block).prims[face.lane];
+        const FaceId id = tree_.face_of(prim);
+        const CoreBounds& bounds = known.bounds;
+        double lower = std::max(0.0, bounds.lower);
+        bool meets = bounds.meet;
+        upper_ = std::min(upper_, bounds.upper);
+        if (may_be_nearest(id, lower) || (lower <= reach_ && bounds.upper > reach_))
+        {
+            const ClosestPoints closest = measure(face, known);
+            lower = std::max(0.0, closest.distance - closest.distance_error);
+            meets = closest.meet;
+            upper_ = std::min(upper_, closest.distance + closest.distance_error);
+            keep_if_nearest(closest, id, face.block);
+        }
         if (lower <= reach_)
         {
             triangles_.add({prim, block_triangle(tree_.block(face.block), face.lane)}, lower);
         }
         exact_lower_ = std::min(exact_lower_, lower);
-        upper_ = std::min(upper_, closest.distance + closest.distance_error);
-        const FaceId id = tree_.face_of(prim);
-        if (nearest_face_.is_none() || closest.distance < nearest_.distance ||
-            (closest.distance == nearest_.distance && id < nearest_face_))
+        met_ += meets ? 1U : 0U;
+    }
+
+    /// The lowest of equally near faces is taken.
+    [[nodiscard]] bool may_be_nearest(FaceId face, double lower_m) const noexcept
+    {
+        return lower_m <= upper_ && (nearest_.distance > 0.0 || face < nearest_face_);
+    }
+
+    void keep_if_nearest(const ClosestPoints& closest, FaceId face, std::uint32_t block) noexcept
+    {
+        if (closest.distance < nearest_.distance ||
+            (closest.distance == nearest_.distance && face < nearest_face_))
         {
             nearest_ = closest;
-            nearest_face_ = id;
-            nearest_block_ = face.block;
+            nearest_face_ = face;
+            nearest_block_ = block;
         }
     }
 
     /// The corners of a coarse face are original vertices.
-    void bound_by_corners(const Triangle& triangle) noexcept
+    void bound_by_corners(const Face& face, const CoreBounds& bounds) noexcept
     {
-        for (const Vec3& corner : triangle)
+        if (!core_.is_convex_body())
+        {
+            upper_ = std::min(upper_, bounds.upper);
+            return;
+        }
+        for (const Vec3& corner : triangle_of(face))
         {
             const Triangle point{corner, corner, corner};
-            if (core_.lower_bound(point) < upper_)
+            if (core_.bounds(point).lower < upper_)
             {
-                const ClosestPoints closest = core_.closest(point);
+                const ClosestPoints closest = measure(point);
                 upper_ = std::min(upper_, closest.distance + closest.distance_error);
             }
         }
@@ -172,13 +319,17 @@ private:
     double quantum_;
     double reach_;
     double share_; ///< Of the best distance: what is farther is not looked at.
+    std::uint32_t enough_;
     WalkBudget& budget_;
-    KernelProbe probe_;
+    KernelBox box_;
     NearestTriangles triangles_;
+    std::optional<Separations> separations_; ///< Of a convex body.
+    CornersAtCore corners_;                  ///< The corners of the block that is tested.
     double open_{kInfinity};        ///< What is not known exactly is at least this far away.
     double exact_lower_{kInfinity}; ///< Exact faces are;
     double upper_{kInfinity};       ///< something of the surface is at most.
-    ClosestPoints nearest_;
+    std::uint32_t met_{0};          ///< Exact faces that meet the core.
+    ClosestPoints nearest_{.distance = kInfinity};
     FaceId nearest_face_{};
     std::uint32_t nearest_block_{kNoNode};
 };
@@ -186,8 +337,10 @@ private:
 } // namespace
 
 void gather_surface(const AbTree& tree, const PlacedCore& core, double reach_m, QueryMemory& memory,
-                    WalkBudget& budget, LocalSurface& surface, ProofShare share) noexcept
+                    WalkBudget& budget, LocalSurface& surface, ProofShare share,
+                    std::uint32_t enough) noexcept
 {
+    TACTUS_ASSERT(enough > 0);
     if (core.is_point())
     {
         gather_surface(tree, core.center(), reach_m, memory, budget, surface, share);
@@ -203,7 +356,7 @@ void gather_surface(const AbTree& tree, const PlacedCore& core, double reach_m, 
     }
     TACTUS_ASSERT(!core.is_mesh());
     surface.center_m = core.center();
-    CoreSearch search(tree, core, reach_m, share, budget, surface);
+    CoreSearch search(tree, core, reach_m, share, enough, budget, surface);
     search.run(memory);
     surface.answer = search.answer();
 }

@@ -5,12 +5,20 @@
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/query/face_pair_queue.hpp"
 #include "rt_core/query/other_surface.hpp"
+#include "rt_core/query/pair_front.hpp"
+#include "rt_core/query/surface_query.hpp"
 #include "rt_core/records/contact.hpp"
 #include "rt_core/records/local_surface.hpp"
 #include "rt_core/records/mesh_report.hpp"
 
+#include <cstdint>
+#include <limits>
+
 namespace tactus
 {
+
+/// MeshQuestion::enough of one that asks for all.
+inline constexpr std::uint32_t kAllMeetingFaces = std::numeric_limits<std::uint32_t>::max();
 
 /// A tool that is a mesh, and an object: what is asked of the two.
 struct MeshQuestion
@@ -25,17 +33,24 @@ struct MeshQuestion
     /// What is not exact is known to be at least this far from the other's original surface, in the
     /// object's frame; 0: nothing is known of it.
     double certified_m{0.0};
-    /// False: where no contacts are wanted either the first pair that meets is enough, and with
-    /// contacts kEnoughMeetingFaces are.
-    bool wants_pairs{true};
+    /// So many pairs that meet end the search; more than 0.
+    std::uint32_t enough{kAllMeetingFaces};
+    /// What the last query of the same two models came to; null: every query begins at the roots.
+    PairFront* front{nullptr};
 };
 
 /// What a pair of two meshes keeps from one query to the next: the faces that met last, or were the
-/// nearest, to be looked at first. They are measured where they are now, so any values are safe.
+/// nearest, to be looked at first, how far contacts went and how much of a distance can be proven.
+/// The first are measured where they are now, the others are guesses that are tested: any values
+/// are safe.
 struct MeshMemory
 {
     FacePair faces;
     bool is_crowded{false}; ///< More met than there is room for contacts; so it may be again.
+    /// The nearest contacts for which there was no room were as near; negative: there was room.
+    double farthest_contact_m{-1.0};
+    /// Beyond the reach, so much of the distance is asked for: less after a query that was cut.
+    double share{static_cast<double>(kProofShare)};
 
     bool operator==(const MeshMemory&) const noexcept = default;
 };
@@ -51,12 +66,11 @@ struct MeshMemory
 /// the distances of exact pairs lowered by the kernel's law; faces meet by an exact decision. The
 /// same pairs are found in whatever state the trees are where all near pairs are exact. Coarse
 /// faces are not looked at where the question's `certified_m` is beyond all that matters. Where
-/// neither pairs nor contacts are wanted the search ends with the first pair that meets: L and U
-/// are 0, and the report has that pair alone and is not complete. With contacts it ends when
-/// kEnoughMeetingFaces meet, and contacts are those of what was found.
+/// `enough` pairs are found to meet the search ends: L and U are 0, the report has those pairs and
+/// is not complete, and contacts are those of what was found.
 ///
 /// `object` is the object's surface as the tool's model sees it, with the budget. 30 us where 100
-/// pairs meet and no contacts are asked for; 0.2 us without pairs, where those that met last do.
+/// pairs meet and no contacts are asked for; 0.2 us where one is enough and those that met last do.
 void query_meshes(const MeshQuestion& question, OtherSurface& object, MeshMemory& memory,
                   DistanceAnswer& answer, MeshReport& report,
                   ContactReport& contacts) noexcept TACTUS_NONBLOCKING;

@@ -29,9 +29,11 @@ NearFaces::NearFaces(const AbTree& own, OtherSurface& other) noexcept
 {
 }
 
-void NearFaces::find(double bound_m) noexcept
+void NearFaces::find(double bound_m, std::uint32_t enough, UnfinishedSearch* unfinished) noexcept
 {
-    search(bound_m, {own_.root(), own_.box(), true}, nullptr);
+    TACTUS_ASSERT(enough > 0);
+    enough_ = enough;
+    search(bound_m, {own_.root(), own_.box(), true}, nullptr, unfinished);
 }
 
 void NearFaces::find(const LooseFaces& faces, double bound_m) noexcept
@@ -51,11 +53,11 @@ void NearFaces::find(const LooseFaces& faces, double bound_m) noexcept
     {
         placed_.put_loose(faces.geometry, faces.lanes, faces.errors_m);
     }
-    search(bound_m, {kLoose, box, false}, &faces);
+    search(bound_m, {kLoose, box, false}, &faces, nullptr);
 }
 
-void NearFaces::search(double bound_m, const PairWalk::Start& start,
-                       const LooseFaces* loose) noexcept
+void NearFaces::search(double bound_m, const PairWalk::Start& start, const LooseFaces* loose,
+                       UnfinishedSearch* unfinished) noexcept
 {
     TACTUS_ASSERT(bound_m >= 0.0);
     const double bound = bound_m * quanta_per_m_ * kRoundedUp;
@@ -70,8 +72,14 @@ void NearFaces::search(double bound_m, const PairWalk::Start& start,
         leave(round_down_to_float(gap_m * quanta_per_m_ / kRoundedUp));
         return;
     }
+    other_.budget().spend(WorkCost::walk);
     PairWalk walk(own_, other_.tree(), views_, other_.budget(), start);
+    if (unfinished != nullptr)
+    {
+        go_on(*unfinished, walk);
+    }
     PairWalk::Sought sought{bound_};
+    bool is_done = true; // With the pair that is near.
     while (!is_full())
     {
         const PairWalk::Item* near = walk.next_blocks(sought);
@@ -89,14 +97,53 @@ void NearFaces::search(double bound_m, const PairWalk::Start& start,
         else if (!try_test(*near, own, lanes))
         {
             leave(near->gap);
+            is_done = false;
             break;
         }
     }
     measure();
-    for (const PairWalk::Item& item : walk.left())
+    if (unfinished != nullptr && !is_full())
     {
-        leave(item.gap);
+        keep(walk, is_done, *unfinished);
     }
+    leave(walk.end());
+}
+
+/// What was proven then is less now, by what the other surface has moved and its new place rounds.
+void NearFaces::go_on(UnfinishedSearch& unfinished, PairWalk& walk) noexcept
+{
+    if (!unfinished.left.empty() && unfinished.own_change == own_.last_change() &&
+        unfinished.other_change == other_.tree().last_change())
+    {
+        const double travel = unfinished.moved_m * quanta_per_m_ * kRoundedUp +
+                              2.0 * static_cast<double>(views_.slack());
+        const auto now = [&](double before_m)
+        { return round_down_to_float(before_m * quanta_per_m_ / kRoundedUp - travel); };
+        walk.go_on_with(unfinished.left, travel);
+        bound_ = std::min(bound_, std::max(now(unfinished.bound_m), 0.0F));
+        leave(std::min(bound_, now(unfinished.nearest_m)));
+    }
+    unfinished.left.clear();
+}
+
+void NearFaces::keep(const PairWalk& walk, bool is_done,
+                     UnfinishedSearch& unfinished) const noexcept
+{
+    float nearest = std::min(rest_, bound_);
+    for (const Block& block : blocks_)
+    {
+        for (std::uint32_t left = block.lanes; left != 0; left &= left - 1)
+        {
+            nearest =
+                std::min(nearest, block.gaps[static_cast<std::size_t>(std::countr_zero(left))]);
+        }
+    }
+    walk.keep_left(is_done, unfinished.left);
+    unfinished.own_change = own_.last_change();
+    unfinished.other_change = other_.tree().last_change();
+    unfinished.bound_m = to_m(bound_);
+    unfinished.nearest_m = to_m(nearest);
+    unfinished.moved_m = 0.0;
 }
 
 /// False when the budget is spent before all of these lanes was looked at.
@@ -110,15 +157,18 @@ bool NearFaces::try_test(const PairWalk::Item& item, const PlacedBlock& own,
     const Aabb& box = item.object_box;
     const std::array<float, 6> ends{box.low[0],  box.low[1],  box.low[2],
                                     box.high[0], box.high[1], box.high[2]};
-    if (!budget.take_triangles(static_cast<std::uint32_t>(std::popcount(lanes))))
+    if (!budget.take_triangles(count_lanes(lanes), WorkCost::coarse_row))
     {
         return false;
     }
-    lanes = kernels.near_rows(own.rows, ends.data(), own.box.center, lanes, bound_, own.slack());
+    float gap = 0.0F;
+    lanes =
+        kernels.near_rows(own.rows, ends.data(), own.box.center, lanes, bound_, own.slack(), gap);
     if (lanes == 0)
     {
         return true;
     }
+    budget.spend(WorkCost::near_block);
     // Errors of the other's faces are in the box, and not in the block.
     const float bound = (bound_ + largest_error_quanta(side)) * kSumRoundedUp;
     VertexRows rows; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
@@ -135,7 +185,7 @@ bool NearFaces::try_test(const PairWalk::Item& item, const PlacedBlock& own,
         pair.tool_lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
         for (std::uint32_t left = near[pair.tool_lane]; left != 0; left &= left - 1)
         {
-            if (!budget.take_triangles(1))
+            if (!budget.take_triangles(1, WorkCost::face_pair))
             {
                 return false;
             }
@@ -208,7 +258,9 @@ void NearFaces::take(const FacePair& pair, float lower) noexcept
     }
     const std::uint32_t bit = 1U << pair.tool_lane;
     float& kept = block->gaps[pair.tool_lane];
-    kept = (block->lanes & bit) != 0 ? std::min(kept, lower) : lower;
+    const bool is_known = (block->lanes & bit) != 0;
+    kept = is_known ? std::min(kept, lower) : lower;
+    found_ += is_known ? 0U : 1U;
     block->lanes |= bit;
 }
 

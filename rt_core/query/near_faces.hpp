@@ -22,6 +22,19 @@ struct LooseFaces
     std::array<double, kBlockFaces> errors_m{}; ///< and their errors.
 };
 
+/// What a search that its budget cut had not come to, for the next one of the same two models. What
+/// it has proven holds for the boxes as they were: where a tree has changed since, it is of no use.
+/// 4 KiB.
+struct UnfinishedSearch
+{
+    PairWalk::LeftPairs left; ///< Empty: there is nothing to go on with.
+    std::uint64_t own_change{0};
+    std::uint64_t other_change{0};
+    double bound_m{0.0};   ///< What was looked at is not nearer than this,
+    double nearest_m{0.0}; ///< or, where something was found, than this.
+    double moved_m{0.0};   ///< The other surface, since.
+};
+
 /// How far coarse faces of a model are from another surface: lower bounds on the distances of
 /// active faces, both errors taken off. Lengths are of the model's own frame.
 ///
@@ -42,8 +55,13 @@ public:
     /// `other` is the surface as the model sees it; its budget bounds the work.
     NearFaces(const AbTree& own, OtherSurface& other) noexcept TACTUS_NONBLOCKING;
 
-    /// Looks for all faces of the model within `bound_m`.
-    void find(double bound_m) noexcept TACTUS_NONBLOCKING;
+    static constexpr std::uint32_t kAll = std::numeric_limits<std::uint32_t>::max();
+
+    /// Looks for faces of the model within `bound_m`: all, or until `enough` were found. Goes on
+    /// with an unfinished search, of which those that it found are not found again, and leaves one
+    /// where the budget is spent; null: begins, and leaves nothing.
+    void find(double bound_m, std::uint32_t enough = kAll,
+              UnfinishedSearch* unfinished = nullptr) noexcept TACTUS_NONBLOCKING;
     /// The same of faces that will be the model's.
     void find(const LooseFaces& faces, double bound_m) noexcept TACTUS_NONBLOCKING;
 
@@ -59,8 +77,14 @@ public:
     [[nodiscard]] double rest_m() const noexcept { return to_m(rest_); }
 
 private:
-    void search(double bound_m, const PairWalk::Start& start, const LooseFaces* loose) noexcept;
-    [[nodiscard]] bool is_full() const noexcept { return blocks_.full() && !(rest_ > 0.0F); }
+    void search(double bound_m, const PairWalk::Start& start, const LooseFaces* loose,
+                UnfinishedSearch* unfinished) noexcept;
+    void go_on(UnfinishedSearch& unfinished, PairWalk& walk) noexcept;
+    void keep(const PairWalk& walk, bool is_done, UnfinishedSearch& unfinished) const noexcept;
+    [[nodiscard]] bool is_full() const noexcept
+    {
+        return found_ >= enough_ || (blocks_.full() && !(rest_ > 0.0F));
+    }
     [[nodiscard]] bool try_test(const PairWalk::Item& item, const PlacedBlock& own,
                                 std::uint32_t lanes) noexcept;
     [[nodiscard]] std::uint32_t open_lanes(const PlacedBlock& own) noexcept;
@@ -80,6 +104,8 @@ private:
     double quanta_per_m_; ///< Of the other, a length in the own frame.
     float bound_{0.0F};
     float rest_{kNothingLeft};
+    std::uint32_t enough_{kAll};
+    std::uint32_t found_{0}; ///< Faces.
     FacePairQueue queue_;
     std::array<float, kPairLanes> errors_; ///< Of the queue, of both faces together.
     PairDistances distances_;              ///< Of the queue.

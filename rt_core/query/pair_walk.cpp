@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tactus
 {
@@ -17,6 +18,21 @@ namespace
 /// A split coordinate leaves 2^-48 of itself; the rest is for what the split rounds.
 constexpr double kSplitRounding = 0x1p-46;
 constexpr double kLeastSlack = 0x1p-40;
+
+/// The tool's travel that entries are counted in, in quanta: a model is no larger, and single
+/// precision is right to a quantum.
+constexpr double kMostTravel = 0x1p24;
+constexpr float kNothingLeft = std::numeric_limits<float>::infinity();
+
+float least_of(const std::array<float, kNodeChildren>& gaps, std::uint32_t children) noexcept
+{
+    float least = kNothingLeft;
+    for (; children != 0; children &= children - 1)
+    {
+        least = std::min(least, gaps[static_cast<std::size_t>(std::countr_zero(children))]);
+    }
+    return least;
+}
 
 /// Only a choice hangs on it: single precision is enough.
 float diagonal_sq(const Aabb& box) noexcept
@@ -43,6 +59,20 @@ Vec3f seen_from_tool(const Vec3f& way, const BoxView& of_tool) noexcept
 }
 
 } // namespace
+
+double motion_between(const MeshPlacement& before, const MeshPlacement& now,
+                      const Ball& ball) noexcept
+{
+    // The difference of two rotations turns and stretches: two of its singular values are equal,
+    // the third is zero. So it moves nothing by more than its Frobenius norm over the root of two.
+    constexpr double kOfTwo = 0.7072;
+    const Mat3 turned =
+        now.place.scale * now.place.rotation - before.place.scale * before.place.rotation;
+    const double of_turn = now.place.scale == before.place.scale ? kOfTwo : 1.0;
+    return ((now.to_there(ball.center) - before.to_there(ball.center)).norm() +
+            of_turn * turned.norm() * ball.radius) *
+           kWidened;
+}
 
 MeshViews::MeshViews(const AbTree& tool, const AbTree& object, const MeshPlacement& place) noexcept
     : scale_(place.place.scale)
@@ -83,8 +113,60 @@ PairWalk::PairWalk(const AbTree& tool, const AbTree& object, const MeshViews& vi
     }
     if (!start.tool.is_none() && !object.root().is_none() && is_wanted(start.tool))
     {
-        stack_.push_back({start.tool, object.root(), start.box, object.box(), 0.0F});
+        stack_.push_back({start.tool, object.root(), start.box, object.box()});
     }
+}
+
+PairWalk::PairWalk(const AbTree& tool, const AbTree& object, const MeshViews& views,
+                   WalkBudget& budget, PairFront* front, const MeshPlacement& place,
+                   bool exact_only) noexcept
+    : PairWalk(tool, object, views, budget, {tool.root(), tool.box()})
+{
+    if (front == nullptr || stack_.empty())
+    {
+        return;
+    }
+    if (front->pause > 0)
+    {
+        --front->pause;
+        return;
+    }
+    front_ = front;
+    if (can_go_on(place, exact_only))
+    {
+        stack_.clear();
+        read_ = PairFront::kRoom - front->count;
+        std::copy_backward(front->entries.begin(), front->entries.begin() + front->count,
+                           front->entries.end());
+    }
+    else
+    {
+        front->travel = 0.0;
+        front->exact_only = false;
+        front->tool_change = tool.last_change();
+        front->object_change = object.last_change();
+    }
+    front->place = place;
+    front->count = 0; // Until the walk has ended.
+}
+
+/// Whether the last walk's entries are of the same boxes and of all that is asked for, and adds the
+/// way that the tool has gone since.
+bool PairWalk::can_go_on(const MeshPlacement& place, bool exact_only) noexcept
+{
+    if (front_->count == 0 || front_->tool_change != tool_.last_change() ||
+        front_->object_change != object_.last_change() || (front_->exact_only && !exact_only) ||
+        front_->place.place.scale != place.place.scale)
+    {
+        return false;
+    }
+    const double motion_m = motion_between(front_->place, place, ball_round(tool_.box()));
+    if (motion_m > 0.0)
+    {
+        front_->travel += (motion_m / static_cast<double>(object_.quantum_m())) * kRoundedUp +
+                          2.0 * static_cast<double>(views_.slack());
+    }
+    return motion_m >= 0.0 && front_->travel < kMostTravel;
 }
 
 /// Whether anything below is.
@@ -96,26 +178,169 @@ bool PairWalk::is_wanted(TreeRef tool) const noexcept
 
 const PairWalk::Item* PairWalk::next_blocks(const Sought& sought) noexcept
 {
-    while (!stack_.empty())
+    if (front_ != nullptr)
     {
-        const Item& next = stack_[stack_.size() - 1];
-        if (next.gap > sought.bound || next.tool == sought.settled)
+        front_->exact_only = front_->exact_only || sought.exact_only;
+        limit_ = round_up_to_float(static_cast<double>(sought.bound) + front_->travel);
+    }
+    for (bool has_more = true; has_more; has_more = go_on())
+    {
+        while (!stack_.empty())
         {
-            stack_.pop_back();
-            continue;
+            const Item& next = stack_[stack_.size() - 1];
+            if (next.gap > sought.bound || next.tool == sought.settled)
+            {
+                keep(stack_.pop_back());
+                continue;
+            }
+            if (!budget_.take_node(WorkCost::pair_node))
+            {
+                return nullptr;
+            }
+            current_ = stack_.pop_back();
+            if (current_.tool.is_block() && current_.object.is_block())
+            {
+                keep(current_);
+                return &current_;
+            }
+            open(current_, sought);
         }
-        if (!budget_.take_node())
-        {
-            return nullptr;
-        }
-        current_ = stack_.pop_back();
-        if (current_.tool.is_block() && current_.object.is_block())
-        {
-            return &current_;
-        }
-        open(current_, sought);
     }
     return nullptr;
+}
+
+/// Over entries of the last walk to one that has to be looked at again; false where there is none.
+bool PairWalk::go_on() noexcept
+{
+    while (read_ != PairFront::kRoom)
+    {
+        if (skip_dropped())
+        {
+            continue;
+        }
+        const PairFront::Entry entry = front_->entries[read_];
+        ++read_;
+        if (!(entry.until > limit_))
+        {
+            stack_.push_back(item_of(entry));
+            return true;
+        }
+        write(entry);
+    }
+    return false;
+}
+
+/// The next entry with all below it, if it is one of those that are far now.
+bool PairWalk::skip_dropped() noexcept
+{
+    const std::uint32_t depth = front_->entries[read_].depth;
+    TACTUS_ASSERT(depth + 1 < kDepths);
+    if ((std::uint32_t{dropped_[depth]} >> front_->entries[read_].child & 1U) == 0)
+    {
+        dropped_[depth + 1] = 0;
+        return false;
+    }
+    ++read_;
+    while (read_ != PairFront::kRoom && front_->entries[read_].depth > depth)
+    {
+        ++read_;
+    }
+    return true;
+}
+
+PairWalk::Item PairWalk::item_of(const PairFront::Entry& entry) const noexcept
+{
+    const double gap = static_cast<double>(entry.until) - front_->travel;
+    return {entry.tool,
+            entry.object,
+            tool_.box_of(entry.tool),
+            object_.box_of(entry.object),
+            gap > 0.0 ? round_down_to_float(gap) : 0.0F,
+            entry.depth,
+            entry.child,
+            entry.entered};
+}
+
+void PairWalk::write(const PairFront::Entry& entry) noexcept
+{
+    if (front_ == nullptr || has_overflowed_)
+    {
+        return;
+    }
+    has_overflowed_ = written_ == read_;
+    if (!has_overflowed_)
+    {
+        front_->entries[written_++] = entry;
+    }
+}
+
+void PairWalk::keep(const Item& item) noexcept
+{
+    if (front_ != nullptr)
+    {
+        const double until = static_cast<double>(item.gap) + front_->travel;
+        write({item.tool, item.object, round_down_to_float(until), item.depth, item.child,
+               item.entered, 0});
+    }
+}
+
+void PairWalk::settle(float gap) noexcept
+{
+    if (front_ != nullptr && !has_overflowed_)
+    {
+        TACTUS_ASSERT(written_ > 0);
+        float& until = front_->entries[written_ - 1].until;
+        until = std::max(until, round_down_to_float(static_cast<double>(gap) + front_->travel));
+    }
+}
+
+void PairWalk::go_on_with(const LeftPairs& pairs, double travel) noexcept
+{
+    TACTUS_ASSERT(front_ == nullptr);
+    stack_.clear();
+    for (const Left& left : pairs)
+    {
+        const double gap = static_cast<double>(left.gap) - travel;
+        stack_.push_back({left.tool, left.object, tool_.box_of(left.tool),
+                          object_.box_of(left.object),
+                          gap > 0.0 ? round_down_to_float(gap) : 0.0F});
+    }
+}
+
+void PairWalk::keep_left(bool is_done, LeftPairs& pairs) const noexcept
+{
+    pairs.clear();
+    for (const Item& item : stack_)
+    {
+        pairs.push_back({item.tool, item.object, item.gap});
+    }
+    if (!is_done)
+    {
+        pairs.push_back({current_.tool, current_.object, current_.gap});
+    }
+}
+
+float PairWalk::end() noexcept
+{
+    float left = kNothingLeft;
+    for (; !stack_.empty(); stack_.pop_back())
+    {
+        const Item& item = stack_[stack_.size() - 1];
+        left = std::min(left, item.gap);
+        keep(item);
+    }
+    while (go_on())
+    {
+        const Item item = stack_.pop_back();
+        left = std::min(left, item.gap);
+        keep(item);
+    }
+    if (front_ != nullptr)
+    {
+        front_->count = has_overflowed_ ? 0 : written_;
+        front_->pause = has_overflowed_ ? PairFront::kPause : 0;
+    }
+    return left;
 }
 
 bool PairWalk::is_tool_larger(const Item& item) const noexcept
@@ -155,6 +380,15 @@ void PairWalk::open(const Item& item, const Sought& sought) noexcept
         near = tree.kernels().boxes_along(boxes, other, turned.data(), near, sought.bound,
                                           gaps.data());
     }
+    if (front_ != nullptr)
+    {
+        Item opened = item;
+        opened.gap = least_of(gaps, wanted & ~near);
+        opened.entered = static_cast<std::uint8_t>(near);
+        keep(opened);
+        dropped_[item.depth + 1U] = static_cast<std::uint8_t>(item.entered & ~near);
+        near &= ~std::uint32_t{item.entered};
+    }
     const std::size_t first = stack_.size();
     for (; near != 0; near &= near - 1)
     {
@@ -163,8 +397,11 @@ void PairWalk::open(const Item& item, const Sought& sought) noexcept
         const Aabb box = node.box_of(child);
         tree.prefetch(ref);
         const float gap = std::max(gaps[child], item.gap);
-        stack_.push_back(opens_tool ? Item{ref, item.object, box, item.object_box, gap}
-                                    : Item{item.tool, ref, item.tool_box, box, gap});
+        const auto depth = static_cast<std::uint8_t>(item.depth + 1U);
+        const auto number = static_cast<std::uint8_t>(child);
+        stack_.push_back(opens_tool
+                             ? Item{ref, item.object, box, item.object_box, gap, depth, number}
+                             : Item{item.tool, ref, item.tool_box, box, gap, depth, number});
         // The nearest on top, the others below in any order.
         const std::size_t top = stack_.size() - 1;
         if (top > first && stack_[top].gap > stack_[top - 1].gap)

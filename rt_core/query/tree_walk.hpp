@@ -7,6 +7,7 @@
 #include "rt_core/base/static_vector.hpp"
 #include "rt_core/kernels/kernels.hpp"
 #include "rt_core/limits.hpp"
+#include "rt_core/records/work_budget.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -33,12 +34,13 @@ struct WalkBudget
     std::uint32_t triangles{0}; ///< Triangles that may still be tested.
     std::uint32_t nodes_visited{0};
     std::uint32_t triangles_tested{0};
-    bool is_spent{false}; ///< Something was refused.
+    bool is_spent{false};       ///< Something was refused.
+    WorkBudget* frame{nullptr}; ///< Drawn on, too; null where nothing else bounds the walk.
 
-    [[nodiscard]] bool take_node() noexcept
+    [[nodiscard]] bool take_node(std::uint32_t cost = WorkCost::node) noexcept
     {
         TACTUS_ASSERT(nodes_visited <= nodes);
-        if (nodes_visited == nodes)
+        if (nodes_visited == nodes || !draw(cost))
         {
             is_spent = true;
             return false;
@@ -54,21 +56,37 @@ struct WalkBudget
     [[nodiscard]] std::uint32_t take_nodes(std::uint32_t count) noexcept
     {
         TACTUS_ASSERT(nodes_visited <= nodes);
-        const std::uint32_t taken = std::min(count, nodes - nodes_visited);
+        const bool is_drawn = draw(count * WorkCost::node);
+        const std::uint32_t taken = is_drawn ? std::min(count, nodes - nodes_visited) : 0;
         is_spent = is_spent || taken < count;
         nodes_visited += taken;
         return taken;
     }
-    [[nodiscard]] bool take_triangles(std::uint32_t count) noexcept
+    [[nodiscard]] bool take_triangles(std::uint32_t count,
+                                      std::uint32_t cost = WorkCost::triangle) noexcept
     {
         TACTUS_ASSERT(triangles_tested <= triangles);
-        if (triangles - triangles_tested < count)
+        if (triangles - triangles_tested < count || !draw(count * cost))
         {
             is_spent = true;
             return false;
         }
         triangles_tested += count;
         return true;
+    }
+    /// What is done in any case.
+    void spend(std::uint32_t cost) const noexcept
+    {
+        if (frame != nullptr)
+        {
+            frame->spend(cost);
+        }
+    }
+
+private:
+    [[nodiscard]] bool draw(std::uint32_t cost) const noexcept
+    {
+        return frame == nullptr || frame->try_take(cost);
     }
 };
 
@@ -89,13 +107,13 @@ struct WalkItem
     float gap{0.0F};
 };
 
-/// A depth-first traversal of the blocks near a point, in a BasicAbTree of any volume. The nearest
-/// child is entered first.
-template <typename Tree>
+/// A depth-first traversal of the blocks near a point or, by its KernelBox, near a box, in a
+/// BasicAbTree of any volume that knows its gap to that. The nearest child is entered first.
+template <typename Tree, typename Probe>
 class TreeWalk
 {
 public:
-    TreeWalk(const Tree& tree, const KernelProbe& probe, WalkBudget& budget) noexcept
+    TreeWalk(const Tree& tree, const Probe& probe, WalkBudget& budget) noexcept
         : tree_(tree), probe_(probe), budget_(budget)
     {
         if (!tree.root().is_none())
@@ -162,7 +180,7 @@ private:
     }
 
     const Tree& tree_;
-    const KernelProbe& probe_;
+    const Probe& probe_;
     WalkBudget& budget_;
     StaticVector<WalkItem, kTreeStack> stack_;
 };

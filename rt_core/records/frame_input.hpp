@@ -7,7 +7,9 @@
 #include "rt_core/math/vec3.hpp"
 #include "rt_core/records/object_pose.hpp"
 #include "rt_core/records/scene_change.hpp"
+#include "rt_core/records/work_budget.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -56,8 +58,8 @@ struct ToolSpec
     /// a tool that is a mesh: it changes nothing.
     bool wants_distance{false};
     /// Of a mesh: all pairs of faces that meet (MeshReport), some 30 us where 100 do. A tool that
-    /// has contacts, or a force, gets kEnoughMeetingFaces in any case; of others the first that is
-    /// found is told.
+    /// wants contacts gets kEnoughMeetingFaces in any case; of others the first that is found is
+    /// told.
     bool wants_pairs{false};
 };
 
@@ -80,11 +82,32 @@ struct Budgets
     std::uint32_t pages{8};         ///< A, arrivals adopted.
     std::uint32_t requests{32};     ///< Q, wishes sent.
     std::uint32_t regions{8}; ///< G, index pages searched for chunks that ranked regions need.
-    /// F, what the proxy of a ball looks at to find its way, some 300 instructions each: a plane
+    /// F, what the proxy of a ball looks at to find its way, some 1,300 instructions each: a plane
     /// before a triangle in double, eight in single precision, or a search among up to eight. What
     /// was begun is ended, and what touches where it stops is looked at whatever is left. Tools of
     /// other shapes need none: kMaxHalfSpaces bounds each of their steps.
     std::uint32_t planes{1'024};
+    /// W, all of the frame in instructions (WorkCost): what bounds the frame whatever is in it. The
+    /// most urgent pairs are served first; what is cut short says so. At least WorkBudget::kLeast
+    /// are used.
+    std::uint32_t work{WorkBudget::kUnlimited};
+
+    /// With a tool that is a hull a frame may do so many times what others may, with a mesh so
+    /// many.
+    static constexpr std::uint32_t kHullWork = 2;
+    static constexpr std::uint32_t kMeshWork = 8;
+    /// `times` an instruction for each nanosecond that a frame may take, but what it needs in any
+    /// case.
+    [[nodiscard]] static constexpr std::uint32_t work_of(std::int64_t frame_ns,
+                                                         std::uint32_t times) noexcept
+    {
+        return std::max(static_cast<std::uint32_t>(frame_ns) * times, least_work(times));
+    }
+    /// What a frame needs to get on: more with large searches.
+    [[nodiscard]] static constexpr std::uint32_t least_work(std::uint32_t times) noexcept
+    {
+        return times == 1 ? WorkBudget::kLeast : WorkBudget::kLeast * times * 3 / 2;
+    }
 
     bool operator==(const Budgets&) const = default;
 };

@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/records/work_budget.hpp"
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -68,6 +70,7 @@ struct WorkCounters
     std::uint32_t cache_hits{0};   ///< Wanted chunks found resident.
     std::uint32_t cache_misses{0}; ///< Wanted chunks absent and asked for.
     SkipCounters skipped;
+    WorkBudget budget; ///< What all of this costs, and what it may.
 
     WorkCounters& operator+=(const WorkCounters& other) noexcept
     {
@@ -86,6 +89,7 @@ struct WorkCounters
         cache_hits += other.cache_hits;
         cache_misses += other.cache_misses;
         skipped += other.skipped;
+        budget.spend(other.budget.used());
         return *this;
     }
 };
@@ -94,12 +98,12 @@ struct WorkCounters
 enum class FrameFault : std::uint32_t
 {
     none = 0,
-    split_budget_spent = 1U << 0U, ///< Faces in reach stay coarse. Raise `Budgets::splits`.
+    split_budget_spent = 1U << 0U, ///< Faces in reach stay coarse. Raise `splits` or `work`.
     forest_full = 1U << 1U,        ///< A split was refused. Give more `--pool-mib`.
     tree_full = 1U << 2U,          ///< No block or node for a face. Give more `--pool-mib`.
     chunk_late = 1U << 3U,         ///< A needed record isn't here. Look further ahead.
     cache_full = 1U << 4U,         ///< All pages are in use. Give more `--cache-mib`.
-    node_budget_spent = 1U << 5U,  ///< A traversal was cut short. Raise `nodes` or `triangles`.
+    node_budget_spent = 1U << 5U,  ///< A walk was cut short. Raise `work`, `nodes`, `triangles`.
     surface_truncated = 1U << 6U,  ///< More triangles in reach than kMaxLocalTriangles.
     model_inconsistent = 1U << 7U, ///< A record contradicts the mesh: rebuild the model.
     tool_invalid = 1U << 8U,       ///< A device sample was not usable.
@@ -114,7 +118,7 @@ enum class FrameFault : std::uint32_t
     pair_shed = 1U << 17U,         ///< A pair waits: its room went to a touch. More `--pool-mib`.
     scene_crowded = 1U << 18U,     ///< A tool waits: too much is near it. See kMaxPairs.
     object_lost = 1U << 19U,       ///< What a tool touched went or jumped; SafeState fades a force.
-    plane_budget_spent = 1U << 20U, ///< A proxy stopped on its way. Raise `Budgets::planes`.
+    plane_budget_spent = 1U << 20U, ///< A proxy stopped on its way. Raise `planes` or `work`.
 };
 inline constexpr std::size_t kFrameFaults = 21;
 /// In the order of FrameFault's bits.

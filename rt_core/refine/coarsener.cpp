@@ -120,7 +120,8 @@ void Coarsener::run(std::span<const RefineRequest> requests, const Budgets& budg
         std::uint32_t& head = heads_[static_cast<std::size_t>(cursor_) % kBuckets];
         while (head != kNoRecord)
         {
-            if (work.scanned >= budgets.scanned || work.merges >= budgets.merges)
+            if (work.scanned >= budgets.scanned || work.merges >= budgets.merges ||
+                (work.scanned > 0 && work.budget.is_spent()))
             {
                 return;
             }
@@ -150,6 +151,7 @@ void Coarsener::look_at(const Place& place, std::span<const RefineRequest> reque
         return;
     }
     ++work.scanned;
+    work.budget.spend(WorkCost::scan);
     const VsplitRecord& record = pages_->slots().pages[place.slot].records[place.record];
     if (const double slack = slack_of(record, requests); slack > 0.0)
     {
@@ -160,6 +162,7 @@ void Coarsener::look_at(const Place& place, std::span<const RefineRequest> reque
         forest_->try_merge({(meta.chunk.value << kRecordsPerChunkLog2) + place.record});
     TACTUS_ASSERT(is_merged);
     ++work.merges;
+    work.budget.spend(WorkCost::merge);
     for (std::uint32_t i = 0; i < record.fan_size; ++i)
     {
         if (const FaceState state = record.before[i]; !state.is_base())

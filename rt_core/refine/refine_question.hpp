@@ -4,6 +4,7 @@
 
 #include "rt_core/kernels/kernels.hpp"
 #include "rt_core/math/vec3.hpp"
+#include "rt_core/query/near_faces.hpp"
 #include "rt_core/query/other_surface.hpp"
 #include "rt_core/records/urgency.hpp"
 #include "rt_core/spm/ids.hpp"
@@ -45,6 +46,7 @@ struct RefineQuestion
     double ahead_m{0.0};      ///< How much farther than usual beyond the reach is refined.
     bool counts_errors{true}; ///< Without: coarse faces are wanted by distance alone.
     double tolerance_m{0.0};  ///< Coarse faces with no larger error are not wanted.
+    UnfinishedSearch* unfinished{nullptr}; ///< Of this question, near another surface; or null.
     /// So far from where it is needed the question is asked, because that is where it will be: what
     /// only it wants may wait. 0: it is needed now.
     double later_m{0.0};
@@ -81,6 +83,12 @@ struct RefineRequest
     {
         return std::ranges::any_of(questions, [](const RefineQuestion& question)
                                    { return question.later_m == 0.0 && is_wanting(question); });
+    }
+    /// Whether it is asked by how near another surface is.
+    [[nodiscard]] bool is_near_surface() const noexcept
+    {
+        return std::ranges::any_of(questions, [](const RefineQuestion& question)
+                                   { return question.surface != nullptr; });
     }
     /// Whether there may be something to split for it, now or later.
     [[nodiscard]] bool is_open() const noexcept

@@ -18,6 +18,14 @@ namespace tactus
 namespace
 {
 
+/// Near another surface the faces of so many splits are held against it at once, one by one. With
+/// more one walk for all is cheaper: they are looked for again.
+constexpr std::uint32_t kMeasuredStars = 8;
+/// So many coarse faces for each split that may be done are looked for near another surface, and
+/// at least so many: some wait for their chunks.
+constexpr std::uint32_t kFacesPerSplit = 2;
+constexpr std::uint32_t kLeastFaces = 16;
+
 /// Most urgent first; among equals the lower slot, so that the order is the same in every run. An
 /// object, since a function would be called through a pointer.
 constexpr auto comes_later = [](const auto& a, const auto& b) noexcept
@@ -112,6 +120,8 @@ void Refiner::begin(std::span<const RefineRequest> requests, const Budgets& budg
                     WorkCounters& work) noexcept
 {
     requests_ = requests;
+    questions_ = 0;
+    for_each_question(requests_, [&](const RefineQuestion& /*question*/) { ++questions_; });
     for (const RefineRequest& request : requests)
     {
         if (request.questions.empty())
@@ -142,8 +152,29 @@ FrameFault Refiner::refine(const RefineRequest& request, SplitLimits limits, con
     TACTUS_ASSERT(limits.now <= kMaxSplitsPerFrame);
     TACTUS_ASSERT(limits.later <= limits.now);
     FrameFault found = FrameFault::none;
-    heap_size_ = 0;
+    stars_left_ = kMeasuredStars;
     given_up_ = FrameFault::none;
+    const std::uint32_t before = work.splits;
+    const std::uint32_t splits = limits.now - std::min(limits.now, before);
+    const std::uint32_t enough = std::max(kFacesPerSplit * splits, kLeastFaces);
+    const bool is_all = gather(request, limits, enough, budgets, work, found);
+    split_wanted(request, limits, frame, work, found);
+    if (!is_all && work.splits == before && splits > 0)
+    {
+        // None of those can be split now: others may.
+        (void)gather(request, limits, NearFaces::kAll, budgets, work, found);
+        split_wanted(request, limits, frame, work, found);
+    }
+    return found | given_up_;
+}
+
+/// Finds the coarse faces of all of a request's questions; false where more of them than `enough`
+/// may be near another surface.
+bool Refiner::gather(const RefineRequest& request, SplitLimits limits, std::uint32_t enough,
+                     const Budgets& budgets, WorkCounters& work, FrameFault& found) noexcept
+{
+    heap_size_ = 0;
+    bool is_all = true;
     for (const bool may_wait : {false, true})
     {
         // Not looked for where what is found already is more than may be split.
@@ -152,12 +183,11 @@ FrameFault Refiner::refine(const RefineRequest& request, SplitLimits limits, con
         {
             if (is_of_use && (question.later_m > 0.0) == may_wait && is_wanting(question))
             {
-                gather(question, budgets, work, found);
+                is_all = gather(question, enough, budgets, work, found) && is_all;
             }
         }
     }
-    split_wanted(request, limits, frame, work, found);
-    return found | given_up_;
+    return is_all;
 }
 
 /// Certificates lose what their questions moved, and records are left behind by as much.
@@ -196,6 +226,10 @@ void Refiner::follow(const RefineQuestion& question, double& farthest_m, bool& i
         memory.certified_m = 0.0;
         memory.is_known = true;
         is_same = false;
+        if (question.unfinished != nullptr)
+        {
+            question.unfinished->left.clear();
+        }
         return;
     }
     const double moved = question.surface != nullptr
@@ -203,26 +237,41 @@ void Refiner::follow(const RefineQuestion& question, double& farthest_m, bool& i
                              : (question.center_m - memory.center_m).norm() * kWidened;
     farthest_m = std::max(farthest_m, moved + std::max(0.0, memory.keep_m - question.keep_m));
     memory.certified_m = tree_->is_complete() ? memory.certified_m - moved : 0.0;
+    if (question.unfinished != nullptr)
+    {
+        follow(moved, question.reach_m - question.span_m, *question.unfinished);
+    }
     memory.center_m = question.center_m;
     memory.keep_m = question.keep_m;
 }
 
+/// A search that has come too near to reach as far as is needed begins again.
+void Refiner::follow(double moved_m, double needed_m, UnfinishedSearch& unfinished) noexcept
+{
+    unfinished.moved_m += moved_m;
+    if (!(unfinished.bound_m - unfinished.moved_m > needed_m))
+    {
+        unfinished.left.clear();
+    }
+}
+
 /// Finds the coarse faces within the target; the certificate reaches as far as was looked.
-void Refiner::gather(const RefineQuestion& question, const Budgets& budgets, WorkCounters& work,
-                     FrameFault& found) noexcept
+bool Refiner::gather(const RefineQuestion& question, std::uint32_t enough, const Budgets& budgets,
+                     WorkCounters& work, FrameFault& found) noexcept
 {
     question.memory->certified_m = tree_->is_complete() ? target_of(question) : 0.0;
     if (question.surface != nullptr)
     {
-        gather_near_surface(question);
-        return;
+        return gather_near_surface(question, enough);
     }
     WalkBudget budget{walk_left(budgets.nodes, work.nodes_visited),
                       walk_left(budgets.triangles, work.triangles_tested)};
+    budget.frame = &work.budget;
     gather_near_ball(question, budget);
     found |= budget.is_spent ? FrameFault::node_budget_spent : FrameFault::none;
     work.nodes_visited += budget.nodes_visited;
     work.triangles_tested += budget.triangles_tested;
+    return true;
 }
 
 void Refiner::gather_near_ball(const RefineQuestion& question, WalkBudget& budget) noexcept
@@ -246,14 +295,16 @@ void Refiner::gather_near_ball(const RefineQuestion& question, WalkBudget& budge
     }
 }
 
-void Refiner::gather_near_surface(const RefineQuestion& question) noexcept
+bool Refiner::gather_near_surface(const RefineQuestion& question, std::uint32_t enough) noexcept
 {
     NearFaces near(*tree_, *question.surface);
-    near.find(target_of(question) - question.span_m);
+    near.find(target_of(question) - question.span_m, enough, question.unfinished);
+    std::uint32_t faces = 0;
     leave(question, near.rest_m() + question.span_m);
     for (const NearFaces::Block& block : near.blocks())
     {
         const BlockSide& side = tree_->side(block.index);
+        faces += count_lanes(block.lanes);
         for (std::uint32_t lanes = block.lanes; lanes != 0; lanes &= lanes - 1)
         {
             const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
@@ -267,6 +318,7 @@ void Refiner::gather_near_surface(const RefineQuestion& question) noexcept
             }
         }
     }
+    return faces < enough;
 }
 
 void Refiner::gather_block(std::uint32_t index, const RefineQuestion& question) noexcept
@@ -428,7 +480,8 @@ Refiner::ClosureOutcome Refiner::split_with_closure(RecordId target,
             stack_[depth++] = missing;
             continue;
         }
-        if (work.splits >= limit)
+        // One split is allowed whatever was spent before: every frame gets on.
+        if (work.splits >= limit || (work.splits > 0 && work.budget.is_spent()))
         {
             return ClosureOutcome::budget_spent;
         }
@@ -446,12 +499,13 @@ Refiner::ClosureOutcome Refiner::split_with_closure(RecordId target,
             return ClosureOutcome::blocked;
         case VertexForest::SplitOutcome::done:
             ++work.splits;
+            work.budget.spend(WorkCost::split + questions_ * WorkCost::question);
             TACTUS_ASSERT(done_count_ < done_.size());
             done_[done_count_++] = id;
             --depth;
             coarsener_.look_when_left(slot, id, *record,
                                       is_filling_ ? std::span<const RefineRequest>{} : requests_);
-            consider_star(id, *record, star, own);
+            consider_star(id, *record, star, own, limit - work.splits);
         }
     }
     return ClosureOutcome::complete;
@@ -483,10 +537,11 @@ Refiner::Progress Refiner::fill(std::uint32_t records, std::uint32_t limit, std:
 }
 
 /// The faces that a split changed may be wanted themselves: at once by the questions that it was
-/// made for, in their own turn by others.
+/// made for, in their own turn by others. Where another surface is near they are left to the next
+/// walk if others already wait for all splits that are left, or for most of them.
 void Refiner::consider_star(RecordId id, const VsplitRecord& record,
                             const VertexForest::StarGeometry& star,
-                            std::span<const RefineQuestion> own) noexcept
+                            std::span<const RefineQuestion> own, std::uint32_t splits_left) noexcept
 {
     LooseFaces coarse{star.geometry};
     for (std::uint32_t place = 0; place < kMaxStarFaces; ++place)
@@ -518,6 +573,14 @@ void Refiner::consider_star(RecordId id, const VsplitRecord& record,
             return;
         }
         const bool is_own = &question >= own.data() && &question < own.data() + own.size();
+        const bool can_wait =
+            is_own ? heap_size_ >= splits_left || stars_left_ == 0 : is_wanting(question);
+        if (question.surface != nullptr && can_wait)
+        {
+            leave(question, nearest);
+            return;
+        }
+        stars_left_ -= question.surface != nullptr && is_own ? 1U : 0U;
         StarBounds lower; // NOLINT(cppcoreguidelines-pro-type-member-init): it is filled.
         question.surface != nullptr ? bound_star_near_surface(question, coarse, lower)
                                     : bound_star_near_ball(question, coarse, lower);

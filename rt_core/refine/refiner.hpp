@@ -100,10 +100,16 @@ private:
 
     void follow() noexcept;
     void follow(const RefineQuestion& question, double& farthest_m, bool& is_same) noexcept;
-    void gather(const RefineQuestion& question, const Budgets& budgets, WorkCounters& work,
-                FrameFault& found) noexcept;
+    static void follow(double moved_m, double needed_m, UnfinishedSearch& unfinished) noexcept;
+    [[nodiscard]] bool gather(const RefineRequest& request, SplitLimits limits,
+                              std::uint32_t enough, const Budgets& budgets, WorkCounters& work,
+                              FrameFault& found) noexcept;
+    [[nodiscard]] bool gather(const RefineQuestion& question, std::uint32_t enough,
+                              const Budgets& budgets, WorkCounters& work,
+                              FrameFault& found) noexcept;
     void gather_near_ball(const RefineQuestion& question, WalkBudget& budget) noexcept;
-    void gather_near_surface(const RefineQuestion& question) noexcept;
+    [[nodiscard]] bool gather_near_surface(const RefineQuestion& question,
+                                           std::uint32_t enough) noexcept;
     void gather_block(std::uint32_t index, const RefineQuestion& question) noexcept;
     void split_wanted(const RefineRequest& request, SplitLimits limits, std::uint32_t frame,
                       WorkCounters& work, FrameFault& found) noexcept;
@@ -121,8 +127,8 @@ private:
                                                     std::uint32_t limit, std::uint32_t frame,
                                                     WorkCounters& work, FrameFault& found) noexcept;
     void consider_star(RecordId id, const VsplitRecord& record,
-                       const VertexForest::StarGeometry& star,
-                       std::span<const RefineQuestion> own) noexcept;
+                       const VertexForest::StarGeometry& star, std::span<const RefineQuestion> own,
+                       std::uint32_t splits_left) noexcept;
     using StarBounds = std::array<double, kMaxStarFaces>;
     void bound_star_near_ball(const RefineQuestion& question, const LooseFaces& coarse,
                               StarBounds& lower_m) const noexcept;
@@ -142,10 +148,12 @@ private:
     std::uint32_t heap_size_{0};
     std::uint32_t done_count_{0};
     std::span<const RefineRequest> requests_; ///< Of this frame.
+    std::uint32_t questions_{0};              ///< Theirs.
     std::size_t question_count_{0};
     std::uint32_t next_record_{0}; ///< fill() has done those before.
     /// Splits are not for the questions: another surface is not walked for each of them.
     bool is_filling_{false};
+    std::uint32_t stars_left_{0}; ///< That are held against another surface in this refine().
     FrameFault given_up_{FrameFault::none}; ///< For want of room, since refine() began.
 };
 

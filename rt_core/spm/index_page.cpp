@@ -4,22 +4,14 @@
 
 #include "rt_core/base/byte_io.hpp"
 #include "rt_core/base/crc32c.hpp"
-#include "rt_core/math/four_lanes.hpp"
-#include "rt_core/math/rounding.hpp"
 
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <cstring>
 
 namespace tactus
 {
 
 namespace
 {
-
-/// Of an index page's boxes.
-constexpr double kLastStep = 65'535.0;
 
 bool read_entry(ByteReader& reader, InfluenceBox& box, ChunkEntry& entry) noexcept
 {
@@ -28,13 +20,6 @@ bool read_entry(ByteReader& reader, InfluenceBox& box, ChunkEntry& entry) noexce
     entry.hash = reader.read<ContentHash>();
     return box.low[0] <= box.high[0] && box.low[1] <= box.high[1] && box.low[2] <= box.high[2] &&
            entry.coded_bytes > 0 && entry.coded_bytes <= kMaxCodedChunkBytes;
-}
-
-EightUnsigned eight_of(const std::uint16_t* from) noexcept
-{
-    EightUnsigned lanes;
-    std::memcpy(&lanes, from, sizeof lanes);
-    return lanes;
 }
 
 } // namespace
@@ -75,59 +60,31 @@ Result<Done, SpmRefusal> parse_index_page(std::span<const std::byte> bytes,
     return Done{};
 }
 
-std::uint64_t chunks_meeting(const IndexPage& page, const QuantumBox& page_box,
-                             const QuantumBall& ball, std::uint64_t known) noexcept
+double distance_sq(const std::array<double, 3>& place, const QuantumBox& box) noexcept
 {
-    std::array<double, 3> step{};
-    std::array<double, 3> at{};
+    double sum = 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
-        step[axis] = static_cast<double>(index_step(page_box.low[axis], page_box.high[axis]));
-        at[axis] = ball.center[axis] - static_cast<double>(page_box.low[axis]);
+        const double gap = std::max({static_cast<double>(box.low[axis]) - place[axis],
+                                     place[axis] - static_cast<double>(box.high[axis]), 0.0});
+        sum += gap * gap;
     }
-    // What the ball spans on each axis, in steps; a step more on both sides than rounding can be.
-    std::array<EightUnsigned, 3> lows{};
-    std::array<EightUnsigned, 3> highs{};
+    return sum;
+}
+
+QuantumBox box_of(const IndexPage& page, const QuantumBox& page_box, std::size_t chunk) noexcept
+{
+    const InfluenceBox steps = page.box(chunk);
+    QuantumBox box;
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
-        const double reach = ball.radius * kWidened;
-        const double low = (at[axis] - reach) / step[axis] - 1.0;
-        const double high = (at[axis] + reach) / step[axis] + 1.0;
-        const bool is_in_page = low <= kLastStep && high >= 0.0;
-        if (!is_in_page)
-        {
-            return known;
-        }
-        lows[axis] = EightUnsigned{} + static_cast<std::uint16_t>(std::max(low, 0.0));
-        highs[axis] = EightUnsigned{} + static_cast<std::uint16_t>(std::min(high, kLastStep));
+        const std::uint32_t step = index_step(page_box.low[axis], page_box.high[axis]);
+        const auto at = [&](std::uint16_t steps_up)
+        { return page_box.low[axis] + static_cast<std::int32_t>(step * steps_up); };
+        box.low[axis] = at(steps.low[axis]);
+        box.high[axis] = at(steps.high[axis]);
     }
-    std::uint64_t near = 0;
-    for (std::size_t first = 0; first < page.chunks; first += 8)
-    {
-        EightUnsigned outside{};
-        for (std::size_t axis = 0; axis < 3; ++axis)
-        {
-            outside |= excess(eight_of(&page.low[axis][first]), highs[axis]);
-            outside |= excess(lows[axis], eight_of(&page.high[axis][first]));
-        }
-        near |= std::uint64_t{bits_of(outside == EightUnsigned{})} << first;
-    }
-    std::uint64_t meeting = known;
-    const std::uint64_t all = ~std::uint64_t{0} >> (kChunksPerIndexPage - page.chunks);
-    for (near &= all & ~known; near != 0; near &= near - 1)
-    {
-        const auto i = static_cast<std::size_t>(std::countr_zero(near));
-        double distance_sq = 0.0;
-        for (std::size_t axis = 0; axis < 3; ++axis)
-        {
-            const double below = static_cast<double>(page.low[axis][i]) * step[axis] - at[axis];
-            const double above = at[axis] - static_cast<double>(page.high[axis][i]) * step[axis];
-            const double gap = std::max({below, above, 0.0});
-            distance_sq += gap * gap;
-        }
-        meeting |= distance_sq <= ball.radius * ball.radius ? std::uint64_t{1} << i : 0U;
-    }
-    return meeting;
+    return box;
 }
 
 } // namespace tactus

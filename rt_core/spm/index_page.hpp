@@ -55,12 +55,18 @@ struct QuantumBall
     double radius{0.0};
 };
 
-/// One bit for each chunk whose influence box the ball meets, and `known`, which are not looked at;
-/// `page_box` is the page's own. Filters by the ball's box in steps and decides in double. About
-/// 300 instructions, and 40 for each box near it; 30 when the ball misses the page.
-[[nodiscard]] std::uint64_t chunks_meeting(const IndexPage& page, const QuantumBox& page_box,
-                                           const QuantumBall& ball,
-                                           std::uint64_t known = 0) noexcept TACTUS_NONBLOCKING;
+/// The distance of a place from a box, in quanta; 0 inside.
+[[nodiscard]] double distance_sq(const std::array<double, 3>& place,
+                                 const QuantumBox& box) noexcept TACTUS_NONBLOCKING;
+
+[[nodiscard]] inline bool meets(const QuantumBall& ball, const QuantumBox& box) noexcept
+{
+    return distance_sq(ball.center, box) <= ball.radius * ball.radius;
+}
+
+/// A chunk's influence box; `page_box` is its page's own.
+[[nodiscard]] QuantumBox box_of(const IndexPage& page, const QuantumBox& page_box,
+                                std::size_t chunk) noexcept TACTUS_NONBLOCKING;
 
 /// What the transport side keeps of a chunk besides its box.
 struct ChunkEntry

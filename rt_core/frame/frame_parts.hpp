@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/arena.hpp"
+#include "rt_core/frame/awake_pairs.hpp"
+#include "rt_core/frame/frame_setup.hpp"
+#include "rt_core/frame/model_set.hpp"
+#include "rt_core/frame/tool_set.hpp"
+#include "rt_core/frame/work_shares.hpp"
+#include "rt_core/records/frame_input.hpp"
+#include "rt_core/records/frame_output.hpp"
+#include "rt_core/scene/object_table.hpp"
+
+namespace tactus
+{
+
+/// What a frame's stages work on: tools, objects, their models, and the pairs of both. Does not
+/// move, for pairs point at the rest. Haptic thread.
+struct FrameParts
+{
+    /// Reads base meshes and takes memory for all parts; the set-up was not refused. `models` has
+    /// fewer than the set-up where a base mesh is damaged, and none when the arena only measures.
+    FrameParts(Arena& arena, const FrameSetup& setup) noexcept;
+
+    PairRules rules;
+    ModelPools pools;
+    ModelSet models;
+    ObjectTable objects;
+    ToolSet tools;
+    AwakePairs pairs;
+};
+
+/// What one frame may do, and what it has done and found so far. Haptic thread.
+struct FrameAccount
+{
+    Budgets budgets;
+    WorkShares shares;
+    WorkCounters work;
+    FrameFault faults{FrameFault::none};
+    SceneOutput scene; ///< What a frame at rest does not count again is the last one's.
+
+    void begin(const Budgets& given) noexcept TACTUS_NONBLOCKING
+    {
+        budgets = given;
+        work = WorkCounters{};
+        shares.begin(given.work, work.budget);
+        faults = FrameFault::none;
+        scene.walks = 0;
+        scene.refused = {};
+    }
+};
+
+} // namespace tactus

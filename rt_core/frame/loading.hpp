@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/realtime.hpp"
+#include "rt_core/frame/frame_parts.hpp"
+#include "rt_core/frame/model_life.hpp"
+#include "rt_core/records/region_ranking.hpp"
+
+#include <optional>
+#include <span>
+
+namespace tactus
+{
+
+/// A frame's first stage: ranks the regions that tools may touch, adopts what has arrived, lets
+/// guests come and go, and requests what the regions lack. Haptic thread.
+class Loading
+{
+public:
+    explicit Loading(const FrameSetup& setup) noexcept;
+
+    /// After the pairs were placed and ordered.
+    void run(FrameParts& parts, FrameAccount& account) noexcept TACTUS_NONBLOCKING;
+
+    /// The regions of the last run, most urgent first.
+    [[nodiscard]] std::span<const RankedRegion> regions() const noexcept { return ranking_.view(); }
+
+private:
+    void rank(std::span<Pair* const> order) noexcept;
+
+    RegionRanking ranking_;
+    std::optional<ModelLife> life_; ///< None where there is no room for guests.
+};
+
+} // namespace tactus

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/arena.hpp"
+#include "rt_core/base/realtime.hpp"
+#include "rt_core/frame/frame_parts.hpp"
+#include "rt_core/frame/neighbours.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace tactus
+{
+
+/// Makes the changes of a frame's scene before anything else, so that all of the frame sees one
+/// scene. A change that can't be made is refused and changes nothing. Haptic thread.
+class SceneChanges
+{
+public:
+    SceneChanges(Arena& arena, const FrameSetup& setup) noexcept;
+
+    /// Places the objects with which a frame starts; their models are there.
+    static void place_first(const FrameSetup& setup, FrameParts& parts,
+                            Neighbours& neighbours) noexcept;
+    /// Makes the changes in their order, kMaxSceneChanges at most, and counts those that are
+    /// refused by their reasons.
+    void make(std::span<const SceneChange> changes, FrameParts& parts, Neighbours& neighbours,
+              SceneOutput& scene) const noexcept TACTUS_NONBLOCKING;
+
+private:
+    using Refusal = std::optional<ChangeRefusal>;
+
+    [[nodiscard]] Refusal try_change_object(const SceneChange& change, FrameParts& parts,
+                                            Neighbours& neighbours) const noexcept;
+    [[nodiscard]] static Refusal try_change_tool(const SceneChange& change, FrameParts& parts,
+                                                 Neighbours& neighbours) noexcept;
+
+    std::span<bool> is_shown_; ///< By model: whether objects may show it, for no tool is it.
+};
+
+} // namespace tactus
