@@ -94,6 +94,7 @@ struct FrontTool
     ForceOff causes{ForceOff::none}; ///< Why less than the frame's force goes out.
     std::string shape;               ///< In the words of hrtc's --tool; printable ASCII.
     double radius_m{0.0};
+    bool begins_inside{false}; ///< It began inside a closed object.
 
     bool operator==(const FrontTool&) const = default;
 };

@@ -162,8 +162,10 @@ Refusal DdsClient::not_found(const HeaderSearch& search, bool is_published,
                             : selector.server.empty() ? ""
                                                       : "@" + selector.server;
     const Catalogue::Offer* other = catalogue_.find({selector.name});
-    return {fmt::format("model '{}{}' is not published on domain {} ({}; published there: {}{})",
-                        selector.name, pin, domain_.id(), waited, catalogue_.names(),
+    const std::string names = catalogue_.names();
+    const auto why = names == "none" ? why_unheard(domain_.id()) : std::nullopt;
+    return {fmt::format("model '{}{}' is not published on domain {}{} ({}; published there: {}{})",
+                        selector.name, pin, domain_.id(), why ? ": " + *why : "", waited, names,
                         other != nullptr
                             ? fmt::format(", with hash {} by {}", hash_text(other->hash),
                                           catalogue_.participants().name_of(other->host))

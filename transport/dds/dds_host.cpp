@@ -354,9 +354,8 @@ DdsHost::Client* DdsHost::add_client(const ControllerId& controller, const tactu
     const std::string name = name_of(wanted);
     if (!is_valid_name(name)) // It would name a partition.
     {
-        fault_log_.write(fmt::format("controller '{}' is refused: its name is not 1 to 63 "
-                                     "characters of A-Z a-z 0-9 . _ -",
-                                     name));
+        fault_log_.write(
+            fmt::format("controller '{}' is refused: its name is not {}", name, kNameForm));
         return nullptr;
     }
     if (clients_.size() == kMaxClients)

@@ -4,16 +4,22 @@
 
 #include "platform/base/printable.hpp"
 #include "platform/base/program_log.hpp"
+#include "transport/dds/loopback_sockets.hpp"
 #include "transport/log.hpp"
 
 #include <dds/dds.h>
 #include <dds/ddsrt/log.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <mutex>
+#include <sstream>
 #include <string_view>
 
 namespace tactus::dds
@@ -22,7 +28,8 @@ namespace tactus::dds
 namespace
 {
 
-/// Hosts have ports that everybody knows, ten on one machine; controllers have any, and look there.
+/// Hosts have ports that everybody knows, ten on one machine, since Cyclone takes indices below the
+/// one that is named here; controllers have any, and look there.
 /// So controllers don't find each other: 64 of them on one machine would do nothing else for a
 /// minute. Hosts look nowhere. One lost sample costs up to 100 ms: nothing is lost on loopback but
 /// what overflows, and frequent heartbeats make many readers on few processors lose more and more.
@@ -34,7 +41,7 @@ constexpr const char* kConfiguration = R"(<CycloneDDS><Domain id="any">
 </General>
 <Discovery>
   <ParticipantIndex>{}</ParticipantIndex>
-  <MaxAutoParticipantIndex>9</MaxAutoParticipantIndex>
+  <MaxAutoParticipantIndex>10</MaxAutoParticipantIndex>
   <LeaseDuration>1 s</LeaseDuration>
   <Peers><Peer address="{}"/></Peers>
 </Discovery>
@@ -119,16 +126,29 @@ std::shared_ptr<Entity> configured_domain(std::uint32_t id, Party party)
         const char* index = party == Party::controller ? "none" : "auto";
         const char* peers = party == Party::host ? kLooksNowhere : kLooksForHosts;
         const std::string configuration = fmt::format(kConfiguration, index, peers);
-        domain = std::make_shared<Entity>(dds_create_domain(id, configuration.c_str()));
+        const auto fault = opened_on_loopback(
+            [&]
+            { domain = std::make_shared<Entity>(dds_create_domain(id, configuration.c_str())); });
+        if (fault)
+        {
+            log_message(LogLevel::warning, "dds",
+                        "sockets receive from every interface, not from loopback alone: " + *fault);
+        }
         known = {domain, party};
     }
     return known.party == Party::controller && party != Party::controller ? nullptr : domain;
 }
 
+bool has_configuration_of_user()
+{
+    const char* uri = std::getenv("CYCLONEDDS_URI");
+    return uri != nullptr && *uri != '\0';
+}
+
 Refusal join_error(std::uint32_t id, std::int32_t code)
 {
     const std::string reason = MessageSink::instance().last();
-    const bool is_configured = std::getenv("CYCLONEDDS_URI") != nullptr;
+    const bool is_configured = has_configuration_of_user();
     const bool has_no_port = reason.find("free participant index") != std::string::npos;
     std::string more = is_configured ? " (configured by CYCLONEDDS_URI)" : "";
     if (has_no_port && !is_configured)
@@ -152,8 +172,7 @@ Result<Domain, Refusal> Domain::join(std::uint32_t id, Party party)
     dds_set_log_sink(&MessageSink::on_message, nullptr);
     Domain domain;
     domain.id_ = id;
-    const char* uri = std::getenv("CYCLONEDDS_URI");
-    if (uri == nullptr || *uri == '\0')
+    if (!has_configuration_of_user())
     {
         domain.configuration_ = configured_domain(id, party);
         if (domain.configuration_ == nullptr)
@@ -174,6 +193,48 @@ Result<Domain, Refusal> Domain::join(std::uint32_t id, Party party)
     }
     domain.participants_ = std::make_unique<Participants>(domain.participant_.get());
     return domain;
+}
+
+std::set<std::uint32_t> domains_in(std::string_view udp_sockets)
+{
+    std::set<std::uint32_t> domains;
+    std::istringstream lines{std::string(udp_sockets)};
+    std::string line;
+    std::getline(lines, line); // The columns' names.
+    while (std::getline(lines, line))
+    {
+        std::istringstream words(line);
+        std::string number;
+        std::string local; // ADDRESS:PORT in hexadecimal digits.
+        words >> number >> local;
+        const std::size_t digits = local.rfind(':') + 1;
+        std::uint32_t port = 0;
+        std::from_chars(local.data() + digits, local.data() + local.size(), port, 16);
+        const std::uint32_t above = port - std::min(port, kFirstPort);
+        if (port >= kFirstPort && above % kPortsOfDomain < kPortsOfHosts &&
+            above / kPortsOfDomain <= kMaxDomain)
+        {
+            domains.insert(above / kPortsOfDomain);
+        }
+    }
+    return domains;
+}
+
+std::optional<std::string> why_unheard(std::uint32_t domain)
+{
+    std::ifstream file("/proc/net/udp"); // Another system has none, and no domain is known there.
+    std::set<std::uint32_t> domains =
+        domains_in(std::string(std::istreambuf_iterator<char>(file), {}));
+    domains.erase(domain);
+    std::string text = has_configuration_of_user()
+                           ? ""
+                           : "CYCLONEDDS_URI is not set, so only this machine is heard";
+    if (!domains.empty())
+    {
+        text += fmt::format("{}programs of this machine are on domain {}", text.empty() ? "" : "; ",
+                            fmt::join(domains, ", "));
+    }
+    return text.empty() ? std::nullopt : std::optional(text);
 }
 
 } // namespace tactus::dds

@@ -10,7 +10,10 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <set>
 #include <string>
+#include <string_view>
 
 namespace tactus::dds
 {
@@ -58,5 +61,14 @@ private:
     Entity participant_;
     std::unique_ptr<Disposal> disposal_{std::make_unique<Disposal>()}; ///< Ends before that.
 };
+
+/// Where on a domain no host was heard: the likeliest causes that can be known here. That
+/// CYCLONEDDS_URI isn't set, so that only this machine is heard, and the other domains on which
+/// this machine's programs are. None where nothing is known. Reads /proc.
+[[nodiscard]] std::optional<std::string> why_unheard(std::uint32_t domain);
+
+/// The domains of the ports of a text like that of /proc/net/udp, ascending; by the ports that
+/// programs have which others find.
+[[nodiscard]] std::set<std::uint32_t> domains_in(std::string_view udp_sockets);
 
 } // namespace tactus::dds

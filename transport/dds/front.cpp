@@ -28,7 +28,7 @@ namespace
 /// In the order of the wire.
 constexpr std::array kBudgetOrder{&Budgets::splits,   &Budgets::merges,    &Budgets::scanned,
                                   &Budgets::nodes,    &Budgets::triangles, &Budgets::pages,
-                                  &Budgets::requests, &Budgets::regions};
+                                  &Budgets::requests, &Budgets::regions,   &Budgets::work};
 static_assert(std::size(tactus_v5_Front{}.budgets) == kBudgetOrder.size());
 // All but what proxies look at.
 static_assert(sizeof(Budgets) == (kBudgetOrder.size() + 1) * sizeof(std::uint32_t));
@@ -64,7 +64,7 @@ std::optional<FrontTool> tool_from(const tactus_v5_FrontTool& wire)
         return std::nullopt;
     }
     return FrontTool{static_cast<SafetyState>(wire.state), static_cast<ForceOff>(wire.causes),
-                     std::string(shape), wire.radius_m};
+                     std::string(shape), wire.radius_m, wire.begins_inside};
 }
 
 std::optional<FrontObject> object_from(const tactus_v5_FrontObject& wire, std::uint32_t models)
@@ -204,6 +204,7 @@ tactus_v5_FrontTool to_wire(const FrontTool& tool)
     wire.causes = static_cast<std::uint32_t>(tool.causes);
     tool.shape.copy(static_cast<char*>(wire.shape), kMaxShapeBytes);
     wire.radius_m = tool.radius_m;
+    wire.begins_inside = tool.begins_inside;
     return wire;
 }
 

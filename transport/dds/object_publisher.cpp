@@ -70,7 +70,7 @@ Result<std::uint32_t, Refusal> ObjectPublisher::show(const ShownObject& object)
     const auto pose = checked_pose(object.pose);
     if (!is_valid_name(object.name))
     {
-        return refuse("needs a name of 1 to 63 characters of A-Z a-z 0-9 . _ -");
+        return refuse(fmt::format("needs a name of {}", kNameForm));
     }
     if (!pose)
     {

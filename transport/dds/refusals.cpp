@@ -3,6 +3,7 @@
 #include "transport/dds/refusals.hpp"
 
 #include "rt_core/limits.hpp"
+#include "transport/model_name.hpp"
 
 #include <fmt/format.h>
 
@@ -19,8 +20,6 @@ namespace
 /// What a line says; empty where the place that refuses says more.
 std::string reason_of(Refused reason, std::uint32_t number)
 {
-    constexpr std::string_view name_form =
-        "its name is not 1 to 63 characters of A-Z a-z 0-9 . _ -";
     switch (reason)
     {
     case Refused::identity:
@@ -30,7 +29,7 @@ std::string reason_of(Refused reason, std::uint32_t number)
     case Refused::model_number:
         return fmt::format("model {}: a host has models 0 to {}", number, kMaxModels - 1);
     case Refused::object_name:
-        return fmt::format("object {}: {}", number, name_form);
+        return fmt::format("object {}: its name is not {}", number, kNameForm);
     case Refused::object_material:
         return fmt::format("object {}: its stiffness is not above 0, friction or damping below 0, "
                            "or dynamic friction above static friction",
@@ -38,7 +37,7 @@ std::string reason_of(Refused reason, std::uint32_t number)
     case Refused::object_pose:
         return fmt::format("object {}: it stands nowhere", number);
     case Refused::model_name:
-        return fmt::format("model {}: {}, or its scene's is not", number, name_form);
+        return fmt::format("model {}: its name, or its scene's, is not {}", number, kNameForm);
     case Refused::model_room:
         return fmt::format("model {}: there are too many on the domain", number);
     case Refused::wish:

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "transport/store/model_store.hpp"
 
+#include "platform/base/files_near.hpp"
 #include "rt_core/base/byte_io.hpp"
 #include "rt_core/spm/base_mesh.hpp"
 #include "transport/content_hash.hpp"
@@ -149,7 +150,9 @@ Result<Done, Refusal> ModelStore::open_file(const std::filesystem::path& path)
     struct stat status = {};
     if (file_ < 0 || ::fstat(file_, &status) != 0)
     {
-        return error(fmt::format("cannot be opened: {}", std::strerror(errno)));
+        const int reason = errno;
+        return error(fmt::format("cannot be opened: {}{}", std::strerror(reason),
+                                 reason == ENOENT ? files_near(path, ".spm") : ""));
     }
     if (!S_ISREG(status.st_mode))
     {

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "transport/store/static_model.hpp"
 
+#include "platform/base/counted.hpp"
 #include "rt_core/base/arena.hpp"
 #include "rt_core/frame/frame.hpp"
 #include "rt_core/query/contact_report.hpp"
@@ -59,7 +60,7 @@ struct AlignedDelete
 
 std::string piece_count(std::uint64_t pieces)
 {
-    return pieces == 1 ? "1 piece is" : fmt::format("{} pieces are", pieces);
+    return counted(pieces, "piece is", "pieces are");
 }
 
 } // namespace
