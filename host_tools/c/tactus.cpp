@@ -10,6 +10,8 @@
 #include "rt_core/records/object_touch.hpp"
 #include "transport/courier.hpp"
 #include "transport/dds/dds_client.hpp"
+#include "transport/inside_test.hpp"
+#include "transport/material_ranges.hpp"
 #include "transport/model_name.hpp"
 #include "transport/pool_plan.hpp"
 #include "transport/store/static_model.hpp"
@@ -244,7 +246,8 @@ ToolSpec tool_of(const tactus_tool& tool, std::size_t index)
     const std::string name = fmt::format("tools[{}].", index);
     check_size(tool, name.c_str());
     check_range(tool.shape, TACTUS_SPHERE, TACTUS_BOX, name + "shape");
-    check_range(tool.radius_m, 1e-6, 1e3, name + "radius_m");
+    const double largest_m = tool.passes_through != 0 ? 1e3 : 1.0; // A hand holds none larger.
+    check_range(tool.radius_m, 1e-6, largest_m, name + "radius_m");
     check_range(tool.stiffness_n_per_m, 1e-3, 1e6, name + "stiffness_n_per_m");
     check_range(tool.force_max_n, 1e-3, 1e6, name + "force_max_n");
     check_range(tool.torque_max_nm, 0.0, 1e6, name + "torque_max_nm");
@@ -258,7 +261,8 @@ ToolSpec tool_of(const tactus_tool& tool, std::size_t index)
     }
     for (const double half_m : tool.half_m)
     {
-        check_range(half_m, tool.shape == TACTUS_BOX ? 0.0 : -1e3, 1e3, name + "half_m");
+        check_range(half_m, tool.shape == TACTUS_BOX ? 0.0 : -largest_m, largest_m,
+                    name + "half_m");
     }
     ToolSpec spec;
     spec.radius_m = tool.radius_m;
@@ -310,10 +314,11 @@ Material material_of(const tactus_material& from)
         check_range(from.stiffness_n_per_m, 1e-3, 1e6, "material.stiffness_n_per_m");
         material.stiffness_n_per_m = from.stiffness_n_per_m;
     }
-    check_range(from.static_friction, 0.0, 10.0, "material.static_friction");
+    check_range(from.static_friction, 0.0, kRoughest, "material.static_friction");
     check_range(from.dynamic_friction, 0.0, from.static_friction, "material.dynamic_friction");
-    check_range(from.damping_n_s_per_m, 0.0, 20.0, "material.damping_n_s_per_m");
-    check_range(from.viscosity_n_s_per_m, 0.0, 20.0, "material.viscosity_n_s_per_m");
+    check_range(from.damping_n_s_per_m, 0.0, kMostDamped_n_s_per_m, "material.damping_n_s_per_m");
+    check_range(from.viscosity_n_s_per_m, 0.0, kMostDamped_n_s_per_m,
+                "material.viscosity_n_s_per_m");
     check_range(from.texture_length_m, from.texture_height_m > 0.0 ? kTextureLengthMin_m : 0.0,
                 kTextureLengthMax_m, "material.texture_length_m");
     check_range(from.texture_height_m, 0.0, kTextureSteepest * from.texture_length_m,
@@ -383,7 +388,7 @@ void read_setup(const tactus_setup& from, Scene& scene)
         const std::string name = fmt::format("objects[{}].", i);
         check_size(object, name.c_str());
         check_range(object.model, 0, from.model_count - 1, name + "model");
-        check_range(object.static_friction, 0.0, 10.0, name + "static_friction");
+        check_range(object.static_friction, 0.0, kRoughest, name + "static_friction");
         check_range(object.dynamic_friction, 0.0, object.static_friction,
                     name + "dynamic_friction");
         Material material;
@@ -565,6 +570,26 @@ bool is_settled(const tactus_frame& frame)
                                }) &&
            std::ranges::none_of(output.tools, [](const ToolOutput& tool)
                                 { return tool.frozen || tool.held_back || tool.under_way; });
+}
+
+void find_insides(const tactus_frame& frame, const double* positions_m, std::uint8_t* inside)
+{
+    const std::size_t tools = frame.states.size();
+    std::fill(inside, inside + tools, std::uint8_t{0});
+    for (std::uint32_t object = 0; object < frame.objects; ++object)
+    {
+        const ModelId model = frame.frame->objects()[object].spec.model;
+        const ServedModel& served = frame.models[model.value]->served;
+        const ModelHeader header = ModelHeader::parse(served.header).value();
+        const InsideTest test(header, served.base);
+        for (std::uint32_t tool = 0; tool < tools; ++tool)
+        {
+            const Vec3 source_m = frame.places[object].to_here(to_vec(positions_m + 3 * tool));
+            const bool is_held = !frame.frame->tool(tool).spec().passes_through &&
+                                 test.holds(source_m - header.origin_m());
+            inside[tool] = is_held ? 1 : inside[tool];
+        }
+    }
 }
 
 void place_tools(tactus_frame& frame, const tactus_poses& poses, std::size_t pose)
@@ -958,6 +983,17 @@ extern "C"
                            change.number = object;
                            change.object.material = material_of(given(material, "material"));
                            add_change(in, change);
+                       });
+    }
+
+    tactus_result tactus_frame_begins_inside(const tactus_frame* frame, const double* positions_m,
+                                             uint8_t* inside, tactus_error* error)
+    {
+        return guarded(error,
+                       [&]
+                       {
+                           find_insides(given(frame, "frame"), &given(positions_m, "positions_m"),
+                                        &given(inside, "inside"));
                        });
     }
 

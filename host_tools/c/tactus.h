@@ -27,7 +27,7 @@
 #endif
 
 /* Of records and calls; both sides must have the same one. */
-#define TACTUS_ABI 2U
+#define TACTUS_ABI 3U
 /* The lent memory of a frame starts on a multiple of it. */
 #define TACTUS_ALIGNMENT 64U
 
@@ -122,9 +122,10 @@ typedef struct tactus_tool
     size_t size;
     int32_t shape;          /* tactus_shape */
     int32_t passes_through; /* 0: surfaces stop it and make forces. Else it measures where it is. */
-    double radius_m;        /* 1e-6 to 1e3. Within it distances are exact. */
-    double half_m[3];       /* Of a capsule or box, in the tool's frame; up to 1e3 either way, of
-                             * a box from 0. */
+    double radius_m;        /* 1e-6 to 1, of one that passes through to 1e3. Within it distances
+                             * are exact. */
+    double half_m[3];       /* Of a capsule or box, in the tool's frame; up to 1 or 1e3 likewise,
+                             * either way, of a box from 0. */
     double stiffness_n_per_m; /* 1e-3 to 1e6: of the spring from proxy to hand. */
     double force_max_n;       /* 1e-3 to 1e6: the force's norm is clamped to it. */
     double torque_max_nm;     /* 0 to 1e6, likewise. A sphere has no torque. */
@@ -150,7 +151,7 @@ typedef struct tactus_object
     size_t size;
     uint32_t model; /* Index into the set-up's models. */
     tactus_pose pose;
-    double static_friction;  /* 0 to 10, Coulomb's. */
+    double static_friction;  /* 0 to 3, Coulomb's. */
     double dynamic_friction; /* 0 to the static one. */
 } tactus_object;
 
@@ -159,7 +160,7 @@ typedef struct tactus_material
 {
     size_t size;
     double stiffness_n_per_m;   /* 1e-3 to 1e6: the softer of this and the tool's counts; or 0. */
-    double static_friction;     /* 0 to 10, Coulomb's. */
+    double static_friction;     /* 0 to 3, Coulomb's. */
     double dynamic_friction;    /* 0 to the static one. */
     double damping_n_s_per_m;   /* 0 to 20, across the surface. */
     double viscosity_n_s_per_m; /* 0 to 20, along it. */
@@ -261,6 +262,14 @@ TACTUS_CALL tactus_result tactus_frame_place(tactus_frame* frame, uint32_t objec
  * even steps within 50 ms. On the same thread. */
 TACTUS_CALL tactus_result tactus_frame_feel(tactus_frame* frame, uint32_t object,
                                             const tactus_material* material, tactus_error* error);
+
+/* Whether each tool, with its centre there, begins inside a closed object where that stands now:
+ * the surface then holds it from within, and pulls back a hand that leaves. For before the first
+ * frame; allocates, not for a real-time thread. positions_m, T x 3; inside, T: 0 of one that
+ * doesn't, and of one that passes through. */
+TACTUS_CALL tactus_result tactus_frame_begins_inside(const tactus_frame* frame,
+                                                     const double* positions_m, uint8_t* inside,
+                                                     tactus_error* error);
 
 typedef struct tactus_frame_state
 {

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/cli/command_line.hpp"
 
+#include "platform/base/nearest_word.hpp"
 #include "platform/base/program_log.hpp"
 #include "platform/base/read_file.hpp"
 
@@ -14,7 +15,6 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <numeric>
 #include <sstream>
 #include <string_view>
 #include <utility>
@@ -99,43 +99,18 @@ std::string without_value(const std::string& text)
     return first == last ? text : text.substr(0, first + 1) + "..." + text.substr(last);
 }
 
-/// How many letters have to be put in, left out or exchanged to make one of the other
-/// (Levenshtein).
-std::size_t letters_between(std::string_view one, std::string_view other)
-{
-    std::vector<std::size_t> row(other.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 0; i < one.size(); ++i)
-    {
-        std::size_t diagonal = std::exchange(row[0], i + 1);
-        for (std::size_t j = 0; j < other.size(); ++j)
-        {
-            const std::size_t exchanged = diagonal + (one[i] == other[j] ? 0 : 1);
-            diagonal = row[j + 1];
-            row[j + 1] = std::min({exchanged, diagonal + 1, row[j] + 1});
-        }
-    }
-    return row.back();
-}
-
 /// The option's name, without its dashes, that is most like the key; empty when none is.
 std::string nearest_name(const CLI::App& app, const std::string& key, bool is_in_file)
 {
-    std::string nearest;
-    std::size_t least = key.size() / 3 + 2;
+    std::vector<std::string_view> names;
     for (const CLI::Option* option : app.get_options())
     {
-        for (const std::string& name : option->get_lnames())
+        if (option->get_configurable() || !is_in_file)
         {
-            const std::size_t letters = letters_between(key, name);
-            if ((option->get_configurable() || !is_in_file) && letters < least)
-            {
-                least = letters;
-                nearest = name;
-            }
+            names.insert(names.end(), option->get_lnames().begin(), option->get_lnames().end());
         }
     }
-    return nearest;
+    return nearest_word(key, names);
 }
 
 /// The library's own words for a key that no option has end in the key, and in "++" behind the name

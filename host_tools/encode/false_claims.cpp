@@ -16,7 +16,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
+#include <span>
 
 namespace tactus
 {
@@ -257,31 +259,56 @@ private:
         compare("the depth", fields_.max_depth, depth);
     }
 
+    /// A closed mesh may be cut open where both sides lie in one place.
     void check_closed()
     {
-        std::vector<std::uint64_t> edges; // Each way once, and its other way.
+        std::vector<std::uint32_t> first(mesh_.positions.size()); // The first in the same place.
+        std::iota(first.begin(), first.end(), 0U);
+        if (model_.header().is_closed())
+        {
+            std::vector<std::uint32_t> by_place = first;
+            std::ranges::stable_sort(by_place, {},
+                                     [&](std::uint32_t vertex) { return mesh_.positions[vertex]; });
+            for (std::size_t i = 1; i < by_place.size(); ++i)
+            {
+                if (mesh_.positions[by_place[i]] == mesh_.positions[by_place[i - 1]])
+                {
+                    first[by_place[i]] = first[by_place[i - 1]];
+                }
+            }
+        }
+        const std::optional<std::uint32_t> border = find_border(first);
+        if (model_.header().is_closed() && border)
+        {
+            const Vec3 at_m = source_m(vec_of({*border}));
+            tell(
+                "header: the mesh is stated as closed; it has a border at ({:.6g}, {:.6g}, {:.6g})",
+                at_m.x(), at_m.y(), at_m.z());
+        }
+        if (!model_.header().is_closed() && !border)
+        {
+            tell("header: the mesh is stated as open; it is closed");
+        }
+    }
+    /// The end of an edge that no face has the other way.
+    [[nodiscard]] std::optional<std::uint32_t>
+    find_border(std::span<const std::uint32_t> vertex_of) const
+    {
+        std::vector<std::uint64_t> edges;
         for (const auto& corners : mesh_.faces)
         {
             for (std::size_t i = 0; i < 3; ++i)
             {
-                edges.push_back(std::uint64_t{corners[i]} << 32U | corners[(i + 1) % 3]);
+                edges.push_back(std::uint64_t{vertex_of[corners[i]]} << 32U |
+                                vertex_of[corners[(i + 1) % 3]]);
             }
         }
         std::ranges::sort(edges);
         const auto has_no_other = [&](std::uint64_t edge)
         { return !std::ranges::binary_search(edges, edge << 32U | edge >> 32U); };
         const auto open = std::ranges::find_if(edges, has_no_other);
-        if (model_.header().is_closed() && open != edges.end())
-        {
-            const Vec3 at_m = source_m(vec_of({static_cast<std::uint32_t>(*open)}));
-            tell(
-                "header: the mesh is stated as closed; it has a border at ({:.6g}, {:.6g}, {:.6g})",
-                at_m.x(), at_m.y(), at_m.z());
-        }
-        if (!model_.header().is_closed() && open == edges.end())
-        {
-            tell("header: the mesh is stated as open; it is closed");
-        }
+        return open == edges.end() ? std::nullopt
+                                   : std::optional(static_cast<std::uint32_t>(*open));
     }
 
     void check_extent()

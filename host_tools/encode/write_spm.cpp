@@ -48,7 +48,7 @@ std::optional<std::string> check_base(const Simplification& simplification,
                            "pieces that can't vanish); a base mesh has at most {} faces with {}",
                            faces, base_vertices, kMaxBaseFaces, kMaxBaseVertices);
     }
-    if (faces > std::max<std::size_t>(500, allowed_faces))
+    if (faces > std::max(kGrownBaseFaces, allowed_faces))
     {
         return fmt::format("the mesh can't be simplified below {0} faces (pieces or borders that "
                            "can't vanish); allow it with --base-faces {0}",
@@ -200,7 +200,7 @@ void code_chunks(const ModelPieces& pieces, std::uint32_t first,
 /// Chunks go behind a gap of the front's size, which is filled last.
 Result<Done, Refusal> write_pieces(AtomicFile& file, HeaderFields& fields,
                                    const ModelPieces& pieces, const RegionGrid& grid,
-                                   unsigned threads)
+                                   const EncodeOptions& options)
 {
     constexpr std::uint32_t kBatch = 256;
     const ModelCounts& counts = pieces.counts();
@@ -210,10 +210,14 @@ Result<Done, Refusal> write_pieces(AtomicFile& file, HeaderFields& fields,
     for (std::uint32_t first = 0; written && first < counts.chunks(); first += kBatch)
     {
         std::vector<std::vector<std::byte>> batch(std::min(kBatch, counts.chunks() - first));
-        code_chunks(pieces, first, batch, std::span{entries}.subspan(first), threads);
+        code_chunks(pieces, first, batch, std::span{entries}.subspan(first), options.threads);
         for (std::size_t i = 0; written && i < batch.size(); ++i)
         {
             written = file.write(batch[i]);
+        }
+        if (options.progress)
+        {
+            options.progress(first + batch.size(), counts.chunks());
         }
     }
     if (!written)
@@ -264,8 +268,7 @@ Result<HeaderFields, Refusal> write_spm(const std::filesystem::path& path,
     {
         return file.error();
     }
-    if (const auto written = write_pieces(file.value(), fields, pieces, grid, options.threads);
-        !written)
+    if (const auto written = write_pieces(file.value(), fields, pieces, grid, options); !written)
     {
         return written.error();
     }

@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -17,17 +18,24 @@
 namespace tactus
 {
 
+/// A base mesh of more faces than were asked for may have this many, where pieces, holes or handles
+/// keep it from shrinking: with its part of forest and tree it takes less than a quarter of hrtc's
+/// default pools of 2 MiB.
+inline constexpr std::uint32_t kGrownBaseFaces = 2'000;
+
 struct EncodeOptions
 {
     /// As the mesh was prepared with: that its coordinates fit is asserted.
     std::uint32_t position_bits{kMinPositionBits};
-    /// A larger base is refused, unless it has at most 500 faces; one of more than kMaxBaseFaces is
-    /// refused always.
+    /// A larger base is refused, unless it has at most kGrownBaseFaces; one of more than
+    /// kMaxBaseFaces is refused always.
     std::uint32_t base_faces{500};
     /// Edge of a region, rounded down to a power of two quanta, one at least; more than kMaxRegions
     /// are refused. Without it the longest axis gets at most 16 regions.
     std::optional<double> region_size_m;
     unsigned threads{1}; ///< 1 or more; the file does not depend on it.
+    /// Called on the calling thread as chunks are written: how many, and how many there are.
+    std::function<void(std::size_t done, std::size_t total)> progress{};
 };
 
 /// Writes a model's file: header, base mesh, index pages, chunks. The file appears under its name

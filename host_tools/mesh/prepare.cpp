@@ -3,8 +3,11 @@
 #include "host_tools/mesh/prepare.hpp"
 
 #include "host_tools/mesh/detail/clean.hpp"
+#include "host_tools/mesh/detail/grid_need.hpp"
 #include "host_tools/mesh/detail/manifold.hpp"
+#include "host_tools/mesh/detail/stitch.hpp"
 #include "host_tools/mesh/detail/winding.hpp"
+#include "platform/base/counted.hpp"
 
 #include <fmt/format.h>
 
@@ -80,6 +83,11 @@ std::optional<Refusal> find_bad_option(const PrepareOptions& options)
         return Refusal{fmt::format("position bits is {}; must be {} .. {}", options.position_bits,
                                    kMinPositionBits, kMaxPositionBits)};
     }
+    if (options.quantum_max_m && !(*options.quantum_max_m > 0.0))
+    {
+        return Refusal{fmt::format("the largest step of the grid is {} m; must be positive",
+                                   *options.quantum_max_m)};
+    }
     return std::nullopt;
 }
 
@@ -107,17 +115,29 @@ std::optional<Refusal> find_bad_source(const TriangleMesh& source)
 
 TriangleMesh clean_up(TriangleMesh mesh, PreparedMesh& out)
 {
-    out.welded_vertices = detail::weld_equal_positions(mesh);
-    out.degenerate_faces = detail::drop_degenerate_faces(mesh.faces);
-    out.duplicate_faces = detail::drop_duplicate_faces(mesh.faces);
+    const std::size_t welded = detail::weld_equal_positions(mesh);
+    out.welded_vertices += welded;
+    out.degenerate_faces += detail::drop_degenerate_faces(mesh.faces);
+    out.duplicate_faces += detail::drop_duplicate_faces(mesh.faces);
     // The vertices that welding has left unused are not isolated in the source.
-    out.isolated_vertices = detail::drop_isolated_vertices(mesh) - out.welded_vertices;
+    out.isolated_vertices += detail::drop_isolated_vertices(mesh) - welded;
     return mesh;
 }
 
-/// Metres per source unit, after fitting; sets the diagonal.
-Result<double, Refusal> choose_scale(const Box& box, const PrepareOptions& options,
-                                     PreparedMesh& out)
+/// From the source's frame, scaled, to the model's.
+Point move_of(const Box& box, double scale, const PrepareOptions& options)
+{
+    Point moved_m{};
+    for (std::size_t axis = 0; axis < 3 && options.is_centered; ++axis)
+    {
+        moved_m[axis] = -0.5 * (box.low[axis] * scale + box.high[axis] * scale);
+    }
+    return moved_m;
+}
+
+/// Sets the scale, the diagonal and the box's place.
+std::optional<Refusal> choose_scale(const Box& box, const PrepareOptions& options,
+                                    PreparedMesh& out)
 {
     const double source_diagonal = box.diagonal();
     double scale = options.metres_per_unit;
@@ -128,14 +148,22 @@ Result<double, Refusal> choose_scale(const Box& box, const PrepareOptions& optio
         out.diagonal_m = *options.fit_diagonal_m;
     }
     out.metres_per_unit = scale;
+    const Point moved_m = move_of(box, scale, options);
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
-        out.origin_m[axis] = box.low[axis] * scale;
-        if (!std::isfinite(out.origin_m[axis]) || !std::isfinite(box.extent(axis) * scale))
+        out.origin_m[axis] = box.low[axis] * scale + moved_m[axis];
+        // A move is to be finite in steps, too, of which a metre has less than 2^64.
+        if (!std::isfinite(out.origin_m[axis]) || !std::isfinite(box.extent(axis) * scale) ||
+            !std::isfinite(std::ldexp(moved_m[axis], 64)))
         {
             return Refusal{
                 fmt::format("coordinates are not finite any more after scaling by {}", scale)};
         }
+    }
+    if (options.is_centered)
+    {
+        out.notes.push_back(fmt::format("moved by {:.9g}, {:.9g}, {:.9g} m to the origin",
+                                        moved_m[0], moved_m[1], moved_m[2]));
     }
     if (!(out.diagonal_m >= kMinDiagonal_m && out.diagonal_m <= kMaxDiagonal_m))
     {
@@ -149,17 +177,23 @@ Result<double, Refusal> choose_scale(const Box& box, const PrepareOptions& optio
         if (out.origin_m[axis] < -kModelReachMax_m || far_m > kModelReachMax_m)
         {
             return Refusal{fmt::format("the model lies at {} m on an axis; at most {} m from the "
-                                       "origin are supported: move it there",
+                                       "origin are supported: --center puts it there",
                                        out.origin_m[axis], kModelReachMax_m)};
         }
     }
-    return scale;
+    return std::nullopt;
 }
 
-/// The least power of two whose multiples up to 2^bits - 1 reach over the extent.
-double choose_quantum(double extent_m, unsigned bits)
+/// A vertex this part of a step beside an edge lies on it.
+constexpr double kStepsOnEdge = 16.0;
+/// Border vertices within this part of a step of each other are one: a source of floats, or of some
+/// decimals, tells places of a border that several of its parts have that much apart.
+constexpr double kStepsApart = 2.0;
+
+/// The least power of two whose multiples up to 2^bits - 1, less those kept, reach over the extent.
+double choose_quantum(double extent_m, unsigned bits, double kept)
 {
-    const double steps = std::ldexp(1.0, static_cast<int>(bits)) - 1.0;
+    const double steps = std::ldexp(1.0, static_cast<int>(bits)) - 1.0 - kept;
     double quantum = std::ldexp(1.0, std::ilogb(extent_m / steps));
     while (quantum * steps < extent_m)
     {
@@ -172,10 +206,63 @@ double choose_quantum(double extent_m, unsigned bits)
     return quantum;
 }
 
-/// Distances are taken from the box's least corner before scaling: far from the origin the
-/// difference is exact where the coordinates themselves have few digits left.
-void put_on_grid(const TriangleMesh& mesh, const Box& box, double scale, PreparedMesh& out)
+/// Takes as many bits as were asked for, and more where the mesh needs a finer grid or the caller
+/// wants one.
+void choose_grid(const TriangleMesh& mesh, double extent_m, const PrepareOptions& options,
+                 PreparedMesh& out)
 {
+    // Where both ends of the mesh are rounded, it may reach one step farther.
+    const double kept = options.grid_place_m ? 1.0 : 0.0;
+    double wanted_m = options.quantum_max_m.value_or(std::numeric_limits<double>::infinity());
+    const char* why = "models that meet it have that grid";
+    if (options.adds_bits)
+    {
+        const detail::GridNeed need = detail::measure_grid_need(mesh);
+        const double for_mesh_m = std::min(need.for_edges, need.for_relief) * out.metres_per_unit;
+        if (for_mesh_m < wanted_m)
+        {
+            wanted_m = for_mesh_m;
+            why =
+                need.for_edges < need.for_relief ? "shorter edges need it" : "its relief needs it";
+        }
+    }
+    const double usual_m = choose_quantum(extent_m, options.position_bits, kept);
+    out.position_bits = options.position_bits;
+    out.quantum_m = usual_m;
+    while (out.quantum_m > wanted_m && out.position_bits < kMaxPositionBits)
+    {
+        out.quantum_m = choose_quantum(extent_m, ++out.position_bits, kept);
+    }
+    if (out.position_bits > options.position_bits)
+    {
+        out.notes.push_back(fmt::format(
+            "{} bits a coordinate instead of {}, steps of {:.3g} m instead of {:.3g} m: {}{}",
+            out.position_bits, options.position_bits, out.quantum_m, usual_m, why,
+            out.quantum_m > wanted_m ? fmt::format(", and steps of {:.3g} m", wanted_m) : ""));
+    }
+}
+
+/// Distances are taken from the box's least corner before scaling: far from the origin the
+/// difference is exact where the coordinates themselves have few digits left. From a place of the
+/// grid they are taken afterwards, so that equal positions of several meshes are rounded alike.
+void put_on_grid(const TriangleMesh& mesh, const Box& box, const PrepareOptions& options,
+                 PreparedMesh& out)
+{
+    const double scale = out.metres_per_unit;
+    const Point moved_m = move_of(box, scale, options);
+    std::array<double, 3> first{}; // The origin in steps from the grid's place.
+    const auto steps = [&](double value, std::size_t axis)
+    {
+        return options.grid_place_m
+                   ? (value * scale - (*options.grid_place_m)[axis]) / out.quantum_m
+                   : (value - box.low[axis]) * scale / out.quantum_m;
+    };
+    for (std::size_t axis = 0; axis < 3 && options.grid_place_m; ++axis)
+    {
+        first[axis] = std::floor(steps(box.low[axis], axis) + 0.5);
+        out.origin_m[axis] =
+            (*options.grid_place_m)[axis] + first[axis] * out.quantum_m + moved_m[axis];
+    }
     double worst = 0.0;
     out.mesh.positions.reserve(mesh.positions.size());
     for (const Point& p : mesh.positions)
@@ -184,15 +271,15 @@ void put_on_grid(const TriangleMesh& mesh, const Box& box, double scale, Prepare
         double off = 0.0;
         for (std::size_t axis = 0; axis < 3; ++axis)
         {
-            const double quanta = (p[axis] - box.low[axis]) * scale / out.quantum_m;
+            const double quanta = steps(p[axis], axis);
             const double nearest = std::floor(quanta + 0.5);
             off += (quanta - nearest) * (quanta - nearest);
-            place[axis] = static_cast<std::int32_t>(nearest);
+            place[axis] = static_cast<std::int32_t>(nearest - first[axis]);
         }
         worst = std::max(worst, off);
         out.mesh.positions.push_back(place);
     }
-    out.quantisation_m = std::sqrt(worst) * out.quantum_m;
+    out.quantisation_m += std::max(std::sqrt(worst) * out.quantum_m, options.moved_m);
 }
 
 void make_manifold(TriangleMesh& mesh, PreparedMesh& out)
@@ -231,7 +318,7 @@ void write_notes(PreparedMesh& out)
     {
         if (count > 0)
         {
-            out.notes.push_back(fmt::format("{} {} {}", count, count == 1 ? one : many, what));
+            out.notes.push_back(fmt::format("{} {}", counted(count, one, many), what));
         }
     };
     const auto note_vertices = [&](std::size_t count, std::string_view what)
@@ -246,11 +333,76 @@ void write_notes(PreparedMesh& out)
     note(out.cut_edges, "edge", "edges",
          "cut open (more than two faces, or two with the same direction)");
     note_vertices(out.added_vertices, "added where several fans of faces met");
+    note_vertices(out.joined_vertices,
+                  "of borders joined to one less than half a step of the grid away");
+    note(out.stitched_faces, "face", "faces", "added where a border vertex lies on another edge");
     note(out.flat_faces, "face", "faces", "kept without area on the grid");
     note_pieces(out.turned_pieces,
                 "turned outwards that looked inwards; --keep-winding leaves that");
     note_pieces(out.turned_voids, "turned inwards, as a void of the closed piece around it; "
                                   "--keep-winding leaves that");
+}
+
+/// Makes sides of a seam meet again which the source has rounded apart.
+void close_seams(TriangleMesh& mesh, const PrepareOptions& options, PreparedMesh& out)
+{
+    const double step = out.quantum_m / out.metres_per_unit;
+    const detail::JoinedBorders joined = detail::join_borders(mesh, step / kStepsApart);
+    if (joined.vertices > 0)
+    {
+        out.joined_vertices = joined.vertices;
+        out.quantisation_m = joined.farthest * out.metres_per_unit;
+        mesh = clean_up(std::move(mesh), out);
+        out.welded_vertices -= joined.vertices;
+    }
+    if (joined.are_there)
+    {
+        const std::size_t own = mesh.positions.size();
+        for (const auto& [x, y, z] : options.beside_m)
+        {
+            const double scale = out.metres_per_unit;
+            mesh.positions.push_back({x / scale, y / scale, z / scale});
+        }
+        out.stitched_faces = detail::stitch_edges(mesh, step / kStepsOnEdge, own);
+        if (!options.beside_m.empty())
+        {
+            detail::drop_isolated_vertices(mesh);
+        }
+    }
+}
+
+/// A mesh whose scale and grid are chosen, and its box; both in the source's unit.
+struct PlannedMesh
+{
+    TriangleMesh mesh;
+    Box box;
+};
+
+Result<PlannedMesh, Refusal> plan_mesh(const TriangleMesh& source, const PrepareOptions& options,
+                                       PreparedMesh& out)
+{
+    if (auto error = find_bad_option(options))
+    {
+        return *error;
+    }
+    if (auto error = find_bad_source(source))
+    {
+        return *error;
+    }
+    PlannedMesh planned{clean_up(source, out), {}};
+    if (planned.mesh.faces.empty())
+    {
+        return Refusal{fmt::format("no face is left of {}: {} are degenerate; at least 1 is "
+                                   "needed",
+                                   source.faces.size(), out.degenerate_faces)};
+    }
+    planned.box = box_of(planned.mesh.positions);
+    if (auto error = choose_scale(planned.box, options, out))
+    {
+        return *error;
+    }
+    choose_grid(planned.mesh, planned.box.largest_extent() * out.metres_per_unit, options, out);
+    return planned;
 }
 
 } // namespace
@@ -271,32 +423,27 @@ std::optional<double> metres_per_unit(std::string_view unit)
     return std::nullopt;
 }
 
+Result<double, Refusal> grid_step(const TriangleMesh& source, const PrepareOptions& options)
+{
+    PreparedMesh out;
+    const auto planned = plan_mesh(source, options, out);
+    return planned ? Result<double, Refusal>(out.quantum_m) : planned.error();
+}
+
 Result<PreparedMesh, Refusal> prepare_mesh(const TriangleMesh& source,
                                            const PrepareOptions& options)
 {
-    if (auto error = find_bad_option(options))
-    {
-        return *error;
-    }
-    if (auto error = find_bad_source(source))
-    {
-        return *error;
-    }
     PreparedMesh out;
-    TriangleMesh mesh = clean_up(source, out);
-    if (mesh.faces.empty())
+    auto planned = plan_mesh(source, options, out);
+    if (!planned)
     {
-        return Refusal{fmt::format("no face is left of {}: {} are degenerate; at least 1 is "
-                                   "needed",
-                                   source.faces.size(), out.degenerate_faces)};
+        return planned.error();
     }
-    const Box box = box_of(mesh.positions);
-    const auto scale = choose_scale(box, options, out);
-    if (!scale)
+    auto& [mesh, box] = planned.value();
+    if (options.stitches)
     {
-        return scale.error();
+        close_seams(mesh, options, out);
     }
-    out.quantum_m = choose_quantum(box.largest_extent() * scale.value(), options.position_bits);
     make_manifold(mesh, out);
     if (!options.keeps_winding)
     {
@@ -304,7 +451,7 @@ Result<PreparedMesh, Refusal> prepare_mesh(const TriangleMesh& source,
         out.turned_pieces = turned.outward;
         out.turned_voids = turned.inward;
     }
-    put_on_grid(mesh, box, scale.value(), out);
+    put_on_grid(mesh, box, options, out);
     out.mesh.faces = std::move(mesh.faces);
     out.flat_faces = static_cast<std::size_t>(
         std::count_if(out.mesh.faces.begin(), out.mesh.faces.end(),

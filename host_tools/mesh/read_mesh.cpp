@@ -2,13 +2,17 @@
 // Copyright the Tactus authors.
 #include "host_tools/mesh/read_mesh.hpp"
 
+#include "host_tools/mesh/detail/file_kind.hpp"
+#include "host_tools/mesh/detail/read_input.hpp"
 #include "host_tools/mesh/detail/readers.hpp"
+#include "host_tools/mesh/detail/text_cursor.hpp"
 #include "platform/base/printable.hpp"
 #include "platform/base/read_file.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <new>
 #include <optional>
@@ -21,33 +25,24 @@ namespace
 
 /// Indices are 32-bit and the largest value is kept free to mean "none".
 constexpr std::size_t kMaxVertices = 0xFFFF'FFFE;
-/// Of UTF-8; some editors write it before a text.
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
 using Reader = Result<MeshFile, Refusal> (*)(std::string_view);
 
-std::optional<Reader> reader_for(const std::filesystem::path& path)
+struct FormatEntry
 {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-    if (extension == ".ply")
-    {
-        return detail::read_ply;
-    }
-    if (extension == ".obj")
-    {
-        return detail::read_obj;
-    }
-    if (extension == ".stl")
-    {
-        return detail::read_stl;
-    }
-    if (extension == ".off")
-    {
-        return detail::read_off;
-    }
-    return std::nullopt;
+    std::string_view name;
+    Reader read;
+};
+
+/// In the order of MeshFormat.
+constexpr std::array<FormatEntry, 4> kFormats{{{"ply", detail::read_ply},
+                                               {"obj", detail::read_obj},
+                                               {"stl", detail::read_stl},
+                                               {"off", detail::read_off}}};
+
+std::optional<MeshFormat> format_of(const std::filesystem::path& path)
+{
+    const std::string extension = path.extension().string();
+    return extension.empty() ? std::nullopt : mesh_format(extension.substr(1));
 }
 
 /// What every format owes: finite coordinates, indices in range, some faces but not too many.
@@ -86,57 +81,67 @@ std::optional<Refusal> find_fault(const TriangleMesh& mesh)
     return std::nullopt;
 }
 
-Result<MeshFile, Refusal> read_without_name(const std::filesystem::path& path)
+Result<MeshFile, Refusal> read_without_name(const std::filesystem::path& path,
+                                            std::optional<MeshFormat> format)
 {
-    const auto bytes = read_file(path);
+    const auto bytes = format ? detail::read_input(path) : read_file(path);
     if (!bytes)
     {
         return bytes.error();
     }
-    const auto reader = reader_for(path);
-    if (!reader)
+    const auto known = format ? format : format_of(path);
+    Result<MeshFile, Refusal> file =
+        Refusal{"unknown kind of mesh file; must end in .ply, .obj, .stl or .off"};
+    if (known)
     {
-        return Refusal{"unknown kind of mesh file; must end in .ply, .obj, .stl or .off"};
+        file = kFormats[static_cast<std::size_t>(*known)].read(bytes.value());
     }
-    std::string_view text = bytes.value();
-    if (text.starts_with(kByteOrderMark) && *reader != detail::read_stl) // That may be binary.
-    {
-        text.remove_prefix(kByteOrderMark.size());
-    }
-    auto file = (*reader)(text);
-    if (!file)
+    const auto refused = file ? find_fault(file.value().mesh) : std::optional(file.error());
+    if (!refused)
     {
         return file;
     }
-    if (auto fault = find_fault(file.value().mesh))
-    {
-        return *fault;
-    }
-    return file;
+    const std::string kind = detail::other_kind(bytes.value(), known);
+    return kind.empty() ? *refused : Refusal{kind};
 }
 
 } // namespace
 
-Result<MeshFile, Refusal> read_mesh_file(const std::filesystem::path& path)
+std::string_view format_name(MeshFormat format)
 {
+    return kFormats[static_cast<std::size_t>(format)].name;
+}
+
+std::optional<MeshFormat> mesh_format(std::string_view name)
+{
+    const auto entry = std::ranges::find(kFormats, detail::lower(name), &FormatEntry::name);
+    return entry == kFormats.end()
+               ? std::nullopt
+               : std::optional(static_cast<MeshFormat>(entry - kFormats.begin()));
+}
+
+Result<MeshFile, Refusal> read_mesh_file(const std::filesystem::path& path,
+                                         std::optional<MeshFormat> format)
+{
+    const std::string name = detail::input_name(path);
     try
     {
-        auto file = read_without_name(path);
+        auto file = read_without_name(path, format);
         if (!file)
         {
-            return Refusal{fmt::format("{}: {}", path.string(), file.error().text)};
+            return Refusal{fmt::format("{}: {}", name, file.error().text)};
         }
         return file;
     }
     catch (const std::bad_alloc&)
     {
-        return Refusal{fmt::format("{}: there is not enough memory to read it", path.string())};
+        return Refusal{fmt::format("{}: there is not enough memory to read it", name)};
     }
 }
 
 bool is_mesh_file_name(const std::filesystem::path& path)
 {
-    return reader_for(path).has_value();
+    return format_of(path).has_value();
 }
 
 std::string mesh_is_no_model(const std::string& path)
@@ -160,7 +165,7 @@ namespace detail
 
 void note_missing_line_end(std::string_view text, std::vector<std::string>& notes)
 {
-    if (!text.empty() && text.back() != '\n')
+    if (!text.empty() && text.back() != '\n' && text.back() != '\r')
     {
         notes.emplace_back("the last line has no line end; the file may have been cut there");
     }

@@ -8,7 +8,9 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 // Any thread, but not the haptic one: calls allocate and wait for the file.
@@ -18,6 +20,20 @@ namespace tactus
 /// More faces than this are refused: each costs one FaceId, and half of those a record id.
 inline constexpr std::size_t kMaxFaces = std::size_t{1} << 29U;
 
+/// The formats that are read.
+enum class MeshFormat
+{
+    ply,
+    obj,
+    stl,
+    off,
+};
+
+/// "ply" and the like, as files end and as --format names it.
+[[nodiscard]] std::string_view format_name(MeshFormat format);
+/// The format of this name, in either case of letters.
+[[nodiscard]] std::optional<MeshFormat> mesh_format(std::string_view name);
+
 /// What a mesh file holds, and what was changed or could not be told while it was read.
 struct MeshFile
 {
@@ -26,14 +42,18 @@ struct MeshFile
 };
 
 /// Reads a .ply (ASCII or binary, polygons and triangle strips), .obj, .stl (ASCII or binary) or
-/// .off file; the extension decides, in either case of letters. Polygons become fans. Text keeps
-/// double precision. Vertices and faces keep the file's order; nothing is welded or repaired.
-/// Guarantees: every coordinate is finite, every index names a vertex, there are 1 .. kMaxFaces
-/// faces. A file that is shorter than it says is refused; where the format can't say (OBJ, a last
-/// number without line end) there is a note, and for lines of an OBJ that aren't understood. A
-/// UTF-8 byte-order mark is passed over, but in an STL. Costs the file's bytes plus the mesh in
-/// memory; a count in a header allocates nothing that the file's size doesn't support.
-[[nodiscard]] Result<MeshFile, Refusal> read_mesh_file(const std::filesystem::path& path);
+/// .off file; `format` decides, or else the extension, in either case of letters. With a format
+/// the path may also be a pipe, a device or "-", which is standard input; they are read to their
+/// end. Polygons are cut into triangles. Text keeps double precision. Vertices and faces keep the
+/// file's order; nothing is welded or repaired. Guarantees: every coordinate is finite, every index
+/// names a vertex, there are 1 .. kMaxFaces faces. A file that is shorter than it says is refused,
+/// and in words for what it is if it is none of its format. There is a note where the format can't
+/// say so (OBJ, a last number without line end), for what is left out behind complete data, and for
+/// lines that aren't understood. A UTF-8 byte-order mark is passed over. Costs the file's bytes
+/// plus the mesh in memory; a count in a header allocates nothing that the file's size doesn't
+/// support.
+[[nodiscard]] Result<MeshFile, Refusal>
+read_mesh_file(const std::filesystem::path& path, std::optional<MeshFormat> format = std::nullopt);
 
 /// The same for callers that don't show notes.
 [[nodiscard]] Result<TriangleMesh, Refusal> read_mesh(const std::filesystem::path& path);

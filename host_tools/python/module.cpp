@@ -292,6 +292,10 @@ public:
         poses.kind = answers.kind.mutable_data();
         poses.nearest_m = answers.nearest_m.mutable_data();
         poses.rounds = rounds;
+        if (count > 0 && std::exchange(is_new_, false))
+        {
+            warn_of_insides(positions.data());
+        }
         check(
             [&](tactus_error* error)
             {
@@ -299,6 +303,23 @@ public:
                 return tactus_frame_run(frame_, &poses, error);
             });
         return answers;
+    }
+
+    /// Warns of tools that begin inside; refuses what tactus_frame_run() would refuse as well.
+    void warn_of_insides(const double* positions_m) const
+    {
+        std::vector<std::uint8_t> inside(tools_);
+        check([&](tactus_error* error)
+              { return tactus_frame_begins_inside(frame_, positions_m, inside.data(), error); });
+        for (std::size_t tool = 0; tool < inside.size(); ++tool)
+        {
+            const std::string text = "tool " + std::to_string(tool) +
+                                     " begins inside a closed object, which holds it from within";
+            if (inside[tool] != 0 && PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0)
+            {
+                throw py::error_already_set(); // Warnings may be errors.
+            }
+        }
     }
 
     void load()
@@ -355,6 +376,7 @@ private:
     std::size_t objects_;
     std::unique_ptr<std::byte, AlignedDelete> memory_;
     tactus_frame* frame_{nullptr};
+    bool is_new_{true}; ///< No frame was run.
 };
 
 /// Of N points.
@@ -419,8 +441,20 @@ std::array<double, 3> to_array(const double (&values)[3])
 PYBIND11_MODULE(tactus, module)
 {
     using namespace py::literals;
-    module.doc() = "Distances and forces of tools at triangle meshes, exact or with a proven "
-                   "bound. Units are SI; see docs/python.md.";
+    module.doc() =
+        R"(Distances and forces of tools at triangle meshes, exact or with a proven bound.
+Units are SI; docs/python.md tells more.
+
+>>> import tactus
+>>> model = tactus.Model("torus.spm")
+>>> probe = tactus.Tool(0.02, passes_through=True)
+>>> frame = tactus.Frame([model], [probe], [tactus.Object()])
+>>> answers = frame.run([[0.05, 0, 0.03], [0, 0, 0.2]], rounds=1000)
+>>> [int(kind) for kind in answers.kind[:, 0]] == [tactus.EXACT, tactus.DECIDED]
+True
+>>> round(float(answers.lower_m[0, 0]), 3)
+0.01
+)";
     if (tactus_abi() != TACTUS_ABI)
     {
         throw py::import_error("the module was made for another version of libtactus");
@@ -439,7 +473,12 @@ PYBIND11_MODULE(tactus, module)
     module.attr("OUTRUN") = TACTUS_OUTRUN;
     module.attr("HELD_BACK") = TACTUS_HELD_BACK;
 
-    py::class_<Model, std::shared_ptr<Model>>(module, "Model", "An .spm model; serves one Frame.")
+    py::class_<Model, std::shared_ptr<Model>>(module, "Model", R"(An .spm model; serves one Frame.
+
+>>> model = tactus.Model("torus.spm")
+>>> model.faces, model.is_closed, len(model.hash)
+(5000, True, 32)
+)")
         .def(py::init<const std::string&>(), "path"_a, "Opens a file.")
         .def_static(
             "find",
@@ -463,19 +502,33 @@ PYBIND11_MODULE(tactus, module)
         .def_readonly("upper_m", &Distances::upper_m)
         .def_readonly("side", &Distances::side)
         .def_readonly("nearest_m", &Distances::nearest_m);
-    py::class_<StaticModel>(module, "StaticModel", "All of a model, refined to its source mesh.")
+    py::class_<StaticModel>(module, "StaticModel", R"(All of a model, refined to its source mesh.
+
+>>> answer = tactus.StaticModel("torus.spm").distances([[0.05, 0, 0], [0, 0, 0]])
+>>> [int(side) for side in answer.side] == [tactus.INSIDE, tactus.OUTSIDE]
+True
+)")
         .def(py::init<const std::string&>(), "path"_a)
         .def("distances", &StaticModel::distances, "points_m"_a,
              "From N x 3 points of the source's frame to its surface.");
 
-    py::class_<tactus_tool>(module, "Tool", "What touches: everything within a radius of its core.")
+    py::class_<tactus_tool>(module, "Tool", R"(What touches: everything within a radius of its core.
+1e-6 to 1 m; one that passes through, which only measures, to 1000 m.
+
+>>> ball = tactus.Tool(0.002, stiffness_n_per_m=800)
+>>> pen = tactus.Tool(0.001, shape="capsule", half_m=[0, 0, 0.04])
+)")
         .def(py::init(&make_tool), "radius_m"_a, py::kw_only(), "shape"_a = "sphere",
              "half_m"_a = py::none(), "passes_through"_a = false, "wants_distance"_a = false,
              "stiffness_n_per_m"_a = py::none(), "force_max_n"_a = py::none(),
              "torque_max_nm"_a = py::none(), "speed_max_m_per_s"_a = py::none(),
              "smooth_m"_a = 0.0);
 
-    py::class_<tactus_object>(module, "Object", "Where a model stands in the world.")
+    py::class_<tactus_object>(module, "Object", R"(Where a model stands in the world.
+A scale of 0.001 to 1000, within 10,000 m; friction of 0 to 3, the dynamic at most the static one.
+
+>>> cup = tactus.Object(translation_m=[0.1, 0, 0], static_friction=0.4, dynamic_friction=0.3)
+)")
         .def(py::init(&make_object), "model"_a = 0, py::kw_only(), "rotation"_a = py::none(),
              "translation_m"_a = py::none(), "scale"_a = 1.0, "static_friction"_a = 0.0,
              "dynamic_friction"_a = 0.0);
@@ -490,7 +543,17 @@ PYBIND11_MODULE(tactus, module)
         .def_readonly("kind", &Answers::kind)
         .def_readonly("nearest_m", &Answers::nearest_m);
 
-    py::class_<Frame>(module, "Frame", "Tools at objects, in memory that never grows.")
+    py::class_<Frame>(module, "Frame", R"(Tools at objects, in memory that never grows.
+
+>>> frame = tactus.Frame([tactus.Model("torus.spm")], [tactus.Tool(0.002)], [tactus.Object()],
+...                      memory_mib=32, loads_whole=True)
+>>> while not frame.state()["is_whole"]:
+...     frame.load()
+...     answers = frame.run([[0.05, 0, 0.03]])
+>>> answers = frame.run([[0.05, 0, 0.03 - 1e-5 * i] for i in range(900)])
+>>> bool(answers.flags[-1] & tactus.IN_CONTACT), float(answers.force_n[-1, 2]) > 0
+(True, True)
+)")
         .def(py::init<std::vector<std::shared_ptr<Model>>, const std::vector<tactus_tool>&,
                       const std::vector<tactus_object>&, double, double, bool, double>(),
              "models"_a, "tools"_a, "objects"_a, py::kw_only(), "memory_mib"_a = 16.0,

@@ -2,11 +2,19 @@
 // Copyright the Tactus authors.
 #include "host_tools/scene/material_text.hpp"
 
-#include "host_tools/scene/material_ranges.hpp"
+#include "platform/base/nearest_word.hpp"
+#include "platform/base/number_form.hpp"
 #include "platform/base/numbers.hpp"
+#include "platform/base/printable.hpp"
+#include "transport/material_ranges.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace tactus
@@ -15,63 +23,117 @@ namespace tactus
 namespace
 {
 
-/// Numbers that are no stiffness, or out of range.
-std::optional<Material> checked(const Material& material)
+constexpr NumberRange kFriction{0.0, kRoughest};
+constexpr NumberRange kDamping{0.0, kMostDamped_n_s_per_m, "N s/m"};
+/// One a key of kMaterialKeys, in their order.
+constexpr std::array<NumberRange, kMaterialKeys.size()> kValueRanges{{
+    {kSoftest_n_per_m, kStiffest_n_per_m, "N/m"},
+    kFriction,
+    kFriction,
+    kDamping,
+    kDamping,
+    {0.0, kTextureSteepest* kTextureLengthMax_m, "m"},
+    {0.0, kTextureLengthMax_m, "m"},
+}};
+constexpr NumberForm kInOrder{"STIFFNESS[,STATIC[,DYNAMIC[,DAMPING]]]", {kValueRanges.data(), 4}};
+constexpr std::string_view kByName = "KEY=VALUE[,KEY=VALUE...]";
+
+std::size_t place_of(std::string_view key)
 {
-    return is_in_range(material) ? std::optional(material) : std::nullopt;
+    return static_cast<std::size_t>(std::ranges::find(kMaterialKeys, key, &MaterialKey::name) -
+                                    kMaterialKeys.begin());
 }
 
-std::optional<Material> parse_in_order(std::string_view text)
+/// What the numbers, each in its range, are not together; empty when they are a material.
+std::string fault_of(const Material& material)
 {
-    const std::optional<std::vector<double>> numbers = parse_numbers(text);
-    if (!numbers || numbers->size() > 4)
+    if (material.dynamic_friction > material.static_friction)
     {
-        return std::nullopt;
+        return fmt::format("the dynamic friction, {}, is more than the static one, {}",
+                           material.dynamic_friction, material.static_friction);
     }
-    return checked(material_of(
-        [&numbers](std::string_view name)
+    return is_in_range(material) ? ""
+                                 : "texture_height is at most 1/32 of texture_length, and that "
+                                   "0.0001 to 1 m";
+}
+
+Result<Material, Refusal> parse_in_order(std::string_view text)
+{
+    const auto numbers = read_numbers(text, kInOrder);
+    if (!numbers)
+    {
+        return numbers.error();
+    }
+    std::vector<double> n = numbers.value();
+    const Material material = material_of(
+        [&n](std::string_view name)
         {
-            const auto key = std::ranges::find(kMaterialKeys, name, &MaterialKey::name);
-            const auto place = static_cast<std::size_t>(key - kMaterialKeys.begin());
-            return place < numbers->size() ? std::optional((*numbers)[place]) : std::nullopt;
-        }));
+            const std::size_t place = place_of(name);
+            return place < n.size() ? std::optional(n[place]) : std::nullopt;
+        });
+    if (const std::string fault = fault_of(material); !fault.empty())
+    {
+        std::swap(n[1], n[2]); // The one fault that numbers in order can have together.
+        return not_of_form(text, kInOrder.text, fault, fmt::format("{}", fmt::join(n, ",")));
+    }
+    return material;
+}
+
+/// The refusal of a text in which a pair has no key.
+Refusal no_key(std::string_view text, std::string_view pair)
+{
+    const std::string_view key = pair.substr(0, pair.find('='));
+    std::vector<std::string_view> names;
+    for (const MaterialKey& each : kMaterialKeys)
+    {
+        names.push_back(each.name);
+    }
+    if (const std::string nearest = nearest_word(key, names);
+        key.size() < pair.size() && !nearest.empty())
+    {
+        std::string meant(text);
+        meant.replace(static_cast<std::size_t>(pair.data() - text.data()), key.size(), nearest);
+        return not_of_form(text, kByName, fmt::format("no key is called '{}'", printable(key)),
+                           parse_material_keys(meant) ? meant : nearest + "=");
+    }
+    return not_of_form(
+        text, kByName,
+        fmt::format("'{}' has no key of {}", printable(pair), fmt::join(names, ", ")));
 }
 
 } // namespace
 
-std::optional<Material> parse_material_keys(std::string_view text)
+Result<Material, Refusal> parse_material_keys(std::string_view text)
 {
-    std::array<std::optional<double>, kMaterialKeys.size()> said;
-    for (bool is_last = false; !is_last;)
+    std::array<std::optional<double>, kMaterialKeys.size()> given;
+    for (std::size_t at = 0; at <= text.size();)
     {
-        const std::size_t comma = text.find(',');
-        const std::string_view pair = text.substr(0, comma);
-        const std::size_t equals = pair.find('=');
-        const auto key =
-            std::ranges::find(kMaterialKeys, pair.substr(0, equals), &MaterialKey::name);
-        if (equals == std::string_view::npos || key == kMaterialKeys.end())
+        const std::size_t comma = std::min(text.find(',', at), text.size());
+        const std::string_view pair = text.substr(at, comma - at);
+        const std::size_t equals = std::min(pair.find('='), pair.size());
+        const std::string_view key = pair.substr(0, equals);
+        const std::size_t place = place_of(key);
+        if (equals == pair.size() || place == kMaterialKeys.size())
         {
-            return std::nullopt;
+            return no_key(text, pair);
         }
-        std::optional<double>& place = said[static_cast<std::size_t>(key - kMaterialKeys.begin())];
-        const auto value = parse_number(pair.substr(equals + 1));
-        if (!value || place)
+        const std::string_view value = pair.substr(equals + 1);
+        const std::string fault = given[place] ? fmt::format("{} is given twice", key)
+                                               : fault_of_number(key, value, kValueRanges[place]);
+        if (!fault.empty())
         {
-            return std::nullopt;
+            return not_of_form(text, kByName, fault);
         }
-        place = value;
-        is_last = comma == std::string_view::npos;
-        text.remove_prefix(is_last ? text.size() : comma + 1);
+        given[place] = parse_number(value);
+        at = comma + 1;
     }
-    return checked(material_of(
-        [&said](std::string_view name)
-        {
-            const auto key = std::ranges::find(kMaterialKeys, name, &MaterialKey::name);
-            return said[static_cast<std::size_t>(key - kMaterialKeys.begin())];
-        }));
+    const Material material =
+        material_of([&given](std::string_view name) { return given[place_of(name)]; });
+    const std::string fault = fault_of(material);
+    return fault.empty() ? Result<Material, Refusal>(material) : not_of_form(text, kByName, fault);
 }
 
-std::optional<Material> parse_material(std::string_view text)
+Result<Material, Refusal> parse_material(std::string_view text)
 {
     return text.find('=') == std::string_view::npos ? parse_in_order(text)
                                                     : parse_material_keys(text);

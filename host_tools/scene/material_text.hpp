@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/base/refusal.hpp"
+#include "rt_core/base/result.hpp"
 #include "rt_core/records/material.hpp"
 
 #include <array>
@@ -31,10 +33,6 @@ inline constexpr std::array<MaterialKey, 7> kMaterialKeys{{
 inline constexpr std::string_view kMaterialKeysForm =
     "any of stiffness=, static=, dynamic=, damping=, viscosity=, texture_height= and "
     "texture_length=, with commas between";
-/// What parse_material() takes; likewise.
-inline constexpr std::string_view kMaterialForm =
-    "STIFFNESS[,STATIC[,DYNAMIC[,DAMPING]]], or any of stiffness=, static=, dynamic=, damping=, "
-    "viscosity=, texture_height= and texture_length=";
 
 /// A material of the values that `value_of` has for the keys, a function of a name. What it has
 /// none for is as where nothing is said: the tool's stiffness, and nothing else to be felt; a
@@ -53,11 +51,10 @@ template <typename ValueOf>
     return material;
 }
 
-/// KEY=VALUE[,KEY=VALUE...]. None when the text is something else, names a key twice, or has a
-/// value out of its range.
-[[nodiscard]] std::optional<Material> parse_material_keys(std::string_view text);
+/// KEY=VALUE[,KEY=VALUE...], each key once, with values within the ranges of is_in_range().
+[[nodiscard]] Result<Material, Refusal> parse_material_keys(std::string_view text);
 
 /// Likewise, or STIFFNESS[,STATIC[,DYNAMIC[,DAMPING]]].
-[[nodiscard]] std::optional<Material> parse_material(std::string_view text);
+[[nodiscard]] Result<Material, Refusal> parse_material(std::string_view text);
 
 } // namespace tactus

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/scene/placed_models.hpp"
 
+#include "host_tools/scene/material_text.hpp"
 #include "host_tools/scene/scene.hpp"
 
 #include <fmt/format.h>
@@ -18,18 +19,16 @@ namespace
 nlohmann::ordered_json material_json(const Material& material)
 {
     nlohmann::ordered_json json = nlohmann::ordered_json::object();
-    if (material.stiffness_n_per_m != Material{}.stiffness_n_per_m)
+    for (const MaterialKey& key : kMaterialKeys)
     {
-        json["stiffness"] = material.stiffness_n_per_m;
-    }
-    if (material.static_friction != 0.0)
-    {
-        json["static"] = material.static_friction;
-        json["dynamic"] = material.dynamic_friction;
-    }
-    if (material.damping_n_s_per_m != 0.0)
-    {
-        json["damping"] = material.damping_n_s_per_m;
+        // Without a dynamic friction it would be read as the static one.
+        const bool is_said = key.value == &Material::dynamic_friction
+                                 ? material.static_friction != 0.0
+                                 : material.*key.value != Material{}.*key.value;
+        if (is_said)
+        {
+            json[std::string(key.name)] = material.*key.value;
+        }
     }
     return json;
 }
@@ -59,6 +58,7 @@ Result<PlacedModels, Refusal> read_placed_models(const std::filesystem::path& pa
         return scene.error();
     }
     PlacedModels placed;
+    placed.notes = scene.value().notes();
     std::map<std::string, std::size_t> known;
     for (const SceneObject& object : scene.value().objects())
     {
@@ -68,8 +68,8 @@ Result<PlacedModels, Refusal> read_placed_models(const std::filesystem::path& pa
         }
         if (object.model.empty())
         {
-            return Refusal{fmt::format("{}: {} names no model in extras.tactus; spm_build makes "
-                                       "models of a scene's meshes",
+            return Refusal{fmt::format("{0}: {1} names no model in extras.tactus; spm_build {0} -o "
+                                       "FOLDER makes models of a scene's meshes",
                                        path.string(), object.place)};
         }
         const auto [model, is_new] = known.try_emplace(object.model, placed.files.size());

@@ -29,7 +29,8 @@ struct PlacedModels
 {
     std::vector<std::filesystem::path> files; ///< Each once, in the order in which they come up.
     std::vector<PlacedModel>
-        objects; ///< 1 to kMaxObjects; those that hands go through aren't here.
+        objects;                    ///< 1 to kMaxObjects; those that hands go through aren't here.
+    std::vector<std::string> notes; ///< What else of a file that was read is not here.
 };
 
 /// Reads a scene file of which each touched object names its model, as spm_build writes them.

@@ -4,13 +4,14 @@
 
 #include "host_tools/scene/detail/gltf_mesh.hpp"
 #include "host_tools/scene/detail/gltf_nodes.hpp"
+#include "host_tools/scene/left_out.hpp"
 #include "host_tools/scene/unique_names.hpp"
 #include "rt_core/base/assert.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <iterator>
 #include <new>
 #include <utility>
 
@@ -77,41 +78,48 @@ Scene& Scene::operator=(Scene&&) noexcept = default;
 
 Result<Scene, Refusal> Scene::open(const std::filesystem::path& path)
 {
-    return refusing(path,
-                    [&]
-                    {
-                        Scene scene;
-                        scene.path_ = path;
-                        scene.reader_ = std::make_unique<Reader>(path);
-                        scene.objects_ = detail::read_objects(scene.reader_->file);
-                        if (std::ranges::none_of(scene.objects_, &SceneObject::is_touched))
-                        {
-                            throw detail::SceneFault{
-                                scene.objects_.empty()
-                                    ? "its scene has no node with a mesh or a model"
-                                    : "every object says that it isn't touched"};
-                        }
-                        return scene;
-                    });
+    return refusing(
+        path,
+        [&]
+        {
+            Scene scene;
+            scene.path_ = path;
+            scene.reader_ = std::make_unique<Reader>(path);
+            LeftOut left_out;
+            scene.objects_ = detail::read_objects(scene.reader_->file, left_out);
+            scene.notes_ = left_out.notes();
+            if (std::ranges::none_of(scene.objects_, &SceneObject::is_touched))
+            {
+                throw detail::SceneFault{
+                    !scene.objects_.empty() ? "every object says that it isn't touched"
+                    : scene.notes_.empty()  ? "its scene has no node with a mesh or a model"
+                                            : "nothing is left to touch: " + scene.notes_.front()};
+            }
+            std::ranges::copy(scene.reader_->file.notes(), std::back_inserter(scene.notes_));
+            return scene;
+        });
 }
 
 std::string Scene::mesh_name(const MeshUse& use) const
 {
-    const auto mesh = reader_->file.root().at("meshes").at(use.mesh);
-    const auto name = mesh.find("name");
-    const bool has_name = name && name->json().is_string() && !name->text().empty();
-    return (has_name ? plain_name(name->text()) : "mesh" + std::to_string(use.mesh));
+    const std::string name = reader_->file.root().at("meshes").at(use.mesh).name();
+    return name.empty() ? "mesh" + std::to_string(use.mesh) : plain_name(name);
 }
 
-Result<TriangleMesh, Refusal> Scene::read_mesh(const MeshUse& use)
+std::string Scene::mesh_place(const MeshUse& use) const
+{
+    return reader_->file.described("meshes", use.mesh);
+}
+
+Result<SceneMesh, Refusal> Scene::read_mesh(const MeshUse& use)
 {
     return refusing(path_,
                     [&]
                     {
-                        TriangleMesh mesh = reader_->meshes.read(use.mesh);
+                        SceneMesh mesh = reader_->meshes.read(use.mesh);
                         if (use.is_mirrored)
                         {
-                            mirror(mesh);
+                            mirror(mesh.mesh);
                         }
                         return mesh;
                     });

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "host_tools/mesh/triangle_mesh.hpp"
+#include "host_tools/scene/scene_mesh.hpp"
 #include "host_tools/scene/scene_object.hpp"
 #include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
@@ -25,8 +25,8 @@ class Scene
 {
 public:
     /// Reads .gltf and .glb: 1 to kMaxObjects objects, one of them touched at least. Costs the
-    /// file's bytes and some 100 bytes for each value of its JSON, which are bounded, too; no
-    /// buffer is read yet.
+    /// file's bytes and some 100 bytes for each value of its JSON, which are bounded, too; of the
+    /// buffers only those are read that say where instances stand.
     [[nodiscard]] static Result<Scene, Refusal> open(const std::filesystem::path& path);
 
     ~Scene();
@@ -36,12 +36,19 @@ public:
     /// In the order of the file's nodes.
     [[nodiscard]] const std::vector<SceneObject>& objects() const noexcept { return objects_; }
 
+    /// What of the file is left out or can't be told, one line each: hidden nodes, and what
+    /// extensions add, move or hide.
+    [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
+
     /// What a modeller called the mesh, as a valid name; not unique. "mesh7" where it has none.
     [[nodiscard]] std::string mesh_name(const MeshUse& use) const;
 
-    /// The mesh of an object, in the object's frame: 1 to kMaxFaces faces, finite coordinates,
+    /// The same for messages: mesh 'arm' (meshes[7]).
+    [[nodiscard]] std::string mesh_place(const MeshUse& use) const;
+
+    /// The mesh of an object, in the object's frame: at most kMaxFaces faces, finite coordinates,
     /// indices in range. Buffers that it lies in are read and kept; nothing is welded or repaired.
-    [[nodiscard]] Result<TriangleMesh, Refusal> read_mesh(const MeshUse& use);
+    [[nodiscard]] Result<SceneMesh, Refusal> read_mesh(const MeshUse& use);
 
 private:
     struct Reader;
@@ -51,6 +58,7 @@ private:
     std::filesystem::path path_;
     std::unique_ptr<Reader> reader_;
     std::vector<SceneObject> objects_;
+    std::vector<std::string> notes_;
 };
 
 } // namespace tactus

@@ -2,9 +2,11 @@
 // Copyright the Tactus authors.
 #include "host_tools/scene/unique_names.hpp"
 
+#include "platform/base/utf8.hpp"
 #include "rt_core/base/assert.hpp"
 #include "transport/model_name.hpp"
 
+#include <algorithm>
 #include <map>
 #include <set>
 
@@ -13,10 +15,14 @@ namespace tactus
 
 std::string plain_name(std::string_view given)
 {
-    std::string name(given.substr(0, kMaxNameBytes));
-    for (char& c : name)
+    std::string name;
+    std::string_view rest = whole_characters(given, kMaxNameBytes);
+    while (!rest.empty())
     {
-        c = is_valid_name({&c, 1}) ? c : '_';
+        const std::string_view character =
+            rest.substr(0, std::max<std::size_t>(character_bytes(rest), 1));
+        name += is_name_character(character) ? character : "_";
+        rest.remove_prefix(character.size());
     }
     return name;
 }
@@ -34,7 +40,7 @@ std::vector<std::string> unique_names(std::span<const std::string> names)
         for (++number; number > 1; ++number)
         {
             const std::string ending = "-" + std::to_string(number);
-            own = name.substr(0, kMaxNameBytes - ending.size()) + ending;
+            own = std::string(whole_characters(name, kMaxNameBytes - ending.size())) + ending;
             if (taken.insert(own).second)
             {
                 break;

@@ -10,8 +10,9 @@
 namespace tactus
 {
 
-/// What a modeller calls a thing, as a name that the wire and every file system take: each byte
-/// that is none of A-Z a-z 0-9 . _ - becomes '_', and it is cut at 63 bytes. Empty stays empty.
+/// What a modeller calls a thing, as a name that the wire and every file system take: each
+/// character that no valid name has becomes '_', a blank, too, and it is cut to at most 63 bytes.
+/// Empty stays empty.
 [[nodiscard]] std::string plain_name(std::string_view given);
 
 /// Makes names different, in their order: the first of equal ones keeps the name, each further one

@@ -31,6 +31,9 @@ public:
     /// The parent gets the vertex's planes for its own, as in an Absorption.
     void replace(std::uint32_t vertex, std::uint32_t parent) noexcept;
 
+    /// A hole has closed at the vertex: it is inside now, and free to move anywhere.
+    void release(std::uint32_t vertex) noexcept { slot_plus_one_[vertex] = 0; }
+
 private:
     /// Upper triangle of the symmetric 4x4 matrix sum of w p p^T, p = (normal, offset).
     using Quadric = std::array<double, 10>;

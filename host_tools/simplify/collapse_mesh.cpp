@@ -218,6 +218,28 @@ bool CollapseMesh::joins_rim(const Star& star, std::span<const std::uint32_t> ri
                        });
 }
 
+/// On a border the star has one face of A and B, and its ring ends at a vertex c:
+///
+///       w0--u              the hole (v, c, u) has three edges if the border goes on from u to c
+///         \ | \  G           in a face G. With v on u, the last fan face and G share u-c.
+///   A, fan  v--c
+///
+std::uint32_t CollapseMesh::face_across_hole(const Star& star) const noexcept
+{
+    if (star.has_face(0) == star.has_face(1))
+    {
+        return kNoFace;
+    }
+    const std::uint32_t end = star.open_end();
+    const std::uint32_t from = star.has_face(0) ? star.parent : end;
+    const std::uint32_t to = star.has_face(0) ? end : star.parent;
+    const std::uint32_t face = first_face_[from]; // The first of the fan: its edge is a border.
+    const bool is_three = corners_[face][next_corner(corner_of(face, from))] == to;
+    // Fewer than three faces round a vertex inside are two that lie back to back.
+    const bool is_round = degree_[end] >= 3 && degree_[star.parent] + star.fan_size >= 4;
+    return is_three && is_round ? face : kNoFace;
+}
+
 bool CollapseMesh::is_legal(const Star& star) const noexcept
 {
     const std::uint32_t removed = (star.has_face(0) ? 1U : 0U) + (star.has_face(1) ? 1U : 0U);
@@ -226,8 +248,9 @@ bool CollapseMesh::is_legal(const Star& star) const noexcept
     {
         return false;
     }
-    const std::uint32_t first = star.has_face(0) ? 1 : 0;
-    const std::uint32_t end = star.fan_size + (star.has_face(1) ? 0 : 1);
+    const bool closes_hole = face_across_hole(star) != kNoFace;
+    const std::uint32_t first = star.has_face(0) || closes_hole ? 1 : 0;
+    const std::uint32_t end = star.fan_size + (star.has_face(1) || closes_hole ? 0 : 1);
     if (joins_rim(star, std::span{star.rim}.subspan(first, end - first)))
     {
         return false;
@@ -273,6 +296,13 @@ void CollapseMesh::bypass(std::uint32_t removed, std::uint32_t vertex, const Sta
 void CollapseMesh::collapse(const Star& star) noexcept
 {
     TACTUS_ASSERT(star.fan_size >= 1 && star.fan_size <= kMaxFanFaces);
+    if (const std::uint32_t across = face_across_hole(star); across != kNoFace)
+    {
+        const std::uint32_t end = star.open_end();
+        const std::uint32_t fan = star.faces[star.has_face(0) ? 1 + star.fan_size : 2];
+        neighbours_[fan][corner_of(fan, star.has_face(0) ? end : star.vertex)] = across;
+        neighbours_[across][corner_of(across, star.has_face(0) ? star.parent : end)] = fan;
+    }
     for (const std::uint32_t side : {0U, 1U})
     {
         if (star.has_face(side))

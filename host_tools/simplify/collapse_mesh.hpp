@@ -51,6 +51,11 @@ struct Star
     {
         return faces[side] != Collapse::kNoFace;
     }
+    /// The border vertex at the fan's other end, of a star with one of A and B.
+    [[nodiscard]] std::uint32_t open_end() const noexcept
+    {
+        return rim[has_face(0) ? fan_size : 0];
+    }
 };
 
 /// The star of a ring's collapse at one place.
@@ -63,6 +68,7 @@ struct Star
 /// ends of the edge have no common neighbour but the one or two across the edge (a border counts as
 /// joined to a vertex at infinity, so a border vertex moves along its border only), and a vertex
 /// with three faces isn't removed where its fourth face exists already: a tetrahedron stays.
+/// A hole of three edges counts as a face that is removed with the edge, so it closes.
 class CollapseMesh
 {
 public:
@@ -110,6 +116,10 @@ public:
 
     /// Fills `ring`; false when the vertex is removed or no star of it fits the star cap.
     [[nodiscard]] bool gather_ring(std::uint32_t vertex, VertexRing& ring) const noexcept;
+
+    /// The face with which the fan's open end will share an edge, where the collapse closes a hole
+    /// of three edges; else kNoFace.
+    [[nodiscard]] std::uint32_t face_across_hole(const Star& star) const noexcept;
 
     /// True when the collapse keeps the mesh manifold and the parent's degree within kMaxDegree.
     /// Costs a walk round a few neighbours; of two vertices the one of smaller degree.

@@ -334,8 +334,14 @@ void Simplifier::finish(const Absorption& absorption)
 void Simplifier::execute(const Star& star)
 {
     note(star);
+    const bool closes_hole = current_.face_across_hole(star) != Collapse::kNoFace;
     current_.collapse(star);
     boundary_.collapse(star.vertex, star.parent);
+    if (closes_hole)
+    {
+        boundary_.release(star.parent);
+        boundary_.release(star.open_end());
+    }
     candidates_[star.vertex].parent = Candidate::kNone;
     mark_stale(star);
 }

@@ -56,13 +56,15 @@ struct SimplifyOptions
     std::function<bool(std::size_t faces_left, std::size_t faces_total)> progress;
 };
 
-/// Collapses edges in rounds, and lets components that can't shrink vanish into others, until at
-/// most `base_faces` faces are left or nothing is legal: more than asked for only the caller can
-/// refuse. The certificate holds in every dependency-closed cut: each original surface point is
-/// within the error of one of its faces.
-/// Same input, same result, for any number of threads. Costs 10 to 20 us and about 300 B a face.
-/// Refuses, by name and place, a mesh that breaks the contract of QuantisedMesh (unused vertices
-/// and coordinates beyond 24 bits included), an option out of range, and a cancelled run.
+/// Collapses edges in rounds, closes holes that have shrunk to three edges, and lets components
+/// that can't shrink vanish into others, until at most `base_faces` faces are left or nothing is
+/// legal: more than asked for only the caller can refuse. A coarse face may so lie where the source
+/// has nothing: it can only lower a distance's lower bound, since upper bounds come from corners
+/// and faces of the source. The certificate holds in every dependency-closed cut: each original
+/// surface point is within the error of one of its faces. Same input, same result, for any number
+/// of threads. Costs 10 to 20 us and about 300 B a face. Refuses, by name and place, a mesh that
+/// breaks the contract of QuantisedMesh (unused vertices and coordinates beyond 24 bits included),
+/// an option out of range, and a cancelled run.
 [[nodiscard]] Result<Simplification, Refusal> simplify(const QuantisedMesh& mesh,
                                                        const SimplifyOptions& options);
 

@@ -2,17 +2,21 @@
 // Copyright the Tactus authors.
 #include "host_tools/spm_build/build_model.hpp"
 
-#include "host_tools/cli/progress.hpp"
 #include "host_tools/encode/write_spm.hpp"
 #include "host_tools/mesh/prepare.hpp"
+#include "host_tools/simplify/handle_cuts.hpp"
 #include "host_tools/simplify/sampled_distance.hpp"
 #include "host_tools/simplify/simplify.hpp"
+#include "host_tools/spm_build/memory_need.hpp"
+#include "platform/base/counted.hpp"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <chrono>
 #include <cmath>
 #include <sys/resource.h>
+#include <utility>
 
 namespace tactus::spm_build
 {
@@ -23,17 +27,60 @@ namespace
 /// Enough that their largest distance varies by a few percent from seed to seed; 0.1 s.
 constexpr std::uint32_t kDistanceSamples = 20'000;
 constexpr std::uint64_t kSampleSeed = 1;
+/// Each pass cuts the handles whose rings don't touch; a mesh that needs more has too many.
+constexpr int kCutPassesMax = 16;
 
-Result<Simplification, Refusal> simplify_with_progress(const QuantisedMesh& mesh,
-                                                       const ModelOptions& options)
+/// Shares of the work: until a mesh is on its grid, and until it is simplified. Measured.
+constexpr double kPrepared = 0.06;
+constexpr double kSimplified = 0.85;
+
+void tell(const ModelOptions& options, double from, double to, double share)
 {
-    Progress progress("spm_build", "simplify", "faces");
+    if (options.progress)
+    {
+        options.progress(from + (to - from) * share);
+    }
+}
+
+/// A model that is fitted to a size has no neighbours to share a grid with.
+PrepareOptions preparation(const ModelOptions& options, const GridChoice& grid)
+{
+    PrepareOptions preparing;
+    preparing.metres_per_unit = options.metres_per_unit;
+    preparing.fit_diagonal_m = options.fit_diagonal_m;
+    preparing.position_bits = options.position_bits.value_or(kMinPositionBits);
+    preparing.adds_bits = !options.position_bits;
+    preparing.keeps_winding = options.keeps_winding;
+    preparing.is_centered = options.is_centered;
+    preparing.stitches = true;
+    preparing.beside_m = grid.beside_m;
+    preparing.moved_m = grid.moved_m;
+    if (!options.fit_diagonal_m)
+    {
+        preparing.grid_place_m = grid.place_m;
+        preparing.quantum_max_m = options.position_bits ? std::nullopt : grid.quantum_max_m;
+    }
+    return preparing;
+}
+
+std::optional<Refusal> check_mesh_memory(const TriangleMesh& mesh, const std::string& source,
+                                         const ModelOptions& options)
+{
+    return check_memory(fmt::format("{}: a mesh of {} faces", source, mesh.faces.size()),
+                        needed_mib(mesh.faces.size()), options.memory_mib);
+}
+
+/// `from`: the share of the work that is done before.
+Result<Simplification, Refusal> simplify_with_progress(const QuantisedMesh& mesh,
+                                                       const ModelOptions& options, double from)
+{
     SimplifyOptions simplify_options;
     simplify_options.base_faces = options.base_faces;
     simplify_options.threads = options.threads;
     simplify_options.progress = [&](std::size_t left, std::size_t total)
     {
-        progress.update(total - left, total);
+        tell(options, from, kSimplified,
+             static_cast<double>(total - left) / static_cast<double>(total));
         return true;
     };
     auto simplification = simplify(mesh, simplify_options);
@@ -42,6 +89,76 @@ Result<Simplification, Refusal> simplify_with_progress(const QuantisedMesh& mesh
         return Refusal{simplification.error().text};
     }
     return std::move(simplification).value();
+}
+
+/// Simplifies the mesh, and with its handles cut open where they leave too large a base. Whether it
+/// is closed doesn't change by that: the borders of a cut lie in one place.
+Result<Simplification, Refusal> simplify_all(QuantisedMesh& mesh, const ModelOptions& options,
+                                             std::vector<std::string>& notes)
+{
+    auto simplification = simplify_with_progress(mesh, options, kPrepared);
+    const bool is_closed = simplification && simplification.value().is_closed;
+    const std::size_t faces_max = std::max(kGrownBaseFaces, options.base_faces);
+    std::size_t handles = 0;
+    std::size_t copies = 0;
+    for (int pass = 0; pass < kCutPassesMax && simplification &&
+                       simplification.value().base_faces.size() > faces_max;
+         ++pass)
+    {
+        const std::vector<std::vector<MeshEdge>> rings =
+            find_handle_rings(mesh, simplification.value());
+        if (rings.empty())
+        {
+            break;
+        }
+        std::vector<MeshEdge> edges;
+        for (const std::vector<MeshEdge>& ring : rings)
+        {
+            edges.insert(edges.end(), ring.begin(), ring.end());
+        }
+        handles += rings.size();
+        copies += cut_open(mesh, edges);
+        simplification = simplify_with_progress(mesh, options, kSimplified);
+    }
+    if (simplification && handles > 0)
+    {
+        simplification.value().is_closed = is_closed;
+        notes.push_back(
+            fmt::format("{} cut open, without a gap, at {} vertices that are there twice "
+                        "now: the base mesh would have more than {} faces",
+                        counted(handles, "handle"), copies, faces_max));
+    }
+    return simplification;
+}
+
+/// A base is kept in memory as a whole, so one that is larger than asked for is told.
+void note_base(std::size_t faces, std::uint32_t wanted, std::vector<std::string>& notes)
+{
+    if (faces > wanted)
+    {
+        notes.push_back(fmt::format("the base mesh has {} faces, {} were wanted: pieces, holes or "
+                                    "handles keep it from shrinking",
+                                    faces, wanted));
+    }
+}
+
+/// How many bits a mesh would take by itself is told where too few are asked for.
+void note_few_bits(const TriangleMesh& mesh, ModelOptions options, double quantum_m,
+                   std::vector<std::string>& notes)
+{
+    if (!options.position_bits)
+    {
+        return;
+    }
+    const unsigned asked = std::exchange(options.position_bits, std::nullopt).value();
+    const auto step_m = grid_step(mesh, preparation(options, {}));
+    if (step_m && step_m.value() < quantum_m)
+    {
+        notes.push_back(fmt::format("{} bits a coordinate, as asked for, make steps of {:.3g} m, "
+                                    "which change the mesh's shape; without --position-bits they "
+                                    "would be {:.3g} m",
+                                    asked, quantum_m, step_m.value()));
+    }
 }
 
 std::uint64_t peak_memory_bytes()
@@ -53,36 +170,58 @@ std::uint64_t peak_memory_bytes()
 
 } // namespace
 
+Result<double, Refusal> grid_step_of(const TriangleMesh& mesh, const std::string& source,
+                                     const ModelOptions& options, const GridChoice& grid)
+{
+    if (auto refused = check_mesh_memory(mesh, source, options))
+    {
+        return *refused;
+    }
+    auto step_m = grid_step(mesh, preparation(options, grid));
+    return step_m ? step_m : Refusal{source + ": " + step_m.error().text};
+}
+
 Result<Outcome, Refusal> build_model(const TriangleMesh& mesh, const std::string& source,
                                      const std::filesystem::path& path, const ModelOptions& options,
-                                     std::vector<std::string>& notes)
+                                     const GridChoice& grid, std::vector<std::string>& notes)
 {
     const auto start = std::chrono::steady_clock::now();
-    const auto prepared = prepare_mesh(mesh, {options.metres_per_unit, options.fit_diagonal_m,
-                                              options.position_bits, options.keeps_winding});
+    if (auto refused = check_mesh_memory(mesh, source, options))
+    {
+        return *refused;
+    }
+    auto prepared = prepare_mesh(mesh, preparation(options, grid));
     if (!prepared)
     {
         return Refusal{source + ": " + prepared.error().text};
     }
     notes.insert(notes.end(), prepared.value().notes.begin(), prepared.value().notes.end());
-    const auto simplification = simplify_with_progress(prepared.value().mesh, options);
+    note_few_bits(mesh, options, prepared.value().quantum_m, notes);
+    tell(options, 0.0, kPrepared, 1.0);
+    const auto simplification = simplify_all(prepared.value().mesh, options, notes);
     if (!simplification)
     {
         return Refusal{source + ": " + simplification.error().text};
     }
-    const auto written = write_spm(
-        path, prepared.value(), simplification.value(),
-        {options.position_bits, options.base_faces, options.region_size_m, options.threads});
+    const auto written =
+        write_spm(path, prepared.value(), simplification.value(),
+                  {prepared.value().position_bits, options.base_faces, options.region_size_m,
+                   options.threads, [&options](std::size_t done, std::size_t total) {
+                       tell(options, kSimplified, 1.0,
+                            static_cast<double>(done) / static_cast<double>(total));
+                   }});
     if (!written)
     {
         return Refusal{written.error().text};
     }
+    note_base(simplification.value().base_faces.size(), options.base_faces, notes);
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
     const double sampled_quanta = sampled_distance_to_base(
         prepared.value().mesh, simplification.value(), kDistanceSamples, kSampleSeed);
     return Outcome{written.value(),
                    prepared.value().diagonal_m,
                    prepared.value().metres_per_unit,
+                   prepared.value().origin_m,
                    sampled_quanta * prepared.value().quantum_m,
                    spent.count(),
                    peak_memory_bytes()};

@@ -2,17 +2,18 @@
 // Copyright the Tactus authors.
 #include "host_tools/spm_build/build_scene.hpp"
 
+#include "host_tools/cli/progress.hpp"
+#include "host_tools/scene/common_places.hpp"
 #include "host_tools/scene/placed_models.hpp"
 #include "host_tools/scene/scene.hpp"
-#include "host_tools/scene/unique_names.hpp"
+#include "host_tools/spm_build/scene_plan.hpp"
 #include "platform/base/atomic_file.hpp"
-#include "transport/content_hash.hpp"
 
 #include <fmt/format.h>
 
 #include <map>
+#include <numeric>
 #include <optional>
-#include <set>
 #include <span>
 #include <system_error>
 #include <unistd.h>
@@ -27,66 +28,6 @@ namespace
 namespace fs = std::filesystem;
 
 constexpr const char* kSceneFile = "scene.gltf";
-
-/// Which meshes become models, and who shows them.
-struct Plan
-{
-    std::vector<MeshUse> meshes;    ///< One a model.
-    std::vector<std::string> names; ///< Likewise.
-    PlacedModels scene;
-};
-
-ContentHash hash_of(const TriangleMesh& mesh)
-{
-    const std::array<ContentHash, 2> parts{content_hash(std::as_bytes(std::span(mesh.positions))),
-                                           content_hash(std::as_bytes(std::span(mesh.faces)))};
-    return content_hash(std::as_bytes(std::span(parts)));
-}
-
-/// Reads every mesh once; equal ones become one model.
-Result<Plan, Refusal> plan_models(Scene& scene, const fs::path& input)
-{
-    Plan plan;
-    std::map<MeshUse, std::size_t> by_use;
-    std::map<ContentHash, std::size_t> by_content;
-    for (const SceneObject& object : scene.objects())
-    {
-        if (!object.is_touched)
-        {
-            continue;
-        }
-        if (!object.mesh)
-        {
-            return Refusal{fmt::format("{}: {} names its model already; only meshes are encoded",
-                                       input.string(), object.place)};
-        }
-        if (!by_use.contains(*object.mesh))
-        {
-            const auto mesh = scene.read_mesh(*object.mesh);
-            if (!mesh)
-            {
-                return mesh.error();
-            }
-            const auto [model, is_new] =
-                by_content.try_emplace(hash_of(mesh.value()), plan.meshes.size());
-            by_use[*object.mesh] = model->second;
-            if (is_new)
-            {
-                plan.meshes.push_back(*object.mesh);
-                plan.names.push_back(plain_name(scene.mesh_name(*object.mesh) +
-                                                (object.mesh->is_mirrored ? "-mirrored" : "")));
-            }
-        }
-        plan.scene.objects.push_back(
-            {object.name, by_use.at(*object.mesh), object.pose, object.material});
-    }
-    plan.names = unique_names(plan.names);
-    for (const std::string& name : plan.names)
-    {
-        plan.scene.files.emplace_back(name + ".spm");
-    }
-    return plan;
-}
 
 /// The folder that gets the result, and one in it for what is not finished. Removes what it made,
 /// unless all is done.
@@ -163,19 +104,30 @@ private:
     bool has_partial_{false};
 };
 
-Result<SceneModel, Refusal> build_one(Scene& scene, const Plan& plan, std::size_t number,
-                                      const fs::path& input, const fs::path& folder,
-                                      const ModelOptions& options)
+/// What models of each group have in common, by the group's first model.
+using GroupPlaces = std::map<std::size_t, CommonPlaces>;
+
+Result<SceneModel, Refusal> build_one(Scene& scene, const ScenePlan& plan, std::size_t number,
+                                      GroupPlaces& places, const fs::path& input,
+                                      const fs::path& folder, const ModelOptions& options)
 {
-    const auto mesh = scene.read_mesh(plan.meshes[number]);
+    auto mesh = scene.read_mesh(plan.meshes[number]);
     if (!mesh)
     {
         return mesh.error();
     }
+    GridChoice grid = plan.grids[number];
+    if (grid.quantum_max_m)
+    {
+        CommonPlaces& common =
+            places.try_emplace(plan.groups[number], *grid.quantum_max_m).first->second;
+        grid.moved_m =
+            common.settle(mesh.value().mesh, Vec3(grid.place_m.data()), boxes_beside(plan, number));
+        grid.beside_m = vertices_beside(plan, number);
+    }
     SceneModel model{.name = plan.names[number], .outcome = {}, .notes = {}};
-    auto outcome =
-        build_model(mesh.value(), fmt::format("{}: mesh of {}", input.string(), model.name),
-                    folder / plan.scene.files[number], options, model.notes);
+    auto outcome = build_model(mesh.value().mesh, source_of(input, model.name),
+                               folder / plan.scene.files[number], options, grid, model.notes);
     if (!outcome)
     {
         return outcome.error();
@@ -184,24 +136,39 @@ Result<SceneModel, Refusal> build_one(Scene& scene, const Plan& plan, std::size_
     return model;
 }
 
-Result<SceneOutcome, Refusal> build_planned(Scene& scene, const Plan& plan, const fs::path& input,
-                                            const fs::path& folder, const ModelOptions& options)
+Result<SceneOutcome, Refusal> build_planned(Scene& scene, const ScenePlan& plan,
+                                            const fs::path& input, const fs::path& folder,
+                                            const ModelOptions& options)
 {
     auto target = TargetFolder::create(folder);
     if (!target)
     {
         return target.error();
     }
-    SceneOutcome outcome{
-        .file = folder / kSceneFile, .objects = plan.scene.objects.size(), .models = {}};
+    SceneOutcome outcome{.file = folder / kSceneFile,
+                         .objects = plan.scene.objects.size(),
+                         .models = {},
+                         .notes = plan.notes};
     auto file = AtomicFile::create(outcome.file); // Before the work: is there leave to write?
     if (!file)
     {
         return file.error();
     }
+    Progress progress("spm_build", "build", "faces");
+    const std::size_t all = std::accumulate(plan.faces.begin(), plan.faces.end(), std::size_t{0});
+    std::size_t built = 0;
+    GroupPlaces places;
     for (std::size_t i = 0; i < plan.meshes.size(); ++i)
     {
-        auto model = build_one(scene, plan, i, input, target.value().partial(), options);
+        ModelOptions with_progress = options;
+        with_progress.progress = [&](double share)
+        {
+            const double of_this = share * static_cast<double>(plan.faces[i]);
+            progress.update(built + static_cast<std::size_t>(of_this), all);
+        };
+        auto model =
+            build_one(scene, plan, i, places, input, target.value().partial(), with_progress);
+        built += plan.faces[i];
         if (!model)
         {
             return model.error();
@@ -231,17 +198,27 @@ Result<SceneOutcome, Refusal> build_planned(Scene& scene, const Plan& plan, cons
 } // namespace
 
 Result<SceneOutcome, Refusal> build_scene(const fs::path& input, const fs::path& folder,
-                                          const ModelOptions& options)
+                                          const ModelOptions& options, const Placing& placing)
 {
     auto scene = Scene::open(input);
     if (!scene)
     {
         return scene.error();
     }
-    const auto plan = plan_models(scene.value(), input);
+    auto plan = plan_models(scene.value(), input);
     if (!plan)
     {
         return plan.error();
+    }
+    // Placing moves and scales all objects and their grids alike, so models don't depend on it.
+    if (const auto refused = choose_grids(scene.value(), plan.value(), input, options))
+    {
+        return *refused;
+    }
+    if (auto refused = place_objects(placing, plan.value().boxes, plan.value().scene.objects,
+                                     plan.value().notes))
+    {
+        return *refused;
     }
     return build_planned(scene.value(), plan.value(), input, folder, options);
 }

@@ -1,21 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "host_tools/cli/command_line.hpp"
+#include "host_tools/cli/progress.hpp"
 #include "host_tools/cli/run_program.hpp"
 #include "host_tools/mesh/prepare.hpp"
 #include "host_tools/mesh/read_mesh.hpp"
 #include "host_tools/shapes/shapes.hpp"
 #include "host_tools/spm_build/build_model.hpp"
 #include "host_tools/spm_build/build_scene.hpp"
+#include "host_tools/spm_build/memory_need.hpp"
 #include "host_tools/spm_build/options.hpp"
+#include "host_tools/spm_build/placing.hpp"
+#include "host_tools/spm_build/size_notes.hpp"
 #include "platform/base/atomic_file.hpp"
 #include "platform/base/program_log.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
+#include <iterator>
 #include <string>
 #include <variant>
 #include <vector>
@@ -30,10 +37,23 @@ Result<TriangleMesh, Refusal> load_source(const Options& options, std::vector<st
 {
     if (options.shape.empty())
     {
-        auto file = read_mesh_file(options.input);
+        std::error_code unknown; // Of a pipe; what it holds is read and then seen.
+        const std::uintmax_t bytes = std::filesystem::file_size(options.input, unknown);
+        if (auto refused = unknown ? std::nullopt
+                                   : check_memory(options.input + ": a file of " +
+                                                      std::to_string(bytes) + " bytes",
+                                                  bytes >> 20U, options.model.memory_mib))
+        {
+            return *refused;
+        }
+        auto file = read_mesh_file(options.input, options.format);
         if (!file)
         {
-            return Refusal{file.error().text};
+            std::error_code code;
+            const bool is_pipe = !options.format && std::filesystem::exists(options.input, code) &&
+                                 !std::filesystem::is_regular_file(options.input, code) &&
+                                 !std::filesystem::is_directory(options.input, code);
+            return Refusal{file.error().text + (is_pipe ? "; with --format a pipe is read" : "")};
         }
         notes = file.value().notes;
         return std::move(file.value().mesh);
@@ -59,48 +79,33 @@ Result<Outcome, Refusal> build(const Options& options, std::vector<std::string>&
         return *refused;
     }
     const auto start = std::chrono::steady_clock::now();
-    const auto mesh = load_source(options, notes);
+    auto mesh = load_source(options, notes);
     if (!mesh)
     {
         return mesh.error();
     }
+    if (options.placing.is_y_up)
+    {
+        turn_y_up(mesh.value());
+    }
     const std::chrono::duration<double> loading = std::chrono::steady_clock::now() - start;
-    auto outcome =
-        build_model(mesh.value(), options.source(), options.output, options.model, notes);
+    Progress progress("spm_build", "build", "faces");
+    ModelOptions model = options.model;
+    model.progress = [&](double share)
+    {
+        const std::size_t faces = mesh.value().faces.size();
+        progress.update(static_cast<std::size_t>(share * static_cast<double>(faces)), faces);
+    };
+    auto outcome = build_model(mesh.value(), options.source(), options.output, model, {}, notes);
     if (outcome)
     {
         outcome.value().seconds += loading.count();
+        const ModelPlace place{outcome.value().diagonal_m, options.model.metres_per_unit,
+                               outcome.value().low_corner_m};
+        std::ranges::move(size_notes(mesh.value(), place, options.model.fit_diagonal_m.has_value()),
+                          std::back_inserter(notes));
     }
     return outcome;
-}
-
-/// What is meant to be touched is seldom smaller or larger.
-constexpr double kLeastUsual_m = 1e-3;
-constexpr double kMostUsual_m = 10.0;
-
-/// A note when the model's size is hardly meant, with the unit that would mend it.
-void note_size(double diagonal_m, double unit_m, std::vector<std::string>& notes)
-{
-    if (diagonal_m >= kLeastUsual_m && diagonal_m <= kMostUsual_m)
-    {
-        return;
-    }
-    for (const char* unit : {"mm", "cm", "m", "in"})
-    {
-        const double other_m = diagonal_m / unit_m * *metres_per_unit(unit);
-        if (other_m >= kLeastUsual_m && other_m <= kMostUsual_m)
-        {
-            notes.push_back(
-                fmt::format("the model is {:.6g} m across; is the mesh in {}? Then give "
-                            "--unit {}",
-                            diagonal_m, unit, unit));
-            return;
-        }
-    }
-    notes.push_back(
-        fmt::format("the model is {:.6g} m across; if that is not its size, give --unit "
-                    "or --fit-diag",
-                    diagonal_m));
 }
 
 void print_summary(const Options& options, const Outcome& outcome)
@@ -158,10 +163,14 @@ void print_scene_summary(const Options& options, const SceneOutcome& outcome)
 
 int make_scene(const CommandLine& line, const Options& options)
 {
-    const auto outcome = build_scene(options.input, options.output, options.model);
+    const auto outcome = build_scene(options.input, options.output, options.model, options.placing);
     if (!outcome)
     {
         return line.fail(outcome.error().text);
+    }
+    for (const std::string& note : outcome.value().notes)
+    {
+        log_message(LogLevel::info, "spm_build", "note: " + note);
     }
     for (const SceneModel& model : outcome.value().models)
     {
@@ -195,10 +204,6 @@ int run(int argc, char** argv)
     {
         return line.fail(outcome.error().text);
     }
-    if (!options.model.fit_diagonal_m)
-    {
-        note_size(outcome.value().diagonal_m, options.model.metres_per_unit, notes);
-    }
     for (const std::string& note : notes)
     {
         log_message(LogLevel::info, "spm_build", "note: " + note);
@@ -213,6 +218,6 @@ int run(int argc, char** argv)
 
 int main(int argc, char** argv)
 {
-    return tactus::run_program("spm_build", "about 500 bytes a face are needed",
+    return tactus::run_program("spm_build", "about 480 bytes a face are needed",
                                [&] { return tactus::spm_build::run(argc, argv); });
 }

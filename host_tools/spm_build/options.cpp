@@ -18,12 +18,20 @@ namespace tactus::spm_build
 namespace
 {
 
-void declare_options(CommandLine& line, Options& options)
+/// Options that are kept as words.
+struct Words
+{
+    std::string format;
+    std::string up{"z"};
+};
+
+void declare_options(CommandLine& line, Options& options, Words& words)
 {
     line.add_version("spm_build " TACTUS_VERSION);
     line.begin_task("From what to where", "spm_build part.stl --unit mm -o part.spm");
     const auto input = line.add_option(
-        "IN", options.input, "Mesh to read: .ply, .obj, .stl or .off; or scene: .gltf or .glb");
+        "IN", options.input,
+        "Mesh to read: .ply, .obj, .stl or .off, or - for standard input; or scene: .gltf or .glb");
     line.add_option("-o,--output", options.output,
                     "Model to write (.spm); of a scene the folder for its "
                     "models and scene.gltf")
@@ -37,25 +45,43 @@ void declare_options(CommandLine& line, Options& options)
                            .number_between(kMinShapeFaces, kMaxShapeFaces)
                            .needs(shape);
     shape.needs(faces);
-    line.begin_task("Size", "spm_build scan.ply --fit-diag 0.2 -o scan.spm");
+    line.add_option("--format", words.format,
+                    "Format of a mesh whose name doesn't tell it; with it, IN may be a pipe")
+        .one_of({"ply", "obj", "stl", "off"})
+        .excludes(shape);
+    line.begin_task("Size and place", "spm_build terrain.ply --fit-diag 0.2 --center -o t.spm");
     const auto unit =
         line.add_option("--unit", options.unit, "Unit of the mesh's coordinates")
             .check([](const std::string& name)
                    { return metres_per_unit(name) ? "" : "'" + name + "' is not mm, cm, m or in"; },
                    "mm|cm|m|in")
             .show_default();
+    const auto scale = line.add_option("--scale", options.placing.scale,
+                                       "Make the mesh, or all of a scene, so many times as large")
+                           .number_between(1e-9, 1e9)
+                           .show_default();
     line.add_option("--fit-diag", options.model.fit_diagonal_m,
                     "Scale the model to this bounding-box diagonal, in metres, whatever its size")
         .number_between(kMinDiagonal_m, kMaxDiagonal_m)
-        .excludes(unit);
+        .excludes(unit)
+        .excludes(scale);
+    line.add_option("--up", words.up,
+                    "Axis of the mesh or scene that points up; y is turned to z, which is up for "
+                    "devices")
+        .one_of({"y", "z"})
+        .show_default();
+    line.add_flag("--center", options.placing.is_centered,
+                  "Move the middle of the box round the mesh, or all of a scene, to the origin");
     line.begin_task("Inside and outside", "spm_build part.stl --keep-winding -o part.spm");
     line.add_flag("--keep-winding", options.model.keeps_winding,
                   "Leave closed pieces as they are that look inside out");
     line.begin_task("Encoding", "spm_build part.stl --unit mm --position-bits 20 -o part.spm");
-    line.add_option("--position-bits", options.model.position_bits, "Bits of a coordinate")
-        .number_between(kMinPositionBits, kMaxPositionBits)
-        .show_default();
-    line.add_option("--base-faces", options.model.base_faces, "Faces of the coarsest mesh, at most")
+    line.add_option("--position-bits", options.model.position_bits,
+                    "Bits of a coordinate [16, more where the mesh has finer detail]")
+        .number_between(kMinPositionBits, kMaxPositionBits);
+    line.add_option("--base-faces", options.model.base_faces,
+                    "Faces of the coarsest mesh, at most; more where pieces, holes or handles keep "
+                    "it from shrinking")
         .number_between(1, kMaxBaseFaces)
         .show_default();
     line.add_option("--region-size", options.model.region_size_m,
@@ -64,6 +90,9 @@ void declare_options(CommandLine& line, Options& options)
     line.add_option("--threads", options.model.threads, "Threads to work with")
         .number_between(1, 1024)
         .show_default();
+    line.add_option("--memory-mib", options.model.memory_mib,
+                    "Refuse what needs more memory [what is available]")
+        .integer_between(std::uint32_t{1}, std::uint32_t{1} << 30U);
     line.add_flag("--json", options.json, "Print the figures as one JSON object");
     line.add_log_options();
 }
@@ -74,6 +103,10 @@ std::string check_together(const CommandLine& line, const Options& options)
     if (options.input.empty() && options.shape.empty())
     {
         return "give a mesh to read, or --shape and --faces; see --help";
+    }
+    if (options.input == "-" && !options.format)
+    {
+        return "--format is required: standard input has no name that ends in its format";
     }
     if (!options.is_of_scene())
     {
@@ -86,7 +119,7 @@ std::string check_together(const CommandLine& line, const Options& options)
     {
         if (line.is_given(name))
         {
-            return fmt::format("{}: a glTF scene is in metres", name);
+            return fmt::format("{}: a glTF scene is in metres; --scale sizes it", name);
         }
     }
     return options.output.ends_with(".spm")
@@ -98,22 +131,30 @@ std::string check_together(const CommandLine& line, const Options& options)
 
 bool Options::is_of_scene() const
 {
-    return has_scene_extension(input);
+    return !format && has_scene_extension(input);
 }
 
 std::variant<Options, int> parse_options(CommandLine& line, int argc, char** argv)
 {
     Options options;
-    declare_options(line, options);
+    Words words;
+    declare_options(line, options, words);
     if (const auto code = line.parse(argc, argv))
     {
         return *code;
     }
+    options.format = mesh_format(words.format);
     if (const std::string fault = check_together(line, options); !fault.empty())
     {
         return line.fail(fault, kExitUsage);
     }
     options.model.metres_per_unit = *metres_per_unit(options.unit);
+    if (!options.is_of_scene()) // Of a scene the objects are placed, not the models.
+    {
+        options.model.metres_per_unit *= options.placing.scale;
+        options.model.is_centered = options.placing.is_centered;
+    }
+    options.placing.is_y_up = words.up == "y";
     return options;
 }
 

@@ -2,9 +2,12 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "host_tools/mesh/read_mesh.hpp"
 #include "host_tools/spm_build/build_model.hpp"
+#include "host_tools/spm_build/placing.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -21,10 +24,12 @@ struct Options
 {
     std::string input;
     std::string output;
+    std::optional<MeshFormat> format; ///< The input's; without it the name tells.
     std::string shape;
     std::uint32_t shape_faces{0};
     std::string unit{"m"};
     ModelOptions model;
+    Placing placing;
     bool json{false};
 
     /// What the model is made of, as messages name it.

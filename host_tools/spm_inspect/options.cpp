@@ -23,7 +23,7 @@ void declare_options(CommandLine& line, Options& options)
         "List the records that split vertices: whose vertex from which, how deep, where");
     line.add_option("--distances", options.points,
                     "Print, instead, how far the points of this file are from the surface: lines "
-                    "x y z in metres and the source's frame")
+                    "x y z in metres and the source's frame; - is standard input")
         .excludes(regions)
         .excludes(records);
     options.extractor.declare_options(line);

@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #include "host_tools/spm_inspect/point_distances.hpp"
 
+#include "host_tools/mesh/detail/read_input.hpp"
 #include "host_tools/mesh/detail/text_cursor.hpp"
-#include "platform/base/read_file.hpp"
 #include "transport/store/static_model.hpp"
 
 #include <fmt/format.h>
@@ -63,7 +63,7 @@ nlohmann::json as_list(std::span<const PointDistance> answers)
 Result<std::vector<Vec3>, Refusal> parse_points(std::string_view text)
 {
     std::vector<Vec3> points_m;
-    detail::TextCursor cursor(text);
+    detail::TextCursor cursor(detail::without_byte_order_mark(text));
     do
     {
         std::string_view token = cursor.next_token_in_line();
@@ -96,15 +96,16 @@ Result<std::vector<Vec3>, Refusal> parse_points(std::string_view text)
 std::optional<std::string> print_distances(const std::string& model_file,
                                            const std::string& point_file, bool as_json)
 {
-    const auto text = read_file(point_file);
+    const std::string name = detail::input_name(point_file);
+    const auto text = detail::read_input(point_file);
     if (!text)
     {
-        return fmt::format("{}: {}", point_file, text.error().text);
+        return fmt::format("{}: {}", name, text.error().text);
     }
     const auto points_m = parse_points(text.value());
     if (!points_m)
     {
-        return fmt::format("{}: {}", point_file, points_m.error().text);
+        return fmt::format("{}: {}", name, points_m.error().text);
     }
     const auto model = StaticModel::open(model_file);
     if (!model)
@@ -114,7 +115,7 @@ std::optional<std::string> print_distances(const std::string& model_file,
     std::vector<PointDistance> answers(points_m.value().size());
     if (const auto asked = model.value()->distances(points_m.value(), answers); !asked)
     {
-        return fmt::format("{}: {}", point_file, asked.error().text);
+        return fmt::format("{}: {}", name, asked.error().text);
     }
     fmt::print("{}", as_json ? nlohmann::json{{"distances", as_list(answers)}}.dump(2) + "\n"
                              : as_text(answers));

@@ -10,6 +10,7 @@
 #include "host_tools/spm_publish/pose_script.hpp"
 #include "host_tools/spm_publish/serving_report.hpp"
 #include "host_tools/spm_publish/watch.hpp"
+#include "platform/base/counted.hpp"
 #include "platform/base/refusal.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/dds/dds_host.hpp"
@@ -62,6 +63,10 @@ Result<std::vector<Prop>, Refusal> open_scene(Options& options)
     if (!scene)
     {
         return scene.error();
+    }
+    for (const std::string& note : scene.value().notes)
+    {
+        log_message(LogLevel::info, "spm_publish", "note: " + note);
     }
     std::vector<Prop> props;
     for (const PlacedModel& object : scene.value().objects)
@@ -133,7 +138,7 @@ void print_models(ServingReport& report, dds::DdsHost& host, const std::string& 
     }
     if (const std::size_t objects = host.objects().objects(); objects > 0)
     {
-        report.print_line(fmt::format("showing {} objects{}", objects,
+        report.print_line(fmt::format("showing {}{}", counted(objects, "object"),
                                       scene.empty() ? "" : fmt::format(" as scene '{}'", scene)));
     }
     report.print_line(fmt::format("ready on DDS domain {}; end with Ctrl-C", domain));
@@ -141,20 +146,20 @@ void print_models(ServingReport& report, dds::DdsHost& host, const std::string& 
 
 /// Nothing when no pose file is given.
 Result<std::vector<PoseLine>, Refusal> read_poses(const Options& options,
-                                                  const std::vector<std::string>& names)
+                                                  const std::vector<ScriptedObject>& objects)
 {
     if (options.poses_path.empty())
     {
         return std::vector<PoseLine>{};
     }
-    auto lines = read_pose_file(options.poses_path, names);
+    auto lines = read_pose_file(options.poses_path, objects);
     if (lines && options.poses_loop && lines.value().back().time_s == 0.0)
     {
         return Refusal{options.poses_path + ": --poses-loop needs a last line with a time "
                                             "above 0 s"};
     }
     return lines && options.poses_rate_hz
-               ? interpolated(lines.value(), names.size(), *options.poses_rate_hz)
+               ? interpolated(lines.value(), objects.size(), *options.poses_rate_hz)
                : std::move(lines);
 }
 
@@ -349,9 +354,11 @@ int run(int argc, char** argv)
     {
         return line.fail(models.error().text);
     }
-    std::vector<std::string> objects;
-    std::ranges::transform(props, std::back_inserter(objects),
-                           [](const Prop& prop) { return prop.shown.name; });
+    std::vector<ScriptedObject> objects;
+    for (const Prop& prop : props)
+    {
+        objects.push_back({prop.shown.name, prop.shown.pose.scale});
+    }
     auto poses = read_poses(options, objects);
     if (!poses)
     {

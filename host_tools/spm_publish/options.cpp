@@ -54,8 +54,9 @@ void declare_options(CommandLine& line, Options& options)
     line.add_option("--poses", options.poses_path,
                     fmt::format("Move objects as this text file says, in real time: lines {} in "
                                 "order of time, in s and m, with a scene's object or the name of a "
-                                "model and a unit quaternion; '{}' in place of the numbers removes "
-                                "one, '{}' and then {} gives it another material; # begins a "
+                                "model and a unit quaternion; without SCALE the object keeps the "
+                                "one it has; '{}' in place of the numbers removes one, '{}' and "
+                                "then {} gives it another material; # begins a "
                                 "comment",
                                 kPoseLineForm, kGoneWord, kMaterialWord, kMaterialKeysForm));
     line.add_flag("--poses-loop", options.poses_loop,
@@ -79,8 +80,16 @@ std::string check_files(const Options& options)
     }
     if (options.has_scene && (options.files.size() > 1 || !options.names.empty()))
     {
-        return fmt::format("{}: a scene is served alone, its models under the names of their files",
-                           options.names.empty() ? "FILE" : "--name");
+        const auto other = std::ranges::find_if_not(options.files, has_scene_extension);
+        return options.names.empty() && other != options.files.end()
+                   ? fmt::format("FILE: a scene is served alone; another one serves {0}: "
+                                 "'spm_publish {0}{1}'",
+                                 printable(*other),
+                                 options.domain == 0 ? ""
+                                                     : fmt::format(" --domain {}", options.domain))
+                   : fmt::format("{}: a scene is served alone, its models under the names of their "
+                                 "files",
+                                 options.names.empty() ? "FILE" : "--name");
     }
     return "";
 }
@@ -119,8 +128,7 @@ std::string check_together(Options& options)
     }
     if (!options.scene.empty() && !is_valid_name(options.scene))
     {
-        return fmt::format("--scene: '{}' is not 1 to 63 characters of A-Z a-z 0-9 . _ -",
-                           printable(options.scene));
+        return fmt::format("--scene: '{}' is not {}", printable(options.scene), kNameForm);
     }
     if (options.poses_path.empty() && (options.poses_loop || options.poses_rate_hz))
     {
@@ -148,9 +156,9 @@ Result<std::vector<std::string>, Refusal> choose_names(std::span<const std::stri
         const std::string name = is_given ? given[i] : std::filesystem::path(file).stem().string();
         if (!is_valid_name(name))
         {
-            return Refusal{fmt::format("{} '{}' is not 1 to 63 characters of A-Z a-z 0-9 . _ -{}",
-                                       is_given ? "--name" : "the stem of '" + file + "',",
-                                       printable(name), is_given ? "" : "; give one with --name")};
+            return Refusal{fmt::format(
+                "{} '{}' is not {}{}", is_given ? "--name" : "the stem of '" + file + "',",
+                printable(name), kNameForm, is_given ? "" : "; give one with --name")};
         }
         for (std::size_t other = 0; other < i; ++other)
         {

@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #include "host_tools/spm_publish/pose_script.hpp"
 
-#include "host_tools/scene/material_ranges.hpp"
 #include "host_tools/scene/material_text.hpp"
 #include "platform/base/numbers.hpp"
 #include "platform/base/printable.hpp"
@@ -61,10 +60,11 @@ std::string refusal_text(PoseRefusal refusal)
     }
 }
 
-/// The first three of eight numbers are the translation, then the rotation, then the scale.
-Result<Pose, Refusal> parse_pose(std::span<const std::string_view> fields)
+/// The first three of eight numbers are the translation, then the rotation, then the scale, which
+/// may be left out.
+Result<Pose, Refusal> parse_pose(std::span<const std::string_view> fields, double scale)
 {
-    std::array<double, 8> numbers{0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0};
+    std::array<double, 8> numbers{0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, scale};
     for (std::size_t i = 0; i < fields.size(); ++i)
     {
         const std::optional<double> number = parse_number(fields[i]);
@@ -93,28 +93,29 @@ Pose pose_between(const Pose& from, const Pose& to, double share)
     {
         pose.translation_m[axis] += share * (to.translation_m[axis] - from.translation_m[axis]);
     }
-    const auto& [ax, ay, az, aw] = from.rotation;
-    const auto& [bx, by, bz, bw] = to.rotation;
-    const Eigen::Quaterniond turned = Eigen::Quaterniond(aw, ax, ay, az)
-                                          .slerp(share, Eigen::Quaterniond(bw, bx, by, bz))
-                                          .normalized();
-    pose.rotation = {turned.x(), turned.y(), turned.z(), turned.w()};
+    Eigen::Map<Eigen::Quaterniond>(pose.rotation.data()) =
+        Eigen::Quaterniond(from.rotation.data())
+            .slerp(share, Eigen::Quaterniond(to.rotation.data()))
+            .normalized();
     pose.scale += share * (to.scale - from.scale);
     return pose;
 }
 
-Result<Material, Refusal> parse_feel(std::string_view text)
+/// The first of them, for who typed another.
+std::string names_of(std::span<const ScriptedObject> objects)
 {
-    const std::optional<Material> material = parse_material_keys(text);
-    if (!material)
+    constexpr std::size_t kNamed = 8;
+    std::string names;
+    for (const ScriptedObject& object : objects.first(std::min(kNamed, objects.size())))
     {
-        return Refusal{fmt::format("material '{}' is not {}, with {}", printable(text),
-                                   kMaterialKeysForm, kMaterialRanges)};
+        names += (names.empty() ? "" : ", ") + object.name;
     }
-    return *material;
+    return objects.size() > kNamed ? fmt::format("{} and {} more", names, objects.size() - kNamed)
+                                   : names;
 }
 
-Result<PoseLine, Refusal> parse_line(std::string_view text, std::span<const std::string> names)
+/// `objects` have the scales that they have by then.
+Result<PoseLine, Refusal> parse_line(std::string_view text, std::span<ScriptedObject> objects)
 {
     const std::vector<std::string_view> fields = fields_of(text);
     const bool goes = fields.size() == 3 && fields[2] == kGoneWord;
@@ -129,29 +130,31 @@ Result<PoseLine, Refusal> parse_line(std::string_view text, std::span<const std:
         return Refusal{
             fmt::format("time '{}' is not 0 to {} s", printable(fields[0]), kPoseTimeMax_s)};
     }
-    const auto name = std::ranges::find(names, fields[1]);
-    if (name == names.end())
+    const auto object = std::ranges::find(objects, fields[1], &ScriptedObject::name);
+    if (object == objects.end())
     {
-        return Refusal{fmt::format("no object is called '{}'", printable(fields[1]))};
+        return Refusal{fmt::format("no object is called '{}'; there are {}", printable(fields[1]),
+                                   names_of(objects))};
     }
-    PoseLine line{*time_s, static_cast<std::size_t>(name - names.begin()), {}, {}};
+    PoseLine line{*time_s, static_cast<std::size_t>(object - objects.begin()), {}, {}};
     if (feels)
     {
-        auto material = parse_feel(fields[3]);
+        const auto material = parse_material_keys(fields[3]);
         if (!material)
         {
-            return material.error();
+            return Refusal{"material " + material.error().text};
         }
         line.material = material.value();
     }
     else if (!goes)
     {
-        auto pose = parse_pose(std::span(fields).subspan(2));
+        auto pose = parse_pose(std::span(fields).subspan(2), object->scale);
         if (!pose)
         {
             return pose.error();
         }
         line.pose = pose.value();
+        object->scale = line.pose->scale;
     }
     return line;
 }
@@ -159,8 +162,9 @@ Result<PoseLine, Refusal> parse_line(std::string_view text, std::span<const std:
 } // namespace
 
 Result<std::vector<PoseLine>, Refusal> parse_pose_lines(std::string_view text,
-                                                        std::span<const std::string> names)
+                                                        std::span<const ScriptedObject> objects)
 {
+    std::vector<ScriptedObject> by_then(objects.begin(), objects.end());
     std::vector<PoseLine> lines;
     for (std::size_t number = 1; !text.empty(); ++number)
     {
@@ -172,7 +176,7 @@ Result<std::vector<PoseLine>, Refusal> parse_pose_lines(std::string_view text,
         {
             continue;
         }
-        auto parsed = parse_line(line, names);
+        auto parsed = parse_line(line, by_then);
         if (!parsed)
         {
             return Refusal{fmt::format("line {}: {}", number, parsed.error().text)};
@@ -193,7 +197,7 @@ Result<std::vector<PoseLine>, Refusal> parse_pose_lines(std::string_view text,
 }
 
 Result<std::vector<PoseLine>, Refusal> read_pose_file(const std::filesystem::path& path,
-                                                      std::span<const std::string> names)
+                                                      std::span<const ScriptedObject> objects)
 {
     const auto refuse = [&](const std::string& reason)
     { return Refusal{fmt::format("{}: {}", path.string(), reason)}; };
@@ -217,7 +221,7 @@ Result<std::vector<PoseLine>, Refusal> read_pose_file(const std::filesystem::pat
     {
         return refuse("cannot be read");
     }
-    auto lines = parse_pose_lines(text, names);
+    auto lines = parse_pose_lines(text, objects);
     if (!lines)
     {
         return refuse(lines.error().text);

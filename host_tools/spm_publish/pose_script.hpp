@@ -34,20 +34,27 @@ inline constexpr double kPoseTimeMax_s = 1e6;
 struct PoseLine
 {
     double time_s{0.0};               ///< From the start of play.
-    std::size_t object{0};            ///< Of the names.
+    std::size_t object{0};            ///< Index among the objects that lines may name.
     std::optional<Pose> pose;         ///< None: it is gone from then on, or
     std::optional<Material> material; ///< feels so, and stands where it stood.
 };
 
+/// An object that lines may name.
+struct ScriptedObject
+{
+    std::string name;
+    double scale{1.0}; ///< Which it has until a line says another.
+};
+
 /// Reads a pose file's text: lines of these forms in the order of their times; empty ones and
-/// those that begin with # are passed over. `names` are the objects'. The error begins with
-/// the line's number.
+/// those that begin with # are passed over. A pose without SCALE has that of the object's line
+/// before, or its first. The error begins with the line's number.
 [[nodiscard]] Result<std::vector<PoseLine>, Refusal>
-parse_pose_lines(std::string_view text, std::span<const std::string> names);
+parse_pose_lines(std::string_view text, std::span<const ScriptedObject> objects);
 
 /// The same for a file; the error begins with its name.
 [[nodiscard]] Result<std::vector<PoseLine>, Refusal>
-read_pose_file(const std::filesystem::path& path, std::span<const std::string> names);
+read_pose_file(const std::filesystem::path& path, std::span<const ScriptedObject> objects);
 
 /// Most lines that `interpolated` makes.
 inline constexpr std::size_t kInterpolatedLinesMax = 2'000'000;

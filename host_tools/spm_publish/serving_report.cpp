@@ -3,6 +3,7 @@
 #include "host_tools/spm_publish/serving_report.hpp"
 
 #include "host_tools/cli/print_out.hpp"
+#include "platform/base/counted.hpp"
 
 #include <fmt/format.h>
 
@@ -73,9 +74,9 @@ std::string ServingReport::rates(const dds::DdsHost& host, double seconds) const
     const auto counters = host.counters();
     const auto pieces = static_cast<double>(counters.pieces_sent - shown_.pieces_sent);
     const auto bytes = static_cast<double>(counters.bytes_sent - shown_.bytes_sent);
-    return fmt::format("{} controllers, {:.0f} chunks/s, {:.1f} KB/s, {} chunks in all",
-                       host.subscribers().size(), pieces / seconds, bytes / seconds / 1e3,
-                       counters.pieces_sent);
+    return fmt::format("{}, {:.0f} chunks/s, {:.1f} KB/s, {} in all",
+                       counted(host.subscribers().size(), "controller"), pieces / seconds,
+                       bytes / seconds / 1e3, counted(counters.pieces_sent, "chunk"));
 }
 
 void ServingReport::clear_line()

@@ -182,6 +182,7 @@ std::uint64_t hash_of(const std::vector<DoorEvent>& events)
 struct Film::Maker
 {
     Film& film;
+    const RecordedSetup& setup;
     Frame* frame{nullptr};         ///< From the replay's start on.
     std::vector<PageMeta> slots{}; ///< As of the frame before.
 
@@ -287,8 +288,10 @@ private:
         if (object.is_here)
         {
             const std::uint32_t model = object.spec.model.value;
-            seen = SeenObject{{0, which, which, model, pose_of(object.pose)},
-                              film.models_[model].hash};
+            seen =
+                SeenObject{{0, which, which, model, pose_of(object.pose)},
+                           film.models_[model].hash,
+                           setup.name_of({RecordedName::Kind::object, which, object.generation})};
         }
         if (seen || film.objects_.contains(which))
         {
@@ -319,14 +322,15 @@ Result<std::unique_ptr<Film>, Refusal> Film::develop(const std::string& path, st
     }
     for (std::uint32_t i = 0; i < setup.models.size(); ++i)
     {
-        const std::string name = fmt::format("model-{}", i);
+        const std::string told = setup.name_of({RecordedName::Kind::model, i});
+        const std::string name = told.empty() ? fmt::format("model-{}", i) : told;
         const RecordedPieces::Source source{recording, i};
         const auto model = std::make_shared<RecordedPieces>(source, name);
         film->models_.push_back({name, model->hash(), model->header().fields().revision});
         put_on(shelf, model, source);
     }
     film->model_states_.resize(setup.models.size());
-    Maker maker{*film};
+    Maker maker{*film, setup};
     ReplayWatch watch;
     watch.made = [&](Frame& frame) { maker.frame = &frame; };
     watch.ends = [&](std::uint64_t frame, const RecordedFrame& given, const FrameOutput& returned)
@@ -339,7 +343,7 @@ Result<std::unique_ptr<Film>, Refusal> Film::develop(const std::string& path, st
         return Refusal{path + ": " + (report ? "it has no frame" : report.error().text)};
     }
     film->note_ =
-        report.value().difference || recording->has_failed() || recording->lost_from() != kNoFrame
+        report.value().difference || recording->has_failed() || !recording->missing().empty()
             ? replay_line(*recording, report.value())
             : "";
     return film;

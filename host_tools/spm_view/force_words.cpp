@@ -84,7 +84,11 @@ std::string force_words(const FrontTool& tool, const ToolTelemetry& telemetry,
     case SafetyState::force:
         break;
     }
-    return telemetry.in_contact ? "on" : "on: no contact, so none is due";
+    const char* const inside = "the tool began inside a closed object, which holds it from within";
+    return telemetry.in_contact
+               ? (tool.begins_inside ? fmt::format("on: {}", inside) : "on")
+               : fmt::format("on: no contact, so none is due{}{}", tool.begins_inside ? "; " : "",
+                             tool.begins_inside ? inside : "");
 }
 
 } // namespace tactus::view

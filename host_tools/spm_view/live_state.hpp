@@ -22,11 +22,12 @@ namespace tactus::view
 
 using FrontPointer = std::shared_ptr<const dds::SeenFront>;
 
-/// An object where it was last seen, with its model's name.
+/// An object where it was last seen.
 struct SeenObject
 {
     FrontObject object;
     ContentHash model{};
+    std::string name{}; ///< Its own, of a recording; may be empty.
 
     bool operator==(const SeenObject&) const = default;
 };

@@ -3,6 +3,7 @@
 #include "host_tools/spm_view/options.hpp"
 
 #include "host_tools/cli/command_line.hpp"
+#include "platform/base/printable.hpp"
 #include "transport/dds/domain.hpp"
 
 #include <fmt/format.h>
@@ -54,6 +55,15 @@ std::variant<Options, int> parse_options(CommandLine& line, int argc, char** arg
         return line.fail(fmt::format("--replay: {} recordings, two at most are compared",
                                      options.recordings.size()),
                          kExitUsage);
+    }
+    for (const std::string& file : options.files)
+    {
+        if (file.ends_with(".rec"))
+        {
+            return line.fail(
+                fmt::format("FILE: '{0}' is a recording: --replay {0} shows it", printable(file)),
+                kExitUsage);
+        }
     }
     return options;
 }

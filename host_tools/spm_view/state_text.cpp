@@ -167,6 +167,7 @@ Json objects_json(const LiveController& controller)
         objects.push_back({{"host", fmt::format("{:016x}", seen.object.host_epoch)},
                            {"object", seen.object.object},
                            {"number", seen.object.number},
+                           {"name", seen.name},
                            {"model", hash_text(seen.model)},
                            {"rotation", seen.object.pose.rotation},
                            {"translation_m", seen.object.pose.translation_m},
@@ -245,8 +246,12 @@ std::string waits_for(const LiveController* controller, const ModelShelf& shelf,
 {
     if (controller == nullptr)
     {
-        return chosen.empty() ? fmt::format("a controller on DDS domain {}: start hrtc", domain_id)
-                              : "the chosen controller, which has gone";
+        return chosen.empty()
+                   ? fmt::format("a controller on DDS domain {0}: 'hrtc --model NAME --domain "
+                                 "{0}', or 'hrtc FILE --domain {0}', which without "
+                                 "--domain shows itself to no viewer",
+                                 domain_id)
+                   : "the chosen controller, which has gone";
     }
     if (controller->front == nullptr)
     {

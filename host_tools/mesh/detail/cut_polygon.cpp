@@ -2,6 +2,10 @@
 // Copyright the Tactus authors.
 #include "host_tools/mesh/detail/cut_polygon.hpp"
 
+#include "rt_core/math/vec3.hpp"
+
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -21,9 +25,9 @@
 /// Why the result is right once no triangle turns the other way: the polygon is the boundary of the
 /// triangles together, so a point lies in as many of them as the polygon winds round it.
 ///
-/// Places are taken in the plane across the polygon's normal, whose largest component is left out,
-/// as parts of the polygon's extent. A place within the tolerance of a line lies on it. The first
-/// try has a tolerance that keeps corners of a straight side out of slivers, the second has none.
+/// Places are those in the plane across the polygon's normal, as parts of its extent. A place
+/// within the tolerance of a line lies on it. The first try has a tolerance that keeps corners of a
+/// straight side out of slivers, the second has none.
 namespace tactus::detail
 {
 
@@ -36,48 +40,36 @@ using Place = std::array<double, 2>;
 constexpr double kStraight = 1e-7;
 constexpr double kRounding = 1e-14;
 
-/// The polygon in its plane, counter-clockwise; empty when it has no area.
+/// The polygon seen along its normal, counter-clockwise; empty when it has no area.
 std::vector<Place> flatten(std::span<const std::array<double, 3>> corners)
 {
-    std::array<double, 3> extent_low = corners[0];
-    std::array<double, 3> extent_high = corners[0];
-    for (const auto& c : corners)
+    Eigen::AlignedBox3d box;
+    for (const auto& corner : corners)
     {
-        for (std::size_t axis = 0; axis < 3; ++axis)
-        {
-            extent_low[axis] = std::min(extent_low[axis], c[axis]);
-            extent_high[axis] = std::max(extent_high[axis], c[axis]);
-        }
+        box.extend(Vec3(corner.data()));
     }
-    const double extent = std::max({extent_high[0] - extent_low[0], extent_high[1] - extent_low[1],
-                                    extent_high[2] - extent_low[2]});
-    const auto scaled = [&](std::size_t i, std::size_t axis)
-    { return (corners[i % corners.size()][axis] - extent_low[axis]) / extent; };
-    std::array<double, 3> normal{}; // Newell's: twice the areas of the projections.
-    for (std::size_t i = 0; i < corners.size(); ++i)
+    const double extent = box.sizes().maxCoeff();
+    std::vector<Vec3> scaled;
+    for (const auto& corner : corners)
     {
-        for (std::size_t axis = 0; axis < 3; ++axis)
-        {
-            const std::size_t u = (axis + 1) % 3;
-            const std::size_t v = (axis + 2) % 3;
-            normal[axis] += scaled(i, u) * scaled(i + 1, v) - scaled(i + 1, u) * scaled(i, v);
-        }
+        scaled.emplace_back((Vec3(corner.data()) - box.min()) / extent);
     }
-    std::size_t out = 0;
-    for (std::size_t axis = 1; axis < 3; ++axis)
+    Vec3 normal(0.0, 0.0, 0.0); // Newell's: twice the areas of the projections.
+    for (std::size_t i = 0; i < scaled.size(); ++i)
     {
-        out = std::abs(normal[axis]) > std::abs(normal[out]) ? axis : out;
+        normal += scaled[i].cross(scaled[(i + 1) % scaled.size()]);
     }
-    if (!(std::abs(normal[out]) > kRounding)) // Not a number, too, as of an extent of 0.
+    if (!(normal.norm() > kRounding)) // Not a number, too: an extent of 0.
     {
         return {};
     }
-    const std::size_t u = normal[out] > 0.0 ? (out + 1) % 3 : (out + 2) % 3;
-    const std::size_t v = 3 - out - u;
+    normal.normalize();
+    const Vec3 u = normal.unitOrthogonal();
+    const Vec3 v = normal.cross(u);
     std::vector<Place> flat;
-    for (std::size_t i = 0; i < corners.size(); ++i)
+    for (const Vec3& corner : scaled)
     {
-        flat.push_back({scaled(i, u), scaled(i, v)});
+        flat.push_back({corner.dot(u), corner.dot(v)});
     }
     return flat;
 }
@@ -236,9 +228,9 @@ private:
 
     const std::vector<Place>& flat_;
     double tolerance_;
-    std::vector<std::uint32_t> next_; ///< Of those left, each way round.
-    std::vector<std::uint32_t> previous_;
-    std::uint32_t first_{0}; ///< One that is left.
+    std::vector<std::uint32_t> next_;     ///< For each corner not cut off, the next such corner.
+    std::vector<std::uint32_t> previous_; ///< The corner before it that isn't cut off.
+    std::uint32_t first_{0};              ///< A corner that isn't cut off.
 };
 
 } // namespace

@@ -61,26 +61,20 @@ std::optional<PlyFormat> parse_format(std::string_view word)
     return std::nullopt;
 }
 
-bool is_whole(PlyType type)
-{
-    return type != PlyType::float32 && type != PlyType::float64;
-}
-
 class HeaderReader
 {
 public:
-    explicit HeaderReader(std::string_view bytes) : cursor_(bytes) {}
+    explicit HeaderReader(std::string_view bytes) : bytes_(bytes), cursor_(bytes) {}
 
     Result<PlyHeader, Refusal> read()
     {
-        if (cursor_.next_token_in_line() != "ply")
+        if (next_word() != "ply")
         {
             return Refusal{"is not a PLY file: its first line must be 'ply'"};
         }
-        std::string_view word;
         while (cursor_.skip_line())
         {
-            word = cursor_.next_token_in_line();
+            const std::string word = next_word();
             if (word == "end_header")
             {
                 return finish();
@@ -94,11 +88,14 @@ public:
     }
 
 private:
+    /// In small letters.
+    std::string next_word() { return lower(cursor_.next_token_in_line()); }
+
     std::optional<Refusal> read_line(std::string_view word)
     {
         if (word == "format")
         {
-            const auto name = cursor_.next_token_in_line();
+            const std::string name = next_word();
             format_ = parse_format(name);
             return format_ ? std::nullopt
                            : std::optional(cursor_.error(fmt::format(
@@ -123,13 +120,13 @@ private:
 
     std::optional<Refusal> read_element()
     {
-        const auto name = cursor_.next_token_in_line();
+        const std::string name = next_word();
         const auto count = parse_integer(cursor_.next_token_in_line());
         if (!count || *count < 0)
         {
             return cursor_.error("element " + quote(name) + " has no count");
         }
-        header_.elements.push_back({std::string(name), static_cast<std::uint64_t>(*count), {}});
+        header_.elements.push_back({name, static_cast<std::uint64_t>(*count), {}});
         return std::nullopt;
     }
 
@@ -140,16 +137,16 @@ private:
             return cursor_.error("a property stands before the first element");
         }
         PlyProperty property;
-        auto word = cursor_.next_token_in_line();
+        std::string word = next_word();
         if (word == "list")
         {
-            word = cursor_.next_token_in_line();
+            word = next_word();
             property.count_type = parse_type(word);
             if (!property.count_type || !is_whole(*property.count_type))
             {
                 return cursor_.error(quote(word) + " can't count a list; must be a whole type");
             }
-            word = cursor_.next_token_in_line();
+            word = next_word();
         }
         const auto type = parse_type(word);
         property.name = cursor_.next_token_in_line();
@@ -171,16 +168,28 @@ private:
         header_.lines = cursor_.line();
         cursor_.skip_line();
         header_.bytes = cursor_.position();
+        // Where lines end in CR, an LF behind the last one is the first byte of the data.
+        const std::string_view header = bytes_.substr(0, header_.bytes);
+        if (header.ends_with("\r\n") && header.find('\n') == header.size() - 1)
+        {
+            --header_.bytes;
+        }
         header_.format = *format_;
         return std::move(header_);
     }
 
+    std::string_view bytes_;
     TextCursor cursor_;
     std::optional<PlyFormat> format_;
     PlyHeader header_;
 };
 
 } // namespace
+
+bool is_whole(PlyType type)
+{
+    return type != PlyType::float32 && type != PlyType::float64;
+}
 
 std::size_t size_of(PlyType type)
 {

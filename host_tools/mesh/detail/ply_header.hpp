@@ -35,6 +35,7 @@ enum class PlyType
 };
 
 [[nodiscard]] std::size_t size_of(PlyType type);
+[[nodiscard]] bool is_whole(PlyType type);
 
 struct PlyProperty
 {

@@ -3,6 +3,7 @@
 #include "host_tools/mesh/detail/polygon_sink.hpp"
 
 #include "host_tools/mesh/detail/cut_polygon.hpp"
+#include "platform/base/counted.hpp"
 
 #include <fmt/format.h>
 
@@ -69,9 +70,7 @@ void PolygonSink::finish(std::vector<std::string>& notes)
     }
     if (smaller_ > 0)
     {
-        notes.push_back(
-            fmt::format("{} with fewer than 3 corners dropped",
-                        smaller_ == 1 ? "1 polygon" : fmt::format("{} polygons", smaller_)));
+        notes.push_back(counted(smaller_, "polygon") + " with fewer than 3 corners dropped");
     }
 }
 

@@ -37,8 +37,8 @@ private:
 
     TriangleMesh& mesh_;
     std::vector<std::uint32_t> corners_;
-    std::vector<Fan> fans_;    ///< Of more than three corners.
-    std::uint64_t smaller_{0}; ///< Fewer than three.
+    std::vector<Fan> fans_;    ///< Polygons with more than three corners.
+    std::uint64_t smaller_{0}; ///< Polygons with fewer than three.
 };
 
 } // namespace tactus::detail

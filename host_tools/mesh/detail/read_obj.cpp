@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/mesh/detail/readers.hpp"
 #include "host_tools/mesh/detail/text_cursor.hpp"
+#include "platform/base/counted.hpp"
 #include "platform/base/refusal.hpp"
 
 #include <fmt/format.h>
@@ -19,13 +20,15 @@ namespace tactus::detail
 namespace
 {
 
-/// What a line may begin with that says nothing of the surface.
-constexpr std::array<std::string_view, 37> kPassedOver{
-    "vt",        "vn",     "vp",     "g",      "o",        "s",        "mg",   "usemtl",
-    "mtllib",    "usemap", "maplib", "bevel",  "c_interp", "d_interp", "lod",  "shadow_obj",
-    "trace_obj", "ctech",  "stech",  "cstype", "deg",      "bmat",     "step", "parm",
-    "trim",      "hole",   "scrv",   "sp",     "end",      "con",      "call", "csh",
-    "bsp",       "bzp",    "cdc",    "cdp",    "res"};
+/// What a line may begin with that says nothing of the surface. Names may end in a backslash, which
+/// continues lines of numbers alone.
+constexpr std::array<std::string_view, 15> kPassedOver{
+    "g",     "o",        "s",        "mg",  "usemtl",     "mtllib",    "usemap", "maplib",
+    "bevel", "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj", "call"};
+constexpr std::array<std::string_view, 22> kNumbersPassedOver{
+    "vt",   "vn",   "vp", "ctech", "stech", "cstype", "deg", "bmat", "step", "parm", "trim",
+    "hole", "scrv", "sp", "end",   "con",   "csh",    "bsp", "bzp",  "cdc",  "cdp",  "res"};
+constexpr std::size_t kLongestKeyword = 16;
 
 class ObjReader
 {
@@ -36,7 +39,7 @@ public:
     {
         do
         {
-            if (auto error = read_line(next_word()))
+            if (auto error = read_line(cursor_.next_token_in_line()))
             {
                 return *error;
             }
@@ -48,6 +51,11 @@ public:
                                        largest_line_, largest_index_, file_.mesh.positions.size())};
         }
         polygons_.finish(file_.notes);
+        if (weights_ > 0)
+        {
+            file_.notes.push_back(counted(weights_, "vertex", "vertices") +
+                                  " with a weight other than 1, by which x, y and z are divided");
+        }
         if (left_out_ > 0)
         {
             file_.notes.push_back(
@@ -63,19 +71,26 @@ public:
     }
 
 private:
-    /// The next token of the logical line: a backslash at the end of a line continues it.
+    /// The next token of the logical line: a backslash at the end of a line, behind a blank or
+    /// glued to a word, continues it.
     std::string_view next_word()
     {
         std::string_view word = cursor_.next_token_in_line();
-        while (word == "\\" && cursor_.skip_line())
+        while (word.ends_with('\\') && TextCursor(cursor_).next_token_in_line().empty())
         {
+            word.remove_suffix(1);
+            if (!cursor_.skip_line() || !word.empty())
+            {
+                break;
+            }
             word = cursor_.next_token_in_line();
         }
         return word;
     }
 
-    std::optional<Refusal> read_line(std::string_view keyword)
+    std::optional<Refusal> read_line(std::string_view first)
     {
+        const std::string keyword = lower(first.substr(0, kLongestKeyword));
         if (keyword == "v")
         {
             return read_vertex();
@@ -88,6 +103,11 @@ private:
             keyword == "surf")
         {
             ++left_out_;
+            skip_words();
+        }
+        else if (std::ranges::find(kNumbersPassedOver, keyword) != kNumbersPassedOver.end())
+        {
+            skip_words();
         }
         else if (!keyword.empty() && keyword[0] != '#' &&
                  std::ranges::find(kPassedOver, keyword) == kPassedOver.end())
@@ -107,13 +127,44 @@ private:
             const auto number = parse_number(word);
             if (!number)
             {
-                return cursor_.error(fmt::format("vertex {}: {} is {}, not a number",
-                                                 file_.mesh.positions.size(), "xyz"[axis],
-                                                 quote(word)));
+                return cursor_.error(fmt::format("vertex {}: {} is {}", file_.mesh.positions.size(),
+                                                 "xyz"[axis], no_number(word)));
             }
             position[axis] = *number;
         }
+        divide_by_weight(position);
         return std::nullopt;
+    }
+
+    /// A fourth number is the weight of homogeneous coordinates, unless it is the first of a
+    /// colour's three. A point at infinity is no place, so that a weight of 0 says nothing.
+    void divide_by_weight(std::array<double, 3>& position)
+    {
+        const auto weight = parse_number(next_word());
+        if (!weight || *weight == 1.0 || *weight == 0.0)
+        {
+            return;
+        }
+        std::size_t more = 0;
+        while (parse_number(next_word()))
+        {
+            ++more;
+        }
+        if (more == 0 || more == 3)
+        {
+            ++weights_;
+            for (double& c : position)
+            {
+                c /= *weight;
+            }
+        }
+    }
+
+    void skip_words()
+    {
+        while (!next_word().empty())
+        {
+        }
     }
 
     std::optional<Refusal> read_face()
@@ -138,11 +189,6 @@ private:
             }
             corners_.push_back(static_cast<std::uint32_t>(absolute - 1));
         }
-        if (corners_.size() < 3)
-        {
-            return cursor_.error(
-                fmt::format("a face has {} corners; must have at least 3", corners_.size()));
-        }
         polygons_.add(corners_);
         return std::nullopt;
     }
@@ -157,6 +203,7 @@ private:
     std::uint64_t largest_index_{0};
     std::size_t largest_line_{0};
     std::uint64_t left_out_{0};
+    std::uint64_t weights_{0}; ///< Vertices that were divided by one.
     std::uint64_t not_understood_{0};
     std::size_t first_not_understood_{0};
 };
@@ -165,7 +212,7 @@ private:
 
 Result<MeshFile, Refusal> read_obj(std::string_view text)
 {
-    return ObjReader(text).read();
+    return ObjReader(without_byte_order_mark(text)).read();
 }
 
 } // namespace tactus::detail

@@ -6,16 +6,22 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
-/// OFF: keyword, counts, one vertex per line, one polygon per line; '#' starts a comment. What
-/// stands behind the coordinates or the indices on a line (colours, normals) is passed over.
+/// OFF: keyword, counts, vertices, polygons; '#' starts a comment. Each vertex and polygon begins a
+/// line and may go on in the next; what stands behind the coordinates or the indices on its last
+/// line (colours, normals) is passed over. The keyword may be missing, or glued to the counts as in
+/// the files of ModelNet40.
 namespace tactus::detail
 {
 
 namespace
 {
+
+/// Texture places, colours and normals stand behind a vertex's coordinates.
+constexpr std::array<std::string_view, 8> kPrefixes{"", "c", "n", "cn", "st", "stc", "stn", "stcn"};
 
 class OffReader
 {
@@ -42,7 +48,9 @@ public:
         }
         if (!first_of_line().empty())
         {
-            return cursor_.error(fmt::format("data after the last of {} faces", faces_));
+            file_.notes.push_back(fmt::format("line {}: what follows the last of {} faces is left "
+                                              "out",
+                                              cursor_.line(), faces_));
         }
         note_missing_line_end(text_, file_.notes);
         return std::move(file_);
@@ -64,6 +72,17 @@ private:
 
     std::string_view next_of_line() { return in_comment_ ? std::string_view{} : token_in_line(); }
 
+    /// The next token of this line or of a later one.
+    std::string_view next()
+    {
+        const std::string_view token = next_of_line();
+        if (!token.empty() || !cursor_.skip_line())
+        {
+            return token;
+        }
+        return first_of_line();
+    }
+
     /// The first token of the next line that has one; empty at the end of the file.
     std::string_view first_of_line()
     {
@@ -78,32 +97,51 @@ private:
         return {};
     }
 
+    /// [ST][C][N]OFF in either case of letters; without it, the first word is a count.
     std::optional<Refusal> read_keyword()
     {
-        const std::string_view keyword = first_of_line();
-        if (keyword == "OFF" || keyword == "COFF" || keyword == "NOFF" || keyword == "CNOFF" ||
-            keyword == "STOFF")
+        const std::string_view token = first_of_line();
+        const std::string word = lower(token);
+        const std::size_t at = word.find("off");
+        if (at == std::string::npos && parse_integer(token))
         {
+            first_count_ = token;
             return std::nullopt;
         }
-        return cursor_.error(
-            fmt::format("starts with {}; an OFF file starts with OFF, COFF, NOFF, CNOFF or STOFF",
-                        quote(keyword)));
+        if (at == 1 && (word[0] == '4' || token.starts_with("nO")))
+        {
+            return cursor_.error("vertices of " + quote(token.substr(0, at + 3)) +
+                                 " have other than three coordinates; OFF is read");
+        }
+        const std::string_view before = std::string_view(word).substr(0, at);
+        const bool is_known = std::ranges::find(kPrefixes, before) != kPrefixes.end();
+        if (at == std::string::npos || !is_known)
+        {
+            return cursor_.error(fmt::format("starts with {}; an OFF file starts with OFF, COFF, "
+                                             "NOFF, CNOFF, STOFF or its counts",
+                                             quote(token)));
+        }
+        first_count_ = token.substr(at + 3);
+        return std::nullopt;
     }
 
     std::optional<Refusal> read_counts()
     {
-        std::string_view token = next_of_line();
-        if (token.empty())
+        const std::string_view token = first_count_.empty() ? next() : first_count_;
+        if (lower(token) == "binary")
         {
-            cursor_.skip_line();
-            token = first_of_line();
+            return cursor_.error("is a binary OFF file; only text is read");
         }
+        const std::size_t line = cursor_.line();
         const auto vertices = parse_integer(token);
-        const auto faces = parse_integer(next_of_line());
+        const auto faces = parse_integer(next());
         if (!vertices || !faces || *vertices < 0 || *faces < 0)
         {
             return cursor_.error("expected the numbers of vertices and faces (ASCII OFF)");
+        }
+        if (cursor_.line() != line) // A number on each line, so that the edges' is on the next.
+        {
+            next();
         }
         cursor_.skip_line();
         vertices_ = static_cast<std::uint64_t>(*vertices);
@@ -127,12 +165,12 @@ private:
             std::array<double, 3> position{};
             for (std::size_t axis = 0; axis < 3; ++axis)
             {
-                const auto token = axis == 0 ? first_of_line() : next_of_line();
+                const auto token = axis == 0 ? first_of_line() : next();
                 const auto number = parse_number(token);
                 if (!number)
                 {
-                    return cursor_.error(fmt::format("vertex {} of {}: {} is {}, not a number", v,
-                                                     vertices_, "xyz"[axis], quote(token)));
+                    return cursor_.error(fmt::format("vertex {} of {}: {} is {}", v, vertices_,
+                                                     "xyz"[axis], no_number(token)));
                 }
                 position[axis] = *number;
             }
@@ -159,7 +197,7 @@ private:
             corners.clear();
             for (std::int64_t i = 0; i < *count; ++i)
             {
-                const auto name = next_of_line();
+                const auto name = next();
                 const auto index = parse_integer(name);
                 if (!index || *index < 0 || static_cast<std::uint64_t>(*index) >= vertices_)
                 {
@@ -179,6 +217,7 @@ private:
     std::string_view text_;
     TextCursor cursor_;
     bool in_comment_{false};
+    std::string_view first_count_; ///< The part of it that is glued to the keyword.
     std::uint64_t vertices_{0};
     std::uint64_t faces_{0};
     MeshFile file_;
@@ -188,7 +227,7 @@ private:
 
 Result<MeshFile, Refusal> read_off(std::string_view text)
 {
-    return OffReader(text).read();
+    return OffReader(without_byte_order_mark(text)).read();
 }
 
 } // namespace tactus::detail

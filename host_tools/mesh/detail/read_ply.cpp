@@ -78,6 +78,11 @@ public:
     [[nodiscard]] std::size_t remaining() const { return bytes_.size() - at_; }
     [[nodiscard]] bool at_end() { return remaining() == 0; }
     [[nodiscard]] static std::string where() { return {}; }
+    /// Why the last value of a property couldn't be read.
+    [[nodiscard]] static std::string fault(const std::string& property)
+    {
+        return "the file ends at " + quote(property);
+    }
 
 private:
     std::string_view bytes_;
@@ -90,16 +95,26 @@ class TextValues
 public:
     TextValues(std::string_view text, std::size_t first_line) : cursor_(text, first_line) {}
 
-    std::optional<double> read(PlyType) { return parse_number(cursor_.next_token()); }
+    std::optional<double> read(PlyType)
+    {
+        token_ = cursor_.next_token();
+        return parse_number(token_);
+    }
 
     /// A digit and a blank.
     [[nodiscard]] static std::size_t least_bytes(PlyType) { return 2; }
     [[nodiscard]] std::size_t remaining() const { return cursor_.remaining() + 1; }
     [[nodiscard]] bool at_end() { return cursor_.next_token().empty(); }
     [[nodiscard]] std::string where() const { return fmt::format("line {}: ", cursor_.line()); }
+    [[nodiscard]] std::string fault(const std::string& property) const
+    {
+        return token_.empty() ? "the file ends at " + quote(property)
+                              : quote(property) + " is " + no_number(token_);
+    }
 
 private:
     TextCursor cursor_;
+    std::string_view token_; ///< The last one that was read.
 };
 
 template <typename Values>
@@ -114,6 +129,10 @@ public:
         {
             return *error;
         }
+        if (auto error = find_index_lists())
+        {
+            return *error;
+        }
         for (const PlyElement& element : header_.elements)
         {
             if (auto error = read_element(element))
@@ -123,7 +142,7 @@ public:
         }
         if (!values_.at_end())
         {
-            return Refusal{values_.where() + "data after the last element"};
+            file_.notes.push_back(values_.where() + "what follows the last element is left out");
         }
         polygons_.finish(file_.notes);
         return std::move(file_);
@@ -166,19 +185,61 @@ private:
 
     static std::optional<std::size_t> axis_of(const PlyProperty& property)
     {
-        const std::size_t axis = std::string_view("xyz").find(property.name);
+        const std::size_t axis = std::string_view("xyz").find(lower(property.name));
         const bool found = property.name.size() == 1 && axis != std::string_view::npos;
         return found && !property.count_type ? std::optional(axis) : std::nullopt;
     }
 
-    static Role role_of(const PlyElement& element, const PlyProperty& property)
+    /// The list of indices of each element that has them: by its name, or a face's only list of
+    /// whole numbers.
+    std::optional<Refusal> find_index_lists()
+    {
+        constexpr std::array<std::string_view, 4> kNames{"vertex_indices", "vertex_index",
+                                                         "vertex_indexes", "vertexindices"};
+        for (const PlyElement& element : header_.elements)
+        {
+            std::vector<const PlyProperty*> named;
+            std::vector<const PlyProperty*> whole;
+            std::string all;
+            for (const PlyProperty& property : element.properties)
+            {
+                const auto name = std::ranges::find(kNames, lower(property.name));
+                if (property.count_type && name != kNames.end())
+                {
+                    named.push_back(&property);
+                }
+                if (property.count_type && is_whole(property.type))
+                {
+                    whole.push_back(&property);
+                }
+                all += (all.empty() ? "" : ", ") + quote(property.name);
+            }
+            if (!named.empty())
+            {
+                index_lists_.insert(index_lists_.end(), named.begin(), named.end());
+            }
+            else if (element.name == "face" && whole.size() == 1)
+            {
+                index_lists_.push_back(whole.front());
+                file_.notes.push_back("the faces' list " + quote(whole.front()->name) +
+                                      " is taken for the one of vertices, vertex_indices");
+            }
+            else if (element.name == "face" && element.count > 0)
+            {
+                return Refusal{"the faces have no list of vertices, vertex_indices; they have " +
+                               (all.empty() ? "nothing" : all)};
+            }
+        }
+        return std::nullopt;
+    }
+
+    [[nodiscard]] Role role_of(const PlyElement& element, const PlyProperty& property) const
     {
         if (element.name == "vertex" && axis_of(property))
         {
             return Role::coordinate;
         }
-        if (property.count_type &&
-            (property.name == "vertex_indices" || property.name == "vertex_index"))
+        if (std::ranges::find(index_lists_, &property) != index_lists_.end())
         {
             return element.name == "face"        ? Role::polygon
                    : element.name == "tristrips" ? Role::strip
@@ -247,7 +308,7 @@ private:
         const auto value = values_.read(property.type);
         if (!value)
         {
-            return cut_at(property);
+            return values_.fault(property.name);
         }
         if (role == Role::coordinate)
         {
@@ -262,7 +323,7 @@ private:
         if (!count || !(*count >= 0.0) || *count != std::floor(*count))
         {
             return count ? fmt::format("list {} has the length {}", quote(property.name), *count)
-                         : cut_at(property);
+                         : values_.fault(property.name);
         }
         corners_.clear();
         strip_.clear();
@@ -271,7 +332,7 @@ private:
             const auto value = values_.read(property.type);
             if (!value)
             {
-                return cut_at(property);
+                return values_.fault(property.name);
             }
             if (role == Role::passed_over)
             {
@@ -327,24 +388,21 @@ private:
         }
     }
 
-    static std::string cut_at(const PlyProperty& property)
-    {
-        return "the file ends or is no number at " + quote(property.name);
-    }
-
     const PlyHeader& header_;
     Values values_;
     std::optional<std::uint64_t> vertices_;
     MeshFile file_;
     PolygonSink polygons_{file_.mesh};
+    std::vector<const PlyProperty*> index_lists_;
     std::vector<std::uint32_t> corners_;
     std::vector<std::uint32_t> strip_; ///< Vertices since the strip's last start.
 };
 
 } // namespace
 
-Result<MeshFile, Refusal> read_ply(std::string_view bytes)
+Result<MeshFile, Refusal> read_ply(std::string_view file_bytes)
 {
+    const std::string_view bytes = without_byte_order_mark(file_bytes);
     const auto header = read_ply_header(bytes);
     if (!header)
     {

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/mesh/detail/readers.hpp"
 #include "host_tools/mesh/detail/text_cursor.hpp"
+#include "platform/base/counted.hpp"
 #include "platform/base/refusal.hpp"
 
 #include <fmt/format.h>
@@ -11,7 +12,8 @@
 #include <optional>
 
 /// STL: loose triangles, each with three positions of its own; prepare_mesh() welds them. A binary
-/// header may begin with "solid", so the length decides first.
+/// header may begin with "solid", so the length decides first. Text is read word by word; its
+/// lines don't matter.
 namespace tactus::detail
 {
 
@@ -32,14 +34,6 @@ bool has_binary_length(std::string_view bytes)
 {
     return bytes.size() >= kHeaderBytes &&
            bytes.size() == kHeaderBytes + kTriangleBytes * binary_triangles(bytes);
-}
-
-std::string lower(std::string_view token)
-{
-    std::string text(token);
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-    return text;
 }
 
 bool is_text(std::string_view bytes)
@@ -81,24 +75,21 @@ public:
     /// One or more "solid name ... endsolid name".
     Result<MeshFile, Refusal> read()
     {
-        std::string word = lower(cursor_.next_token());
-        while (!word.empty())
+        std::string word = next_word();
+        while (word == "solid")
         {
-            if (word != "solid")
+            skip_name("facet");
+            if (auto error = read_solid())
             {
-                return cursor_.error("expected 'solid', found " + quote(word));
+                return *error;
             }
-            cursor_.skip_line();
-            for (word = lower(cursor_.next_token()); word != "endsolid";
-                 word = lower(cursor_.next_token()))
-            {
-                if (auto error = read_facet(word))
-                {
-                    return *error;
-                }
-            }
-            cursor_.skip_line();
-            word = lower(cursor_.next_token());
+            skip_name("solid");
+            word = next_word();
+        }
+        if (!word.empty())
+        {
+            file_.notes.push_back(fmt::format(
+                "line {}: what follows the last 'endsolid' is left out", cursor_.line()));
         }
         polygons_.finish(file_.notes);
         return std::move(file_);
@@ -116,25 +107,113 @@ private:
                                  : fmt::format("expected '{}', found {}", wanted, quote(found)));
     }
 
-    /// "facet normal x y z outer loop vertex ... endloop endfacet"; the normal is passed over.
+    /// In small letters; "end loop" is one word.
+    std::string next_word()
+    {
+        std::string word = lower(cursor_.next_token());
+        return word == "end" ? word + lower(cursor_.next_token()) : word;
+    }
+
+    /// Whether a facet begins on this line, behind the cursor; the cursor is moved in front of it.
+    static bool finds_facet_in_line(TextCursor& cursor)
+    {
+        constexpr int kWordsBetween = 5; // "normal x y z outer".
+        for (TextCursor here = cursor;; here = cursor)
+        {
+            const std::string word = lower(cursor.next_token_in_line());
+            if (word.empty())
+            {
+                return false;
+            }
+            TextCursor ahead = cursor;
+            for (int i = 0; word == "facet" && i < kWordsBetween; ++i)
+            {
+                if (lower(ahead.next_token_in_line()) == "outer")
+                {
+                    cursor = here;
+                    return true;
+                }
+            }
+        }
+    }
+
+    /// Passes over a solid's name, which ends with the line, but in a text of one line at the word
+    /// that is due next: "facet", or a "solid" with a facet behind it.
+    void skip_name(std::string_view due)
+    {
+        TextCursor ahead = cursor_;
+        for (TextCursor here = ahead;; here = ahead)
+        {
+            const std::string word = lower(ahead.next_token_in_line());
+            if (word.empty())
+            {
+                cursor_.skip_line();
+                return;
+            }
+            TextCursor facet = due == "solid" ? ahead : here;
+            if (word == due && finds_facet_in_line(facet) &&
+                (due == "solid" || facet.position() == here.position()))
+            {
+                cursor_ = here;
+                return;
+            }
+        }
+    }
+
+    std::optional<Refusal> read_solid()
+    {
+        std::string word = next_word();
+        std::size_t passed_over = 0;
+        while (!word.empty() && word != "facet" && word != "endsolid") // A name of several lines.
+        {
+            ++passed_over;
+            cursor_.skip_line();
+            word = next_word();
+        }
+        if (passed_over > 0 && word.empty())
+        {
+            return cursor_.error("expected 'facet' or 'endsolid' behind 'solid'");
+        }
+        if (passed_over > 0)
+        {
+            file_.notes.push_back(fmt::format("line {}: {} of no meaning before the first facet",
+                                              cursor_.line(), counted(passed_over, "line")));
+        }
+        for (; word != "endsolid"; word = next_word())
+        {
+            if (auto error = read_facet(word))
+            {
+                return error;
+            }
+        }
+        return std::nullopt;
+    }
+
+    /// "facet normal x y z outer loop vertex ... endloop endfacet"; what stands before "outer" is
+    /// passed over.
     std::optional<Refusal> read_facet(std::string_view first)
     {
         if (auto error = expect(first.empty() ? "endsolid" : "facet", first))
         {
             return error;
         }
-        cursor_.skip_line();
-        if (auto error = expect("outer", cursor_.next_token()))
+        std::string opening = next_word();
+        while (!opening.empty() && opening != "outer" && opening != "vertex" &&
+               opening != "facet" && opening != "endfacet" && opening != "endsolid")
+        {
+            opening = next_word();
+        }
+        if (auto error = expect("outer", opening))
         {
             return error;
         }
-        if (auto error = expect("loop", cursor_.next_token()))
+        if (auto error = expect("loop", next_word()))
         {
             return error;
         }
         std::vector<std::uint32_t> corners;
-        std::string_view word = cursor_.next_token();
-        for (; lower(word) == "vertex"; word = cursor_.next_token())
+        std::string word = next_word();
+        for (; word == "vertex"; word = next_word())
         {
             if (auto error = read_position())
             {
@@ -147,7 +226,7 @@ private:
         {
             return error;
         }
-        return expect("endfacet", cursor_.next_token());
+        return expect("endfacet", next_word());
     }
 
     std::optional<Refusal> read_position()
@@ -159,8 +238,7 @@ private:
             const auto number = parse_number(token);
             if (!number)
             {
-                return cursor_.error(
-                    fmt::format("{} is {}, not a number", "xyz"[axis], quote(token)));
+                return cursor_.error(fmt::format("{} is {}", "xyz"[axis], no_number(token)));
             }
             position[axis] = *number;
         }
@@ -172,6 +250,50 @@ private:
     PolygonSink polygons_{file_.mesh};
 };
 
+/// A file that is longer than its triangles. Of two files in one both are read; a tail that could
+/// be triangles is one that the count forgot.
+Result<MeshFile, Refusal> read_binary_with_tail(std::string_view bytes)
+{
+    const std::uint64_t triangles = binary_triangles(bytes);
+    const std::uint64_t declared = kHeaderBytes + kTriangleBytes * triangles;
+    const std::string counts = fmt::format("the header at byte 80 declares {} triangles, which "
+                                           "makes {} bytes; the file has {}",
+                                           triangles, declared, bytes.size());
+    if (triangles == 0 || bytes.size() < declared)
+    {
+        return Refusal{counts};
+    }
+    const std::string_view tail = bytes.substr(declared);
+    const bool is_padding = std::ranges::all_of(tail, [&](char c) { return c == tail.front(); });
+    if (!is_padding && tail.size() % kTriangleBytes == 0)
+    {
+        return Refusal{fmt::format("{}, and the rest has room for {} more", counts,
+                                   tail.size() / kTriangleBytes)};
+    }
+    auto file = read_binary(bytes.substr(0, declared));
+    if (!file)
+    {
+        return file;
+    }
+    if (is_padding || !has_binary_length(tail))
+    {
+        file.value().notes.push_back(counted(tail.size(), "byte") +
+                                     " behind the last triangle left out");
+        return file;
+    }
+    auto second = read_binary(tail);
+    TriangleMesh& mesh = file.value().mesh;
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    const TriangleMesh& more = second.value().mesh;
+    mesh.positions.insert(mesh.positions.end(), more.positions.begin(), more.positions.end());
+    for (const auto& [a, b, c] : more.faces)
+    {
+        mesh.faces.push_back({first + a, first + b, first + c});
+    }
+    file.value().notes.emplace_back("two STL files in one; both are read");
+    return file;
+}
+
 } // namespace
 
 Result<MeshFile, Refusal> read_stl(std::string_view bytes)
@@ -180,9 +302,10 @@ Result<MeshFile, Refusal> read_stl(std::string_view bytes)
     {
         return read_binary(bytes);
     }
-    if (is_text(bytes))
+    const std::string_view text = without_byte_order_mark(bytes);
+    if (is_text(text))
     {
-        return TextStlReader(bytes).read();
+        return TextStlReader(text).read();
     }
     if (bytes.size() < kHeaderBytes)
     {
@@ -190,11 +313,7 @@ Result<MeshFile, Refusal> read_stl(std::string_view bytes)
                                    "has at least {}",
                                    bytes.size(), kHeaderBytes)};
     }
-    return Refusal{fmt::format("the header at byte 80 declares {} triangles, which makes {} "
-                               "bytes; the file has {}",
-                               binary_triangles(bytes),
-                               kHeaderBytes + kTriangleBytes * binary_triangles(bytes),
-                               bytes.size())};
+    return read_binary_with_tail(bytes);
 }
 
 } // namespace tactus::detail

@@ -6,7 +6,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <limits>
 
 namespace tactus::detail
@@ -17,7 +19,12 @@ namespace
 
 bool is_blank(char c)
 {
-    return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v';
+    return c == ' ' || c == '\t' || c == '\f' || c == '\v';
+}
+
+bool ends_line(char c)
+{
+    return c == '\n' || c == '\r';
 }
 
 std::string_view without_plus(std::string_view token)
@@ -28,6 +35,12 @@ std::string_view without_plus(std::string_view token)
 
 } // namespace
 
+std::string_view without_byte_order_mark(std::string_view text)
+{
+    constexpr std::string_view kMark = "\xEF\xBB\xBF";
+    return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
+}
+
 std::string_view TextCursor::next_token_in_line()
 {
     while (at_ < text_.size() && is_blank(text_[at_]))
@@ -35,7 +48,7 @@ std::string_view TextCursor::next_token_in_line()
         ++at_;
     }
     const std::size_t start = at_;
-    while (at_ < text_.size() && !is_blank(text_[at_]) && text_[at_] != '\n')
+    while (at_ < text_.size() && !is_blank(text_[at_]) && !ends_line(text_[at_]))
     {
         ++at_;
     }
@@ -54,16 +67,17 @@ std::string_view TextCursor::next_token()
 
 bool TextCursor::skip_line()
 {
-    const std::size_t end = text_.find('\n', at_);
-    if (end == std::string_view::npos)
+    const bool moved = at_ < text_.size();
+    while (at_ < text_.size() && !ends_line(text_[at_]))
     {
-        const bool moved = at_ < text_.size();
-        at_ = text_.size();
-        return moved;
+        ++at_;
     }
-    at_ = end + 1;
-    ++line_;
-    return true;
+    if (at_ < text_.size())
+    {
+        at_ += text_.substr(at_).starts_with("\r\n") ? 2U : 1U;
+        ++line_;
+    }
+    return moved;
 }
 
 Refusal TextCursor::error(const std::string& what) const
@@ -76,10 +90,20 @@ std::optional<double> parse_number(std::string_view token)
     const std::string_view digits = without_plus(token);
     double value = 0.0;
     const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (digits.empty() || end != digits.data() + digits.size() ||
-        code == std::errc::invalid_argument)
+    const auto read = static_cast<std::size_t>(end - digits.data());
+    if (code == std::errc::invalid_argument)
     {
         return std::nullopt;
+    }
+    if (read != digits.size())
+    {
+        if (digits[read] != 'd' && digits[read] != 'D')
+        {
+            return std::nullopt;
+        }
+        std::string by_e(digits);
+        by_e[read] = 'e';
+        return parse_number(by_e);
     }
     if (code == std::errc::result_out_of_range)
     {
@@ -94,11 +118,30 @@ std::optional<std::int64_t> parse_integer(std::string_view token)
     const std::string_view digits = without_plus(token);
     std::int64_t value = 0;
     const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (digits.empty() || end != digits.data() + digits.size() || code != std::errc{})
+    if (!digits.empty() && end == digits.data() + digits.size() && code == std::errc{})
     {
-        return std::nullopt;
+        return value;
     }
-    return value;
+    constexpr double kExact = 9007199254740992.0; // 2^53.
+    const auto number = parse_number(token);
+    return number && std::abs(*number) < kExact && *number == std::trunc(*number)
+               ? std::optional(static_cast<std::int64_t>(*number))
+               : std::nullopt;
+}
+
+std::string no_number(std::string_view token)
+{
+    return quote(token) + ", not a number" +
+           (token.find(',') == token.npos ? "" : "; decimals must have a point, not a comma");
+}
+
+std::string lower(std::string_view token)
+{
+    std::string text(token);
+    std::ranges::transform(text, text.begin(),
+                           [](char c)
+                           { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+    return text;
 }
 
 std::string quote(std::string_view token)

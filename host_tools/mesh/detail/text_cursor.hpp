@@ -13,8 +13,13 @@
 namespace tactus::detail
 {
 
-/// Walks over text by tokens or by lines and knows the line number, from 1. Lines end in LF;
-/// a CR before it counts as a blank. Nothing depends on the locale.
+/// What ends a line, a word and a number, and where a text begins, for every text format.
+
+/// The text without the byte-order mark of UTF-8 that some editors write before it.
+[[nodiscard]] std::string_view without_byte_order_mark(std::string_view text);
+
+/// Walks over text by tokens or by lines and knows the line number, from 1. Lines end in LF, CR LF
+/// or CR. Nothing depends on the locale.
 class TextCursor
 {
 public:
@@ -43,10 +48,16 @@ private:
     std::size_t line_;
 };
 
-/// The whole token as a number; a leading plus is allowed. Too small is 0, too large is infinite
-/// (and refused later, with all that is not finite).
+/// The whole token as a number; a leading plus and Fortran's exponents (1.5D+02) are allowed. Too
+/// small is 0, too large is infinite (and refused later, with all that is not finite).
 [[nodiscard]] std::optional<double> parse_number(std::string_view token);
+/// The same for whole numbers, which may be written with decimals (3.0) below 2^53.
 [[nodiscard]] std::optional<std::int64_t> parse_integer(std::string_view token);
+/// "'x', not a number", and what to do about a decimal comma.
+[[nodiscard]] std::string no_number(std::string_view token);
+
+/// The token in small letters, of ASCII alone.
+[[nodiscard]] std::string lower(std::string_view token);
 
 /// The token in quotes as it can stand in a message, whatever bytes it holds.
 [[nodiscard]] std::string quote(std::string_view token);

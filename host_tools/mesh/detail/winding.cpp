@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "host_tools/mesh/detail/winding.hpp"
 
+#include "host_tools/mesh/index_lists.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -40,7 +42,7 @@ struct Piece
 {
     bool is_closed{true};
     double six_volume{0.0};           ///< In cubes of the extent.
-    double six_absolute_volumes{0.0}; ///< Of the tetrahedra whose signed sum that is.
+    double six_absolute_volumes{0.0}; ///< The same sum with each term taken as positive.
     std::uint32_t vertices{0};
     Point low{};
     Point high{};
@@ -246,13 +248,13 @@ private:
         return step_of(sample.place[2], 1) * along_ + step_of(sample.place[1], 0);
     }
 
-    std::vector<Sample> samples_; ///< By cell.
+    std::vector<Sample> samples_; ///< In the order of their cells.
     std::size_t along_{1};
     std::array<double, 2> low_{std::numeric_limits<double>::infinity(),
                                std::numeric_limits<double>::infinity()};
     std::array<double, 2> high_{-std::numeric_limits<double>::infinity(),
                                 -std::numeric_limits<double>::infinity()};
-    std::vector<std::size_t> start_; ///< Of each cell, and the end.
+    std::vector<std::size_t> start_; ///< Index of each cell's first sample, and their number.
 };
 
 /// Whether the ray along +y from the point crosses the edge, in the plane of y and z.
@@ -311,9 +313,18 @@ class Nesting
 public:
     Nesting(const TriangleMesh& mesh, const std::vector<Piece>& pieces,
             const std::vector<std::uint32_t>& piece_of)
-        : mesh_(mesh), pieces_(pieces), grid_(take_samples(mesh, pieces, piece_of))
+        : mesh_(mesh)
+        , pieces_(pieces)
+        , grid_(take_samples(mesh, pieces, piece_of))
+        , faces_(pieces.size(),
+                 [&](const auto& add)
+                 {
+                     for (std::uint32_t f = 0; f < mesh.faces.size(); ++f)
+                     {
+                         add(piece_of[mesh.faces[f][0]], f);
+                     }
+                 })
     {
-        group_faces(piece_of);
         samples_of_.assign(pieces.size(), 0);
         for (const Sample& sample : grid_.samples())
         {
@@ -328,9 +339,12 @@ public:
         std::vector<std::uint32_t> inside(pieces_.size(), 0); // Samples of each, in the piece b.
         for (std::uint32_t b = 0; b < pieces_.size(); ++b)
         {
-            for (std::size_t i = start_[b]; pieces_[b].is_closed && i < start_[b + 1]; ++i)
+            if (pieces_[b].is_closed)
             {
-                count_behind(faces_[i], b);
+                for (const std::uint32_t face : faces_.of(b))
+                {
+                    count_behind(face, b);
+                }
             }
             for (const std::size_t i : hit_)
             {
@@ -351,7 +365,7 @@ public:
     }
 
 private:
-    static constexpr std::uint32_t kTouched = 0x8000'0000U;
+    static constexpr std::uint32_t kTouched = 0x8000'0000U; ///< The sample lies on a face of b.
 
     static std::vector<Sample> take_samples(const TriangleMesh& mesh,
                                             const std::vector<Piece>& pieces,
@@ -369,22 +383,6 @@ private:
             }
         }
         return samples;
-    }
-
-    void group_faces(const std::vector<std::uint32_t>& piece_of)
-    {
-        start_.assign(pieces_.size() + 1, 0);
-        for (const Face& face : mesh_.faces)
-        {
-            ++start_[piece_of[face[0]] + 1];
-        }
-        std::partial_sum(start_.begin(), start_.end(), start_.begin());
-        faces_.resize(mesh_.faces.size());
-        std::vector<std::size_t> next(start_);
-        for (std::uint32_t f = 0; f < mesh_.faces.size(); ++f)
-        {
-            faces_[next[piece_of[mesh_.faces[f][0]]]++] = f;
-        }
     }
 
     void count_behind(std::uint32_t f, std::uint32_t b)
@@ -417,12 +415,10 @@ private:
     const TriangleMesh& mesh_;
     const std::vector<Piece>& pieces_;
     SampleGrid grid_;
-    std::vector<std::size_t> start_; ///< Of each piece's part of `faces_`, and the end.
-    std::vector<std::uint32_t> faces_;
-    std::vector<std::uint32_t> samples_of_;
-    std::vector<std::uint32_t>
-        hits_;                     ///< Faces of b ahead of each sample; kTouched: it lies on one.
-    std::vector<std::size_t> hit_; ///< The samples whose hits are not 0.
+    IndexLists faces_;                      ///< The faces of each piece.
+    std::vector<std::uint32_t> samples_of_; ///< How many samples each piece has.
+    std::vector<std::uint32_t> hits_;       ///< Faces of b ahead of each sample, and kTouched.
+    std::vector<std::size_t> hit_;          ///< Samples whose hits are not 0.
 };
 
 /// Whether an open piece may enclose this one. Three vertices enclose nothing.

@@ -27,17 +27,24 @@ T value_at(const char* at)
 
 } // namespace
 
+void refuse_compressed(const JsonAt& json, std::string_view extension)
+{
+    json.refuse(fmt::format("is compressed with {}, which is not supported: export it without "
+                            "compression, or decode it, as gltf-transform copy does",
+                            extension));
+}
+
 GltfAccessor::GltfAccessor(GltfFile& file, std::size_t index)
     : json_(file.root().at("accessors").at(index))
     , component_(component_of(json_.at("componentType")))
     , count_(json_.at("count").whole(kMaxCount))
 {
     const std::string& type = json_.at("type").text();
-    if (type != "SCALAR" && type != "VEC3")
+    if (type != "SCALAR" && type != "VEC3" && type != "VEC4")
     {
         json_.at("type").refuse("must be SCALAR for indices and VEC3 for positions");
     }
-    width_ = type == "VEC3" ? 3 : 1;
+    width_ = type == "VEC4" ? 4 : type == "VEC3" ? 3 : 1;
     if (count_ == 0)
     {
         json_.at("count").refuse("must be at least 1");
@@ -53,9 +60,9 @@ GltfAccessor::GltfAccessor(GltfFile& file, std::size_t index)
 GltfAccessor::Component GltfAccessor::component_of(const JsonAt& json)
 {
     const std::uint64_t code = json.whole(0xFFFF);
-    if (code < 5120 || code > 5126 || code == 5124)
+    if ((code < 5120 || code > 5126 || code == 5124) && code != 5130)
     {
-        json.refuse(fmt::format("is {}; must be 5120 to 5123, 5125 or 5126", code));
+        json.refuse(fmt::format("is {}; must be 5120 to 5123, 5125, 5126 or 5130", code));
     }
     return static_cast<Component>(code);
 }
@@ -70,6 +77,8 @@ std::size_t GltfAccessor::bytes_of(Component component)
     case Component::i16:
     case Component::u16:
         return 2;
+    case Component::f64:
+        return 8;
     default:
         return 4;
     }
@@ -83,13 +92,16 @@ std::string_view GltfAccessor::view_of(GltfFile& file, const JsonAt& user, std::
     const std::size_t index =
         user.at("bufferView").index_below(root.size_of("bufferViews"), "bufferViews");
     const JsonAt view = root.at("bufferViews").at(index);
-    if (const auto extensions = view.find("extensions");
-        extensions && extensions->find("EXT_meshopt_compression") &&
-        file.requires_extension("EXT_meshopt_compression"))
-    {
-        view.refuse("is compressed with EXT_meshopt_compression, which is not supported");
-    }
     const std::size_t number = view.at("buffer").index_below(root.size_of("buffers"), "buffers");
+    const auto extensions = view.find("extensions");
+    for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"})
+    {
+        if (extensions && extensions->find(name) &&
+            (file.requires_extension(name) || !file.has_buffer(number)))
+        {
+            refuse_compressed(view, name);
+        }
+    }
     const std::string_view bytes = file.buffer(number);
     const auto offset_of = [](const JsonAt& json)
     {
@@ -187,13 +199,22 @@ void GltfAccessor::require_positions(const GltfFile& file) const
     {
         json_.refuse("can't be positions: they are VEC3 of componentType 5126");
     }
-    if (component_ != Component::f32 && !file.requires_extension("KHR_mesh_quantization"))
+    const bool is_float = component_ == Component::f32 || component_ == Component::f64;
+    if (!is_float && !file.requires_extension("KHR_mesh_quantization"))
     {
         json_.refuse("has integer positions without requiring KHR_mesh_quantization");
     }
-    if (component_ == Component::f32 && is_normalized_)
+    if (is_float && is_normalized_)
     {
         json_.refuse("has normalized floats");
+    }
+}
+
+void GltfAccessor::require_width(std::size_t width) const
+{
+    if (width_ != width)
+    {
+        json_.refuse(fmt::format("has {} numbers an element; {} are needed", width_, width));
     }
 }
 
@@ -251,25 +272,27 @@ double GltfAccessor::number_at(const char* at) const
         return scaled(value_at<std::int16_t>(at), 32'767.0);
     case Component::u16:
         return scaled(value_at<std::uint16_t>(at), 65'535.0);
+    case Component::u32:
+        return scaled(value_at<std::uint32_t>(at), 4'294'967'295.0);
+    case Component::f64:
+        return value_at<double>(at);
     default:
         return static_cast<double>(value_at<float>(at));
     }
 }
 
-std::array<double, 3> GltfAccessor::position(std::size_t i) const
+void GltfAccessor::read_numbers(std::size_t i, std::span<double> numbers) const
 {
-    std::array<double, 3> place{};
     const char* at = element(i);
-    for (std::size_t axis = 0; axis < 3 && at != nullptr; ++axis)
+    for (std::size_t axis = 0; axis < numbers.size() && at != nullptr; ++axis)
     {
-        place[axis] = number_at(at + axis * bytes_of(component_));
-        if (!std::isfinite(place[axis]))
+        numbers[axis] = number_at(at + axis * bytes_of(component_));
+        if (!std::isfinite(numbers[axis]))
         {
-            json_.refuse(fmt::format("has element {}: {} is {}; must be finite", i, "xyz"[axis],
-                                     place[axis]));
+            json_.refuse(fmt::format("has element {}: {} is {}; must be finite", i, "xyzw"[axis],
+                                     numbers[axis]));
         }
     }
-    return place;
 }
 
 } // namespace tactus::detail

@@ -8,15 +8,19 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 
 namespace tactus::detail
 {
 
-/// accessors[index] of a glTF file, of type SCALAR or VEC3: numbers in a buffer, with a stride and
-/// perhaps some that are replaced (sparse). All bounds are checked when it is made, which costs
-/// nothing an element but for sparse ones; elements are decoded when they are asked for. The file
-/// must outlive it. Functions throw a SceneFault.
+/// Throws, with the way out: what is compressed isn't decoded here.
+[[noreturn]] void refuse_compressed(const JsonAt& json, std::string_view extension);
+
+/// accessors[index] of a glTF file, of type SCALAR, VEC3 or VEC4: numbers in a buffer, with a
+/// stride and perhaps some that are replaced (sparse). All bounds are checked when it is made,
+/// which costs nothing an element but for sparse ones; elements are decoded when they are asked
+/// for. The file must outlive it. Functions throw a SceneFault.
 class GltfAccessor
 {
 public:
@@ -30,11 +34,19 @@ public:
     /// Throws unless they can be positions: VEC3 of floats, or of small integers where the file
     /// has the extension KHR_mesh_quantization.
     void require_positions(const GltfFile& file) const;
+    /// Throws unless an element is that many numbers.
+    void require_width(std::size_t width) const;
 
     /// Element `i` < count() of an accessor that passed the check above.
     [[nodiscard]] std::uint32_t index(std::size_t i) const;
-    /// Finite, or it throws.
-    [[nodiscard]] std::array<double, 3> position(std::size_t i) const;
+    /// `Width` numbers, which are finite, or it throws.
+    template <std::size_t Width>
+    [[nodiscard]] std::array<double, Width> numbers(std::size_t i) const
+    {
+        std::array<double, Width> numbers{};
+        read_numbers(i, numbers);
+        return numbers;
+    }
 
 private:
     /// Codes of the standard, and of OpenGL.
@@ -46,6 +58,7 @@ private:
         u16 = 5123,
         u32 = 5125,
         f32 = 5126,
+        f64 = 5130, ///< From KHR_accessor_float64.
     };
 
     [[nodiscard]] static Component component_of(const JsonAt& json);
@@ -58,10 +71,11 @@ private:
     void read_sparse(GltfFile& file);
     [[nodiscard]] const char* element(std::size_t i) const;
     [[nodiscard]] double number_at(const char* at) const;
+    void read_numbers(std::size_t i, std::span<double> numbers) const;
 
     JsonAt json_;
     Component component_;
-    std::size_t width_; ///< Numbers of an element: 1 or 3.
+    std::size_t width_; ///< Numbers of an element: 1, 3 or 4.
     std::size_t count_;
     bool is_normalized_{false};
     std::string_view base_; ///< From the first element on; empty: all are 0.

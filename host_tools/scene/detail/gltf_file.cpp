@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/scene/detail/gltf_file.hpp"
 
+#include "host_tools/scene/detail/gltf_extensions.hpp"
 #include "platform/base/printable.hpp"
 #include "platform/base/read_file.hpp"
 
@@ -10,9 +11,10 @@
 #include <sodium.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cstring>
+#include <iterator>
+#include <system_error>
 #include <utility>
 
 namespace tactus::detail
@@ -26,16 +28,6 @@ constexpr std::size_t kGlbHeaderBytes = 12;  ///< Magic, version, length of all.
 constexpr std::size_t kChunkHeaderBytes = 8; ///< Length and type.
 constexpr std::uint32_t kJsonChunk = 0x4E4F'534A;
 constexpr std::uint32_t kBinaryChunk = 0x004E'4942;
-
-/// Those that change no surface or are read here. What compresses meshes is refused where a mesh
-/// that a hand may touch needs it.
-constexpr std::array<std::string_view, 7> kKnownExtensions{"KHR_mesh_quantization",
-                                                           "KHR_draco_mesh_compression",
-                                                           "EXT_meshopt_compression",
-                                                           "KHR_lights_punctual",
-                                                           "KHR_materials_",
-                                                           "KHR_texture_",
-                                                           "EXT_texture_"};
 
 std::uint32_t u32_at(std::string_view bytes, std::size_t at)
 {
@@ -78,27 +70,20 @@ std::string decoded(std::string_view uri, const JsonAt& buffer)
     return bytes;
 }
 
-/// A relative file name of a URI: "%20" is a blank.
-std::string unescaped(std::string_view uri, const JsonAt& buffer)
+/// A relative file name of a URI: "%20" is a blank. A '%' that no two hexadecimal digits follow is
+/// one of the name's own: programs write names as they are.
+std::string unescaped(std::string_view uri)
 {
     std::string name;
     for (std::size_t i = 0; i < uri.size(); ++i)
     {
-        if (uri[i] != '%')
-        {
-            name += uri[i];
-            continue;
-        }
         unsigned code = 0;
-        const std::string_view digits = uri.substr(i + 1, 2);
+        const std::string_view digits = uri.substr(i).substr(1, 2);
         const char* end = digits.data() + digits.size();
-        const auto read = std::from_chars(digits.data(), end, code, 16);
-        if (digits.size() != 2 || read.ptr != end || code == 0)
-        {
-            buffer.refuse("has a URI with a '%' that no two hexadecimal digits follow");
-        }
-        name += static_cast<char>(code);
-        i += 2;
+        const bool is_code = uri[i] == '%' && digits.size() == 2 &&
+                             std::from_chars(digits.data(), end, code, 16).ptr == end && code != 0;
+        name += is_code ? static_cast<char>(code) : uri[i];
+        i += is_code ? 2 : 0;
     }
     return name;
 }
@@ -123,7 +108,8 @@ GltfFile::GltfFile(const std::filesystem::path& path) : folder_(path.parent_path
         json_ = std::make_unique<nlohmann::json>(parse_bounded_json(bytes));
     }
     check_asset();
-    check_extensions();
+    required_ = required_extensions(root());
+    std::ranges::move(extension_notes(root()), std::back_inserter(notes_));
     buffers_.resize(root().size_of("buffers"));
 }
 
@@ -139,7 +125,8 @@ JsonAt GltfFile::root() const
 /// Header, JSON, and in most files one binary chunk; what follows is of extensions.
 void GltfFile::take_chunks(std::string_view bytes)
 {
-    if (bytes.size() < kGlbHeaderBytes || u32_at(bytes, 8) != bytes.size())
+    if (bytes.size() < kGlbHeaderBytes || u32_at(bytes, 8) > bytes.size() ||
+        u32_at(bytes, 8) < kGlbHeaderBytes)
     {
         throw SceneFault{
             fmt::format("is no whole GLB: it has {} bytes, its header says {}", bytes.size(),
@@ -149,6 +136,11 @@ void GltfFile::take_chunks(std::string_view bytes)
     {
         throw SceneFault{
             fmt::format("is GLB version {}; only version 2 is read", u32_at(bytes, 4))};
+    }
+    if (const std::size_t tail = bytes.size() - u32_at(bytes, 8); tail > 0)
+    {
+        notes_.push_back(fmt::format("{} bytes behind the end of the GLB left out", tail));
+        bytes.remove_suffix(tail);
     }
     std::size_t at = kGlbHeaderBytes;
     for (std::size_t number = 0; at < bytes.size(); ++number)
@@ -188,24 +180,6 @@ void GltfFile::check_asset() const
     if (const auto least = asset.find("minVersion"); least && least->text() != "2.0")
     {
         least->refuse(fmt::format("is '{}'; only 2.0 is read", printable(least->text())));
-    }
-}
-
-void GltfFile::check_extensions()
-{
-    const std::size_t count = root().size_of("extensionsRequired");
-    for (std::size_t i = 0; i < count; ++i)
-    {
-        const JsonAt entry = root().at("extensionsRequired").at(i);
-        const std::string& name = entry.text();
-        const bool is_known = std::ranges::any_of(
-            kKnownExtensions, [&](std::string_view known)
-            { return known.ends_with('_') ? name.starts_with(known) : name == known; });
-        if (!is_known)
-        {
-            entry.refuse(fmt::format("is '{}', which is not supported", printable(name)));
-        }
-        required_.push_back(name);
     }
 }
 
@@ -253,12 +227,7 @@ std::string GltfFile::load(const JsonAt& buffer, std::size_t index, std::uint64_
     {
         return decoded(uri->text(), *uri);
     }
-    const std::string name = unescaped(uri->text(), *uri);
-    if (name.find(':') != std::string::npos || !is_within_its_folder(name))
-    {
-        uri->refuse(fmt::format("is '{}'; it must name a file in the scene file's folder or below",
-                                printable(name)));
-    }
+    const std::string name = file_of(*uri);
     auto bytes = read_file(folder_ / name, kMaxGltfBytes);
     if (!bytes)
     {
@@ -268,14 +237,42 @@ std::string GltfFile::load(const JsonAt& buffer, std::size_t index, std::uint64_
     return std::move(bytes).value();
 }
 
+/// The file that a URI names: as the standard reads it or, where no such file is there, as some
+/// programs write it, with the characters themselves and with backslashes between folders.
+std::string GltfFile::file_of(const JsonAt& uri) const
+{
+    const std::string& text = uri.text();
+    std::string slashes = unescaped(text);
+    std::ranges::replace(slashes, '\\', '/');
+    for (const std::string& name : {unescaped(text), text, slashes})
+    {
+        if (name.find(':') != std::string::npos || !is_within_its_folder(name))
+        {
+            uri.refuse(fmt::format("is '{}'; it must name a file in the scene file's folder or "
+                                   "below",
+                                   printable(name)));
+        }
+        std::error_code ignored;
+        if (std::filesystem::exists(folder_ / name, ignored))
+        {
+            return name;
+        }
+    }
+    return unescaped(text);
+}
+
+bool GltfFile::has_buffer(std::size_t index) const
+{
+    return root().at("buffers").at(index).find("uri") || (index == 0 && binary_);
+}
+
 std::string GltfFile::described(const std::string& list, std::size_t index) const
 {
     const JsonAt thing = root().at(list).at(index);
-    const auto name = thing.find("name");
+    const std::string name = thing.name();
     const std::string kind = list == "meshes" ? "mesh" : list.substr(0, list.size() - 1);
-    return name && !name->text().empty()
-               ? fmt::format("{} '{}' ({})", kind, printable(name->text()), thing.place())
-               : thing.place();
+    return name.empty() ? thing.place()
+                        : fmt::format("{} '{}' ({})", kind, printable(name), thing.place());
 }
 
 } // namespace tactus::detail

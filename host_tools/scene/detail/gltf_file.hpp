@@ -35,6 +35,12 @@ public:
     /// Whether the file can't be understood without that extension.
     [[nodiscard]] bool requires_extension(std::string_view name) const;
 
+    /// What of the file as a whole is left out, one line each.
+    [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
+
+    /// Whether buffers[index] says where its bytes are.
+    [[nodiscard]] bool has_buffer(std::size_t index) const;
+
     /// The bytes of buffers[index], as many as its byteLength says: from the file's own binary
     /// chunk, a data URI or a file beside it. Read once, at the first call; then kept.
     [[nodiscard]] std::string_view buffer(std::size_t index);
@@ -48,14 +54,15 @@ public:
 private:
     void take_chunks(std::string_view bytes);
     void check_asset() const;
-    void check_extensions();
     [[nodiscard]] std::string load(const JsonAt& buffer, std::size_t index,
                                    std::uint64_t length) const;
+    [[nodiscard]] std::string file_of(const JsonAt& uri) const;
 
     std::filesystem::path folder_;
     std::unique_ptr<nlohmann::json> json_; ///< At a fixed address: JsonAt points into it.
     std::optional<std::string> binary_;    ///< Of a GLB that has one.
     std::vector<std::string> required_;
+    std::vector<std::string> notes_;
     std::vector<std::optional<std::string>> buffers_;
     std::uint64_t buffer_bytes_{0};
 };

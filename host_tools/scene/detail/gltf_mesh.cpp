@@ -4,13 +4,18 @@
 
 #include "host_tools/mesh/read_mesh.hpp"
 #include "host_tools/scene/detail/gltf_accessor.hpp"
+#include "platform/base/counted.hpp"
+#include "rt_core/math/vec3.hpp"
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
 #include <map>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -25,6 +30,7 @@ constexpr std::array<std::string_view, 7> kModes{
     "POINTS", "LINES", "LINE_LOOP", "LINE_STRIP", "TRIANGLES", "TRIANGLE_STRIP", "TRIANGLE_FAN"};
 constexpr std::size_t kTriangles = 4;
 constexpr std::size_t kStrip = 5;
+constexpr std::uint64_t kAnyMode = 0xFFFF'FFFF;
 
 /// To remember which vertex of the mesh an element became costs 4 bytes for each of the accessor.
 constexpr std::uint64_t kElementsPerRead = 16;
@@ -33,34 +39,72 @@ constexpr std::uint32_t kUnseen = 0xFFFF'FFFF;
 std::size_t mode_of(const JsonAt& primitive)
 {
     const auto mode = primitive.find("mode");
-    const std::size_t code = mode ? mode->index_below(kModes.size(), "modes") : kTriangles;
-    if (code < kTriangles)
-    {
-        primitive.refuse(fmt::format("is made of {}; only triangles, strips and fans have a "
-                                     "surface",
-                                     kModes.at(code)));
-    }
-    return code;
+    return mode ? mode->index_below(kModes.size(), "modes") : kTriangles;
+}
+
+/// An extension may have primitives of modes that glTF doesn't have.
+bool is_of_an_extension(const JsonAt& primitive)
+{
+    const auto mode = primitive.find("mode");
+    return mode && mode->json().is_number_unsigned() && mode->whole(kAnyMode) >= kModes.size() &&
+           primitive.find("extensions");
 }
 
 /// What has a surface that this reader can't tell.
-void refuse_what_moves(const GltfFile& file, const JsonAt& primitive)
+void refuse_what_moves(const JsonAt& primitive)
 {
     if (primitive.size_of("targets") > 0)
     {
-        primitive.refuse("has morph targets; a model keeps its shape");
+        primitive.refuse("has morph targets; a model keeps its shape: apply or remove them in the "
+                         "modeller (in Blender shape keys), or leave the node out by "
+                         "extras.tactus.touch = false");
     }
+}
+
+/// A compressed primitive has an uncompressed form, too, unless the file says that it needs the
+/// extension or the accessor has no data.
+void refuse_what_is_compressed(const GltfFile& file, const JsonAt& primitive, std::size_t positions)
+{
+    constexpr const char* kDraco = "KHR_draco_mesh_compression";
     const auto extensions = primitive.find("extensions");
-    if (extensions && extensions->find("KHR_draco_mesh_compression") &&
-        file.requires_extension("KHR_draco_mesh_compression"))
+    const JsonAt accessor = file.root().at("accessors").at(positions);
+    const bool has_data = accessor.find("bufferView") || accessor.find("sparse");
+    if (extensions && extensions->find(kDraco) && (file.requires_extension(kDraco) || !has_data))
     {
-        primitive.refuse("is compressed with KHR_draco_mesh_compression, which is not supported");
+        refuse_compressed(primitive, kDraco);
     }
 }
 
 std::size_t accessor_of(const GltfFile& file, const JsonAt& json)
 {
     return json.index_below(file.root().size_of("accessors"), "accessors");
+}
+
+/// Whether an accessor has no elements. The standard has none such, but programs write it.
+bool is_empty(const GltfFile& file, std::size_t accessor)
+{
+    return file.root().at("accessors").at(accessor).at("count").json() == 0;
+}
+
+/// Why a primitive has no surface; empty when it may have one.
+std::string why_no_surface(const GltfFile& file, const JsonAt& primitive)
+{
+    if (is_of_an_extension(primitive))
+    {
+        return "of an extension's own mode";
+    }
+    const std::size_t mode = mode_of(primitive);
+    if (mode < kTriangles)
+    {
+        return fmt::format("of {}", kModes.at(mode));
+    }
+    const auto positions = primitive.at("attributes").find("POSITION");
+    if (!positions)
+    {
+        return "without positions";
+    }
+    const auto indices = primitive.find("indices");
+    return is_empty(file, accessor_of(file, indices ? *indices : *positions)) ? "of 0 corners" : "";
 }
 
 std::size_t faces_of(std::size_t mode, std::size_t corners)
@@ -89,13 +133,19 @@ class MeshBuilder
 public:
     explicit MeshBuilder(GltfFile& file) : file_(file) {}
 
-    /// `charge` is told how much work is ahead, and may throw.
+    /// `charge` is told how much work is ahead, and may throw. Returns why the primitive has no
+    /// surface and is left out; empty otherwise.
     template <typename Charge>
-    void add(const JsonAt& primitive, const Charge& charge)
+    [[nodiscard]] std::string add(const JsonAt& primitive, const Charge& charge)
     {
-        refuse_what_moves(file_, primitive);
+        if (std::string reason = why_no_surface(file_, primitive); !reason.empty())
+        {
+            return reason;
+        }
+        refuse_what_moves(primitive);
         const std::size_t mode = mode_of(primitive);
         const std::size_t number = accessor_of(file_, primitive.at("attributes").at("POSITION"));
+        refuse_what_is_compressed(file_, primitive, number);
         const GltfAccessor positions(file_, number);
         positions.require_positions(file_);
         std::optional<GltfAccessor> indices;
@@ -105,11 +155,14 @@ public:
             indices->require_indices();
         }
         const std::size_t corners = indices ? indices->count() : positions.count();
-        if (corners < 3 || (mode == kTriangles && corners % 3 != 0))
+        if (corners < 3)
+        {
+            return "of " + counted(corners, "corner");
+        }
+        if (mode == kTriangles && corners % 3 != 0)
         {
             primitive.refuse(
-                fmt::format("has {} corners; {}", corners,
-                            corners < 3 ? "a triangle has 3" : "triangles have a multiple of 3"));
+                fmt::format("has {} corners; triangles have a multiple of 3", corners));
         }
         const auto [known, is_new] = vertices_.try_emplace(number);
         charge(corners + (is_new ? positions.count() / kElementsPerRead : 0));
@@ -137,6 +190,7 @@ public:
                 out[k] = vertex(known->second[element], positions, element);
             }
         }
+        return "";
     }
 
     [[nodiscard]] TriangleMesh take() { return std::move(mesh_); }
@@ -147,7 +201,7 @@ private:
         if (known == kUnseen)
         {
             known = static_cast<std::uint32_t>(mesh_.positions.size());
-            mesh_.positions.push_back(positions.position(element));
+            mesh_.positions.push_back(positions.numbers<3>(element));
         }
         return known;
     }
@@ -158,25 +212,59 @@ private:
     std::map<std::size_t, std::vector<std::uint32_t>> vertices_;
 };
 
+bool has_area(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& face)
+{
+    const Vec3 a(mesh.positions[face[0]].data());
+    const Vec3 b(mesh.positions[face[1]].data());
+    const Vec3 c(mesh.positions[face[2]].data());
+    return !(b - a).cross(c - a).isZero(0.0);
+}
+
+SceneMesh with_left_out(TriangleMesh mesh, const std::map<std::string, std::size_t>& reasons)
+{
+    SceneMesh result;
+    const auto add = [&result](const std::string& text)
+    { result.left_out += (result.left_out.empty() ? "" : ", ") + text; };
+    for (const auto& [reason, count] : reasons)
+    {
+        add(counted(count, "primitive") + " " + reason);
+    }
+    const bool has_surface =
+        std::ranges::any_of(mesh.faces, [&mesh](const auto& face) { return has_area(mesh, face); });
+    if (has_surface)
+    {
+        result.mesh = std::move(mesh);
+    }
+    else if (!mesh.faces.empty())
+    {
+        add(counted(mesh.faces.size(), "face") + " without area");
+    }
+    else if (reasons.empty())
+    {
+        add("no primitives");
+    }
+    return result;
+}
+
 } // namespace
 
-TriangleMesh GltfMeshes::read(std::size_t index)
+SceneMesh GltfMeshes::read(std::size_t index)
 {
     try
     {
-        const JsonAt primitives = file_.root().at("meshes").at(index).at("primitives");
-        const std::size_t count = primitives.size();
-        if (count == 0)
-        {
-            primitives.refuse("are none");
-        }
+        const JsonAt mesh = file_.root().at("meshes").at(index);
+        const std::size_t count = mesh.size_of("primitives");
         MeshBuilder builder(file_);
+        std::map<std::string, std::size_t> left_out; // By reason.
         for (std::size_t i = 0; i < count; ++i)
         {
-            const JsonAt primitive = primitives.at(i);
-            builder.add(primitive, [&](std::uint64_t reads) { charge(reads, primitive); });
+            const JsonAt primitive = mesh.at("primitives").at(i);
+            const std::string reason =
+                builder.add(primitive, [&](std::uint64_t reads) { charge(reads, primitive); });
+            left_out[reason] += reason.empty() ? 0U : 1U;
         }
-        return builder.take();
+        left_out.erase("");
+        return with_left_out(builder.take(), left_out);
     }
     catch (const SceneFault& fault)
     {

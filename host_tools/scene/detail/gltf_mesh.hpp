@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "host_tools/mesh/triangle_mesh.hpp"
 #include "host_tools/scene/detail/gltf_file.hpp"
+#include "host_tools/scene/scene_mesh.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -25,7 +25,7 @@ public:
     explicit GltfMeshes(GltfFile& file) : file_(file) {}
 
     /// All triangles of meshes[index], with the positions that they use, in the mesh's own frame.
-    [[nodiscard]] TriangleMesh read(std::size_t index);
+    [[nodiscard]] SceneMesh read(std::size_t index);
 
 private:
     void charge(std::uint64_t reads, const JsonAt& primitive);

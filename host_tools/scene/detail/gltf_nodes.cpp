@@ -2,12 +2,13 @@
 // Copyright the Tactus authors.
 #include "host_tools/scene/detail/gltf_nodes.hpp"
 
-#include "host_tools/scene/material_ranges.hpp"
+#include "host_tools/scene/detail/gltf_accessor.hpp"
 #include "host_tools/scene/material_text.hpp"
 #include "host_tools/scene/unique_names.hpp"
 #include "platform/base/printable.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/math/vec3.hpp"
+#include "transport/material_ranges.hpp"
 #include "transport/model_name.hpp"
 
 #include <Eigen/Geometry>
@@ -30,8 +31,14 @@ namespace
 /// their length: files keep single precision, and rounding adds up along a chain of parents.
 constexpr double kShapeTolerance = 1e-5;
 
+/// Instances may be turned by normalized integers of 8 bits.
+constexpr double kInstanceUnitTolerance = 0.02;
+
 constexpr std::size_t kNoParent = std::numeric_limits<std::size_t>::max();
 constexpr std::string_view kModelExtension = ".spm";
+/// The way out where a node can't be touched as it is.
+constexpr std::string_view kLeaveOut = "or leave it out by extras.tactus.touch = false";
+constexpr std::string_view kKeep = "extras.tactus.touch = true keeps it";
 
 /// there = linear x here + translation; from a node's frame to its parent's, or to the world.
 struct Affine
@@ -80,11 +87,12 @@ Affine read_matrix(const JsonAt& json)
     return affine;
 }
 
-Mat3 read_rotation(const JsonAt& json)
+/// `json` has the quaternion, or the one that an instance is turned by.
+Mat3 rotation_of(const std::array<double, 4>& quaternion, const JsonAt& json, double tolerance)
 {
-    const auto [x, y, z, w] = numbers<4>(json);
+    const auto [x, y, z, w] = quaternion;
     const Eigen::Quaterniond rotation(w, x, y, z);
-    if (!(std::abs(rotation.norm() - 1.0) <= kPoseUnitTolerance))
+    if (!(std::abs(rotation.norm() - 1.0) <= tolerance))
     {
         json.refuse(fmt::format("has the length {}; a unit quaternion has 1", rotation.norm()));
     }
@@ -108,7 +116,7 @@ Affine read_transform(const JsonAt& node)
     Affine affine;
     if (rotation)
     {
-        affine.linear = read_rotation(*rotation);
+        affine.linear = rotation_of(numbers<4>(*rotation), *rotation, kPoseUnitTolerance);
     }
     if (scale)
     {
@@ -238,6 +246,53 @@ std::vector<bool> find_shown(const GltfFile& file, const NodeTree& tree)
     return is_shown;
 }
 
+/// Why a node is not there for eyes, though the scene has it; empty where it is.
+class HiddenNodes
+{
+public:
+    HiddenNodes(const GltfFile& file, const NodeTree& tree) : reasons_(tree.order().size())
+    {
+        for (const std::size_t node : tree.order())
+        {
+            read(file.root().at("nodes").at(node), node);
+        }
+        for (const std::size_t node : tree.order())
+        {
+            const std::size_t parent = tree.parent(node);
+            if (parent != kNoParent && reasons_[node].empty())
+            {
+                reasons_[node] = reasons_[parent];
+            }
+        }
+    }
+
+    [[nodiscard]] std::string_view reason(std::size_t node) const { return reasons_[node]; }
+
+private:
+    void read(const JsonAt& node, std::size_t number)
+    {
+        const auto extensions = node.find("extensions");
+        const auto visibility = extensions ? extensions->find("KHR_node_visibility") : std::nullopt;
+        const auto visible = visibility ? visibility->find("visible") : std::nullopt;
+        if (visible && !visible->boolean())
+        {
+            reasons_[number] = "hidden by KHR_node_visibility";
+        }
+        const auto levels = extensions ? extensions->find("MSFT_lod") : std::nullopt;
+        const auto ids = levels ? levels->find("ids") : std::nullopt;
+        for (std::size_t i = 0; ids && i < ids->size(); ++i)
+        {
+            const std::size_t lower = ids->at(i).index_below(reasons_.size(), "nodes");
+            if (lower != number)
+            {
+                reasons_[lower] = "a lower level of detail by MSFT_lod";
+            }
+        }
+    }
+
+    std::vector<std::string_view> reasons_; ///< One for each node.
+};
+
 Material read_material(const JsonAt& json)
 {
     json.require_keys_among(
@@ -263,20 +318,21 @@ std::string read_model(const JsonAt& json)
         !is_valid_name(std::string_view(name).substr(0, name.size() - kModelExtension.size())))
     {
         json.refuse(fmt::format("is '{}'; must be an .spm in the scene file's folder with a name "
-                                "of 1 to 63 characters of A-Z a-z 0-9 . _ -",
-                                printable(name)));
+                                "of {}",
+                                printable(name), kNameForm));
     }
     return name;
 }
 
-/// `extras` may hold anything of others; "tactus" is ours.
-void read_extras(const JsonAt& node, SceneObject& object)
+/// `extras` may hold anything of others; "tactus" is ours. Returns whether it says that the object
+/// is to be touched.
+bool read_extras(const JsonAt& node, SceneObject& object)
 {
     const auto extras = node.find("extras");
     const auto ours = extras && extras->json().is_object() ? extras->find("tactus") : std::nullopt;
     if (!ours)
     {
-        return;
+        return false;
     }
     ours->require_keys_among("model material touch");
     if (const auto model = ours->find("model"))
@@ -287,10 +343,9 @@ void read_extras(const JsonAt& node, SceneObject& object)
     {
         object.material = read_material(*material);
     }
-    if (const auto touch = ours->find("touch"))
-    {
-        object.is_touched = touch->boolean();
-    }
+    const auto touch = ours->find("touch");
+    object.is_touched = !touch || touch->boolean();
+    return touch && object.is_touched;
 }
 
 /// In range but for rounding: 0.001 as a float is a little below.
@@ -300,16 +355,21 @@ double rounded_into_range(double scale)
     return std::abs(scale - nearest) <= kShapeTolerance * nearest ? nearest : scale;
 }
 
+/// Whether it makes a point or a line of everything.
+bool leaves_no_surface(const Mat3& linear)
+{
+    const Vec3 axes = linear.jacobiSvd().singularValues(); // The largest first.
+    return axes[1] <= kShapeTolerance * kShapeTolerance * axes[0];
+}
+
 /// Makes a pose of where the node stands, which must be a similarity, mirrored or not.
 void set_pose(const Affine& world, SceneObject& object)
 {
-    const auto refuse = [&](const std::string& what)
-    { throw SceneFault{object.place + " " + what}; };
+    const auto refuse = [&](const std::string& what, std::string_view way)
+    { throw SceneFault{fmt::format("{} {}: {}, {}", object.place, what, way, kLeaveOut)}; };
+    constexpr std::string_view kApply = "apply its scale to the mesh in the modeller (in Blender "
+                                        "Object > Apply > Scale)";
     Mat3 axes = world.linear;
-    if (!axes.allFinite() || !world.translation.allFinite())
-    {
-        refuse("stands nowhere: with its parents' transforms a number is not finite");
-    }
     const bool is_mirrored = axes.determinant() < 0.0;
     if (is_mirrored)
     {
@@ -319,19 +379,21 @@ void set_pose(const Affine& world, SceneObject& object)
     const double scale = lengths.mean();
     if (!(lengths.minCoeff() > 0.0))
     {
-        refuse("has a scale of 0 along an axis");
+        refuse("has a scale of 0 along an axis; a model keeps its shape", kApply);
     }
     if (lengths.maxCoeff() - lengths.minCoeff() > 2.0 * kShapeTolerance * scale)
     {
         refuse(fmt::format("scales its axes by {:.6g}, {:.6g} and {:.6g}; a model keeps its shape, "
                            "so they must be equal",
-                           lengths.x(), lengths.y(), lengths.z()));
+                           lengths.x(), lengths.y(), lengths.z()),
+               kApply);
     }
     const Mat3 rotation = axes / scale;
     const Mat3 product = rotation.transpose() * rotation;
     if ((product - Mat3::Identity()).cwiseAbs().maxCoeff() > 4.0 * kShapeTolerance)
     {
-        refuse("has axes that are not perpendicular; a model keeps its shape");
+        refuse("has axes that are not perpendicular; a model keeps its shape",
+               "apply its transform, and those of its parents, to the mesh in the modeller");
     }
     const Eigen::Quaterniond turn = Eigen::Quaterniond(rotation).normalized();
     object.pose.rotation = {turn.x(), turn.y(), turn.z(), turn.w()};
@@ -339,15 +401,20 @@ void set_pose(const Affine& world, SceneObject& object)
     object.pose.scale = rounded_into_range(scale);
     if (const auto checked = checked_pose(object.pose); !checked)
     {
-        refuse(checked.error() == PoseRefusal::translation
-                   ? fmt::format("stands farther than {} m from the origin along an axis",
-                                 kPoseReachMax_m)
-                   : fmt::format("has a scale of {:.6g}; {} to {} is allowed", scale, kPoseScaleMin,
-                                 kPoseScaleMax));
+        if (checked.error() == PoseRefusal::translation)
+        {
+            refuse(fmt::format("stands farther than {} m from the origin along an axis",
+                               kPoseReachMax_m),
+                   "move the scene to its origin in the modeller");
+        }
+        refuse(fmt::format("has a scale of {:.6g}; {} to {} is allowed", scale, kPoseScaleMin,
+                           kPoseScaleMax),
+               kApply);
     }
     if (is_mirrored && !object.model.empty())
     {
-        refuse("mirrors its model; that would be another model");
+        refuse("mirrors its model; that would be another model",
+               "mirror the mesh and make a model of it");
     }
     if (object.mesh)
     {
@@ -355,13 +422,21 @@ void set_pose(const Affine& world, SceneObject& object)
     }
 }
 
-/// None when the node is no object.
-std::optional<SceneObject> read_object(const GltfFile& file, std::size_t index)
+/// A node that is an object, or as many as it has instances.
+struct ObjectNode
+{
+    std::size_t node{0};
+    SceneObject object; ///< Without its pose.
+};
+
+/// None when the node is no object, or is left out.
+std::optional<ObjectNode> read_object(const GltfFile& file, std::size_t index,
+                                      std::string_view hidden, LeftOut& left_out)
 {
     const JsonAt node = file.root().at("nodes").at(index);
     SceneObject object;
     object.place = file.described("nodes", index);
-    read_extras(node, object);
+    const bool is_kept = read_extras(node, object);
     if (const auto mesh = node.find("mesh"))
     {
         object.mesh = MeshUse{mesh->index_below(file.root().size_of("meshes"), "meshes")};
@@ -370,62 +445,199 @@ std::optional<SceneObject> read_object(const GltfFile& file, std::size_t index)
     {
         return std::nullopt;
     }
+    if (!hidden.empty() && object.is_touched && !is_kept)
+    {
+        left_out.add(fmt::format("{}; {}", hidden, kKeep), object.place);
+        return std::nullopt;
+    }
     if (node.find("skin") && object.is_touched && object.model.empty())
     {
-        throw SceneFault{object.place + " has a skin; a model keeps its shape"};
+        throw SceneFault{fmt::format("{} has a skin; a model keeps its shape: apply the armature "
+                                     "to the mesh in the modeller, {}",
+                                     object.place, kLeaveOut)};
     }
-    const auto name = node.find("name");
-    object.name = name ? plain_name(name->text()) : "";
-    if (object.name.empty())
-    {
-        object.name = "node" + std::to_string(index);
-    }
+    const std::string name = plain_name(node.name());
+    object.name = name.empty() ? "node" + std::to_string(index) : name;
     if (!object.model.empty())
     {
         object.mesh.reset(); // The mesh is for eyes then.
     }
-    return object;
+    return ObjectNode{index, std::move(object)};
 }
+
+/// Where the instances of a node stand in its frame (EXT_mesh_gpu_instancing).
+std::optional<std::vector<Affine>> read_instances(GltfFile& file, std::size_t index)
+{
+    const JsonAt node = file.root().at("nodes").at(index);
+    const auto extensions = node.find("extensions");
+    const auto instancing = extensions ? extensions->find("EXT_mesh_gpu_instancing") : std::nullopt;
+    const auto attributes = instancing ? instancing->find("attributes") : std::nullopt;
+    if (!attributes)
+    {
+        return std::nullopt;
+    }
+    std::size_t count = 0;
+    const auto accessor = [&](const char* name, std::size_t width) -> std::optional<GltfAccessor>
+    {
+        const auto number = attributes->find(name);
+        if (!number)
+        {
+            return std::nullopt;
+        }
+        GltfAccessor values(file,
+                            number->index_below(file.root().size_of("accessors"), "accessors"));
+        values.require_width(width);
+        if (count != 0 && values.count() != count)
+        {
+            number->refuse(
+                fmt::format("has {} instances, another attribute {}", values.count(), count));
+        }
+        count = values.count();
+        return values;
+    };
+    const auto translations = accessor("TRANSLATION", 3);
+    const auto rotations = accessor("ROTATION", 4);
+    const auto scales = accessor("SCALE", 3);
+    if (count > kMaxObjects)
+    {
+        attributes->refuse(
+            fmt::format("are of {} instances; at most {} objects are allowed", count, kMaxObjects));
+    }
+    if (count == 0)
+    {
+        return std::nullopt; // It says nothing of where they stand.
+    }
+    std::vector<Affine> instances(count);
+    for (std::size_t i = 0; i < count; ++i)
+    {
+        Affine& instance = instances[i];
+        if (rotations)
+        {
+            instance.linear =
+                rotation_of(rotations->numbers<4>(i), *attributes, kInstanceUnitTolerance);
+        }
+        if (scales)
+        {
+            instance.linear *= Vec3(scales->numbers<3>(i).data()).asDiagonal();
+        }
+        if (translations)
+        {
+            instance.translation = Vec3(translations->numbers<3>(i).data());
+        }
+    }
+    return instances;
+}
+
+/// Where nodes stand in the world: of those that are marked, and of their parents.
+std::vector<Affine> place_nodes(const GltfFile& file, const NodeTree& tree,
+                                std::vector<bool> is_needed)
+{
+    const std::vector<std::size_t>& order = tree.order();
+    for (auto node = order.rbegin(); node != order.rend(); ++node)
+    {
+        if (is_needed[*node] && tree.parent(*node) != kNoParent)
+        {
+            is_needed[tree.parent(*node)] = true;
+        }
+    }
+    std::vector<Affine> worlds(order.size());
+    for (const std::size_t node : order)
+    {
+        if (is_needed[node])
+        {
+            const Affine local = read_transform(file.root().at("nodes").at(node));
+            const std::size_t parent = tree.parent(node);
+            worlds[node] = parent == kNoParent ? local : worlds[parent].after(local);
+        }
+    }
+    return worlds;
+}
+
+/// Objects with their names and poses, in their order.
+class ObjectList
+{
+public:
+    explicit ObjectList(LeftOut& left_out) : left_out_(&left_out) {}
+
+    void add(SceneObject object, const Affine& world)
+    {
+        if (objects_.size() == kMaxObjects)
+        {
+            throw SceneFault{fmt::format("has more than {} objects; join some in the modeller, {}",
+                                         kMaxObjects, kLeaveOut)};
+        }
+        if (object.is_touched && (!world.linear.allFinite() || !world.translation.allFinite()))
+        {
+            throw SceneFault{object.place +
+                             " stands nowhere: with its parents' transforms a number is not "
+                             "finite"};
+        }
+        if (object.is_touched && leaves_no_surface(world.linear))
+        {
+            left_out_->add("scaled to a point or a line", object.place);
+            return;
+        }
+        if (object.is_touched)
+        {
+            set_pose(world, object);
+        }
+        names_.push_back(object.name);
+        objects_.push_back(std::move(object));
+    }
+
+    [[nodiscard]] std::vector<SceneObject> take()
+    {
+        names_ = unique_names(names_);
+        for (std::size_t i = 0; i < objects_.size(); ++i)
+        {
+            objects_[i].name = std::move(names_[i]);
+        }
+        return std::move(objects_);
+    }
+
+private:
+    LeftOut* left_out_;
+    std::vector<SceneObject> objects_;
+    std::vector<std::string> names_;
+};
 
 } // namespace
 
-std::vector<SceneObject> read_objects(const GltfFile& file)
+std::vector<SceneObject> read_objects(GltfFile& file, LeftOut& left_out)
 {
     const NodeTree tree(file);
     const std::vector<bool> is_shown = find_shown(file, tree);
-    std::vector<Affine> worlds(tree.order().size());
-    for (const std::size_t node : tree.order())
+    const HiddenNodes hidden(file, tree);
+    std::vector<ObjectNode> nodes;
+    std::vector<bool> is_placed(is_shown.size(), false);
+    for (std::size_t node = 0; node < is_shown.size(); ++node)
     {
-        const Affine local = read_transform(file.root().at("nodes").at(node));
-        const std::size_t parent = tree.parent(node);
-        worlds[node] = parent == kNoParent ? local : worlds[parent].after(local);
+        auto object =
+            is_shown[node] ? read_object(file, node, hidden.reason(node), left_out) : std::nullopt;
+        if (object)
+        {
+            is_placed[node] = object->object.is_touched;
+            nodes.push_back(std::move(*object));
+        }
     }
-    std::vector<SceneObject> objects;
-    std::vector<std::string> names;
-    for (std::size_t node = 0; node < worlds.size(); ++node)
+    const std::vector<Affine> worlds = place_nodes(file, tree, is_placed);
+    ObjectList objects(left_out);
+    for (const ObjectNode& node : nodes)
     {
-        auto object = is_shown[node] ? read_object(file, node) : std::nullopt;
-        if (!object)
+        const auto instances =
+            node.object.is_touched ? read_instances(file, node.node) : std::nullopt;
+        for (std::size_t i = 0; instances && i < instances->size(); ++i)
         {
-            continue;
+            SceneObject object = node.object;
+            object.place += fmt::format(" instance {}", i);
+            objects.add(std::move(object), worlds[node.node].after((*instances)[i]));
         }
-        if (objects.size() == kMaxObjects)
+        if (!instances)
         {
-            throw SceneFault{fmt::format("has more than {} objects", kMaxObjects)};
+            objects.add(node.object, worlds[node.node]);
         }
-        if (object->is_touched)
-        {
-            set_pose(worlds[node], *object);
-        }
-        names.push_back(object->name);
-        objects.push_back(std::move(*object));
     }
-    names = unique_names(names);
-    for (std::size_t i = 0; i < objects.size(); ++i)
-    {
-        objects[i].name = std::move(names[i]);
-    }
-    return objects;
+    return objects.take();
 }
 
 } // namespace tactus::detail

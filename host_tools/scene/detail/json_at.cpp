@@ -142,6 +142,12 @@ std::size_t JsonAt::size_of(const std::string& key) const
     return member ? member->size() : 0;
 }
 
+std::string JsonAt::name() const
+{
+    const auto member = find("name");
+    return member && member->value_->is_string() ? member->text() : "";
+}
+
 double JsonAt::number() const
 {
     if (!value_->is_number())

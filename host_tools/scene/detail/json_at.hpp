@@ -44,6 +44,8 @@ public:
     [[nodiscard]] std::size_t size() const;
     /// size() of a member that is an array; 0 where there is none.
     [[nodiscard]] std::size_t size_of(const std::string& key) const;
+    /// The member "name", where it is a text; otherwise empty.
+    [[nodiscard]] std::string name() const;
 
     [[nodiscard]] double number() const; ///< Finite: JSON knows nothing else.
     [[nodiscard]] bool boolean() const;

@@ -36,8 +36,8 @@ const PLOTS = [
   {
     title: "memory, % of the pools", labels: ["pages", "faces"],
     values: (c) => ["pages", "faces"].map((name) => {
-      const most = Math.max(...c.models.map((m) => m[name][1]), 1);
-      return 100 * c.models.reduce((sum, m) => sum + m[name][0], 0) / most;
+      const sum = (part) => c.models.reduce((so_far, m) => so_far + m[name][part], 0);
+      return 100 * sum(0) / Math.max(sum(1), 1);
     }),
   },
   {

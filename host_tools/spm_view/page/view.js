@@ -124,7 +124,8 @@ function show_choices(state) {
   const objects = front ? front.objects : [];
   const name_of = (object) => {
     const model = controller.models.find((m) => m.hash === object.model);
-    return `${object.object}: ${model ? model.name : object.model.slice(0, 8)}`;
+    const shows = model ? model.name : object.model.slice(0, 8);
+    return `${object.object}: ${object.name ? `${object.name} (${shows})` : shows}`;
   };
   offer(by_id("object"),
     [["", "all"], ...objects.map((o) => [`${o.host}/${o.object}`, name_of(o)])], choice.object);
@@ -152,8 +153,8 @@ function show_legend(waits, left_out) {
 }
 
 function show_when(time_s) {
-  by_id("when").textContent = frozen_s === null ? "live" :
-    `${(time_s - now_s()).toFixed(1)} s`;
+  const back_s = Math.max(now_s() - time_s, 0).toFixed(1);
+  by_id("when").textContent = frozen_s === null ? "live" : `${back_s} s ago`;
 }
 
 /// The moment that is looked at.
@@ -167,7 +168,7 @@ function show_player() {
   by_id("play").setAttribute("aria-pressed", String(player.plays));
   by_id("frame").value = String(frame);
   by_id("place").textContent = `${player.time_s().toFixed(3)} s, frame ` +
-    `${frame.toLocaleString("en")} of ${film.frames.toLocaleString("en")}`;
+    `${frame.toLocaleString("en")} of 0 to ${(film.frames - 1).toLocaleString("en")}`;
 }
 
 function show() {

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "host_tools/mesh/triangle_mesh.hpp"
+#include "rt_core/math/vec3.hpp"
+
+#include <Eigen/Geometry>
+
+#include <cstdint>
+
+// Any thread: functions of their arguments alone.
+namespace tactus
+{
+
+[[nodiscard]] inline Vec3 place_of(const TriangleMesh& mesh, std::uint32_t vertex)
+{
+    return Vec3(mesh.positions[vertex].data());
+}
+
+/// Round the vertices that faces use; empty when there is no face.
+[[nodiscard]] inline Eigen::AlignedBox3d box_of(const TriangleMesh& mesh)
+{
+    Eigen::AlignedBox3d box;
+    for (const auto& face : mesh.faces)
+    {
+        for (const std::uint32_t vertex : face)
+        {
+            box.extend(place_of(mesh, vertex));
+        }
+    }
+    return box;
+}
+
+} // namespace tactus

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "host_tools/mesh/triangle_mesh.hpp"
+#include "host_tools/scene/placed_models.hpp"
+#include "platform/base/refusal.hpp"
+
+#include <Eigen/Geometry>
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace tactus::spm_build
+{
+
+/// How what was read is turned, sized and moved, in this order.
+struct Placing
+{
+    bool is_y_up{false}; ///< Its y axis points up; z does then, as for devices.
+    double scale{1.0};
+    bool is_centered{false}; ///< The middle of its box becomes the origin.
+};
+
+/// Turns a mesh so that its y axis becomes z.
+void turn_y_up(TriangleMesh& mesh);
+
+/// Places the objects of a scene, whose models have these boxes: their middle is that of the
+/// objects' boxes. Gives a note of a move. Refuses an object that would stand or be scaled beyond
+/// what is allowed.
+[[nodiscard]] std::optional<Refusal> place_objects(const Placing& placing,
+                                                   std::span<const Eigen::AlignedBox3d> boxes,
+                                                   std::vector<PlacedModel>& objects,
+                                                   std::vector<std::string>& notes);
+
+} // namespace tactus::spm_build
