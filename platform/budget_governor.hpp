@@ -2,10 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/frame_cost_model.hpp"
 #include "platform/time.hpp"
-#include "rt_core/records/frame_input.hpp"
-#include "rt_core/records/work_counters.hpp"
+#include "rt_core/records/work_budget.hpp"
 
 #include <cstdint>
 
@@ -15,69 +13,81 @@ namespace tactus
 /// What one frame took and did.
 struct FrameCost
 {
-    Duration frame;  ///< As a whole: what has to fit.
-    Duration walked; ///< Refine, refit and query: edits and steps of traversals.
-    Duration force;  ///< The stage that planes bound.
-    WorkCounters work;
+    Duration frame;
+    std::uint32_t work{0}; ///< WorkBudget::used().
 };
 
-/// Chooses the budgets of each frame from what the frames before it took, so that a frame fits into
-/// a set time: splits, merges, scanned records, nodes, triangles and planes. It works between
-/// frames and has no clock: the budgets are inputs of the frame like any other, and can be
-/// recorded.
+/// Follows the upper end of values that scatter: up by an eighth of the way at once, down by one
+/// part in 256 a frame. Where values scatter evenly it comes to rest near the highest of 50.
+class UpperLevel
+{
+public:
+    explicit UpperLevel(double start) noexcept : level_(start) {}
+
+    void observe(double value) noexcept
+    {
+        level_ += (value - level_) * (value > level_ ? 1.0 / 8.0 : 1.0 / 256.0);
+    }
+    [[nodiscard]] double level() const noexcept { return level_; }
+
+private:
+    double level_;
+};
+
+/// Chooses how much work each frame may do (Budgets::work) from what the frames before it took, so
+/// that a frame fits into a set time on a machine that is slower than an instruction a nanosecond.
+/// It works between frames and has no clock: its choice is an input of the frame like any other,
+/// and can be recorded.
 ///
-/// What is left of the time after the stages that it does not govern, after the traversals and
-/// planes that are usual, and after a reserve for scatter, is given to splits and merges; both may
-/// be spent in full. A traversal may use what a frame without edits would leave; proxies what is
-/// left without their planes and a frame's edits, and half of it at least. Budgets fall to their
-/// new value at once and rise by a sixteenth of the way a frame, never above those given at the
-/// start and never below a floor, so the front moves in every frame even where the time is too
-/// short.
+/// It learns a line by decayed least squares, time = rest + pace x work. The means follow in about
+/// kWindowFrames frames, and in the first ones as fast as they can; the pace moves only as far as
+/// the work varied. What is left of the time after the rest and a reserve for scatter is given to
+/// work. The budget falls to its new value at once and rises by a sixteenth of the way a frame,
+/// never above `most` and never below `least`, so a frame gets on even where the time
+/// is too short.
 ///
 /// A single frame of more than kStall times the set time is taken for the machine's and teaches
-/// nothing; a second one in a row counts. Same inputs give same budgets. About 50 ns a frame.
+/// nothing; a second one in a row counts. Same inputs give same budgets. Haptic thread, about 20 ns
+/// a frame.
 class BudgetGovernor
 {
 public:
-    static constexpr std::uint32_t kSplitsLeast = 1;
-    static constexpr std::uint32_t kScannedLeast = 32;
-    static constexpr std::uint32_t kNodesLeast = 128;  ///< A base mesh's traversal needs some 40.
-    static constexpr std::uint32_t kPlanesLeast = 128; ///< A slow hand's proxy needs some 60.
+    static constexpr double kWindowFrames = 128.0;
     static constexpr std::int64_t kStall = 4;
+    /// Nanoseconds for a unit of work before anything is known, and how far from it the pace may
+    /// go: noise can't make work free.
+    static constexpr double kFirstPace = 1.0;
+    static constexpr double kPaceRange = 40.0;
 
-    /// `frame_budget` must be positive; no budget of `most` may be less than its floor. `walks` is
-    /// how many traversals a frame makes at most, two for each pair of tool and object; `proxies`
-    /// how many may spend a budget of planes each.
-    BudgetGovernor(Duration frame_budget, const Budgets& most, std::uint32_t walks,
-                   std::uint32_t proxies) noexcept;
+    /// `frame_budget` must be positive, and `least` no more than `most`: Budgets::least_work().
+    BudgetGovernor(Duration frame_budget, std::uint32_t least, std::uint32_t most) noexcept;
 
     /// Of the next frame.
-    [[nodiscard]] const Budgets& budgets() const noexcept { return budgets_; }
+    [[nodiscard]] std::uint32_t work() const noexcept { return work_; }
 
-    /// Tells what the frame with budgets() took and did, and chooses the next ones.
+    /// Tells what the frame with work() took and did, and chooses the next one's.
     void observe(const FrameCost& cost) noexcept;
 
-    /// Whether the set time is too short for even the least budgets, by what is known now.
+    /// Whether the set time is too short for even the least work, by what is known now.
     [[nodiscard]] bool is_at_floor() const noexcept { return is_at_floor_; }
-    [[nodiscard]] const FrameCostModel& model() const noexcept { return model_; }
 
 private:
     [[nodiscard]] bool is_stall(Duration frame) noexcept;
-    void learn(const FrameCost& cost) noexcept;
+    [[nodiscard]] double predict_ns(double work) const noexcept;
+    void learn(double time_ns, double work) noexcept;
     void choose() noexcept;
 
     double frame_budget_ns_;
-    Budgets most_;
-    double walks_;
-    double proxies_;
-    Budgets budgets_;
-    FrameCostModel model_;
-    FrameCostModel force_model_; ///< Its steps are planes.
+    std::uint32_t least_;
+    std::uint32_t most_;
+    std::uint32_t work_;
     double frames_{0.0};
-    double rest_ns_;        ///< Usual time of what is not governed.
-    UpperLevel scatter_ns_; ///< How far frames exceed what was expected of them.
-    UpperLevel steps_;      ///< Of the traversals.
-    UpperLevel planes_;
+    double mean_ns_{0.0};
+    double mean_work_{0.0};
+    double work_work_{0.0}; ///< Decayed variance,
+    double work_time_{0.0}; ///< and covariance.
+    double pace_ns_{kFirstPace};
+    UpperLevel scatter_ns_{0.0}; ///< How far frames exceed what was expected of them.
     bool last_was_long_{false};
     bool is_at_floor_{false};
 };

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstring>
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <utility>
 
@@ -102,6 +103,28 @@ Refusal refuse(const std::filesystem::path& path, const std::string& reason)
     return {path.string() + ": can't be written: " + reason};
 }
 
+/// Whether this is a link that stays, while what it leads to is replaced. In a folder like /tmp a
+/// link that another user has put there could lead anywhere; the rule is that of Linux for opening
+/// files (fs.protected_symlinks).
+bool is_trusted_link(const std::filesystem::path& path)
+{
+    struct stat link
+    {
+    };
+    struct stat folder
+    {
+    };
+    const std::filesystem::path parent = path.has_parent_path() ? path.parent_path() : ".";
+    if (::lstat(path.c_str(), &link) != 0 || !S_ISLNK(link.st_mode) ||
+        ::stat(parent.c_str(), &folder) != 0)
+    {
+        return false;
+    }
+    constexpr mode_t kOpenToAll = S_ISVTX | S_IWOTH;
+    return (folder.st_mode & kOpenToAll) != kOpenToAll || link.st_uid == ::geteuid() ||
+           link.st_uid == folder.st_uid;
+}
+
 /// Makes a new file beside `target` and leaves its name in `name`; -1 and errno when it can't.
 int make_partial(const std::filesystem::path& target, std::string& name)
 {
@@ -146,7 +169,9 @@ Result<AtomicFile, Refusal> AtomicFile::create(const std::filesystem::path& path
         // Taking the place of a device or pipe would be no service to anybody.
         return refuse(path, "it is a directory, device or pipe");
     }
-    const auto target = std::filesystem::absolute(path, code);
+    const bool follows = std::filesystem::exists(status) && is_trusted_link(path);
+    const auto target =
+        follows ? std::filesystem::canonical(path, code) : std::filesystem::absolute(path, code);
     if (code || !path.has_filename())
     {
         return refuse(path, "it is no file name");

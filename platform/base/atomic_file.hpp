@@ -26,8 +26,10 @@ public:
     /// them in memory of fixed size.
     static constexpr std::size_t kMaxPending = 16;
 
-    /// Makes the partial file beside `path`. Refused when `path` is something else than a regular
-    /// file, or when its directory is missing or can't be written.
+    /// Makes the partial file beside `path`, or beside what that leads to where it is a link, which
+    /// stays one; not so a link of another user in a folder where all may write, which is replaced.
+    /// Refused when `path` is something else than a regular file, or when its directory is missing
+    /// or can't be written.
     [[nodiscard]] static Result<AtomicFile, Refusal> create(const std::filesystem::path& path);
 
     /// Finds out before a long run whether a file can be written, and leaves nothing behind;

@@ -4,15 +4,11 @@
 
 #include <optional>
 #include <string_view>
-#include <vector>
 
 namespace tactus
 {
 
 /// Reads all of `text` as a finite number; none when it is anything else.
 [[nodiscard]] std::optional<double> parse_number(std::string_view text);
-
-/// The same for numbers with commas between them; one at least.
-[[nodiscard]] std::optional<std::vector<double>> parse_numbers(std::string_view text);
 
 } // namespace tactus

@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "platform/base/printable.hpp"
 
+#include "platform/base/utf8.hpp"
+
 #include <algorithm>
 
 namespace tactus
@@ -9,30 +11,6 @@ namespace tactus
 
 namespace
 {
-
-/// How many bytes the character has that begins the text; 0: it is no UTF-8 (RFC 3629).
-std::size_t character_bytes(std::string_view text) noexcept
-{
-    const auto byte = [text](std::size_t i)
-    { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
-    const unsigned first = byte(0);
-    const std::size_t count = first < 0x80                     ? 1
-                              : first >= 0xC2 && first < 0xE0  ? 2
-                              : first >= 0xE0 && first < 0xF0  ? 3
-                              : first >= 0xF0 && first <= 0xF4 ? 4
-                                                               : 0;
-    for (std::size_t i = 1; i < count; ++i)
-    {
-        // The second one also says whether fewer bytes would have done, and what is none.
-        const unsigned least = i > 1 ? 0x80 : first == 0xE0 ? 0xA0 : first == 0xF0 ? 0x90 : 0x80;
-        const unsigned most = i > 1 ? 0xBF : first == 0xED ? 0x9F : first == 0xF4 ? 0x8F : 0xBF;
-        if (byte(i) < least || byte(i) > most)
-        {
-            return 0;
-        }
-    }
-    return count;
-}
 
 /// Whether the character, which is one of UTF-8, is obeyed and not seen.
 bool steers(std::string_view character) noexcept
@@ -49,10 +27,8 @@ bool steers(std::string_view character) noexcept
 
 std::string printable(std::string_view text, std::size_t longest)
 {
-    std::string result(text.substr(0, longest));
-    std::ranges::replace_if(
-        result, [](char c) { return !is_printable(c); }, '?');
-    return text.size() > longest ? result + "..." : result;
+    const std::string_view shown = whole_characters(text, longest);
+    return printable_line(shown) + (shown.size() < text.size() ? "..." : "");
 }
 
 std::string printable_line(std::string_view text)

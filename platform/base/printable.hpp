@@ -16,9 +16,9 @@ namespace tactus
     return c >= ' ' && c <= '~';
 }
 
-/// A word from outside (a name, an option's value, a token of a file), fit for a message: bytes
-/// that are not printable ASCII become '?', and what is longer than `longest` bytes ends in "...".
-/// By default a word may be as long as a model's name.
+/// A word from outside (a name, an option's value, a token of a file), fit for a message, as
+/// printable_line() has it; what is longer than `longest` bytes ends in "...". By default a word
+/// may be as long as a model's name.
 [[nodiscard]] std::string printable(std::string_view text, std::size_t longest = 63);
 
 /// A whole line of output: every byte that is neither ASCII nor part of a UTF-8 character becomes

@@ -68,7 +68,7 @@ std::string good_ones(const std::vector<Finding>& findings)
     std::string names;
     for (const Finding& finding : findings)
     {
-        if (finding.verdict == Verdict::good)
+        if (finding.verdict == Verdict::good && !finding.is_asked_for)
         {
             names += (names.empty() ? "" : ", ") + finding.name;
         }
@@ -111,7 +111,8 @@ std::string make_text(const std::vector<Finding>& findings, bool shows_good)
     {
         for (const Finding& finding : findings)
         {
-            if (finding.verdict == verdict && (verdict != Verdict::good || shows_good))
+            const bool is_shown = verdict != Verdict::good || shows_good || finding.is_asked_for;
+            if (finding.verdict == verdict && is_shown)
             {
                 text += '\n' + block_of(finding);
             }

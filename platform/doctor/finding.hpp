@@ -35,6 +35,7 @@ struct Finding
     std::string found;
     std::string why;                 ///< What it means for the loop.
     std::vector<std::string> remedy; ///< Commands for a shell, in order; empty when it is good.
+    bool is_asked_for{false};        ///< By an option of its own: it is shown when it is good, too.
 };
 
 } // namespace tactus::doctor

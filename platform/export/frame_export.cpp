@@ -52,10 +52,10 @@ void tell_setup(JsonSink& sink, const RecordedSetup& setup)
     }
     sink.close_list();
     sink.open_list("models");
-    for (const RecordedModel& model : setup.models)
+    for (std::size_t i = 0; i < setup.models.size(); ++i)
     {
         sink.open_item();
-        tell_model_spec(sink, model);
+        tell_model_spec(sink, setup, i);
         sink.close();
     }
     sink.close_list();

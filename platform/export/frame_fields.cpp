@@ -131,6 +131,7 @@ void tell_budgets(FieldSink& sink, const Budgets& budgets)
     sink.integer("budget_pages", budgets.pages);
     sink.integer("budget_requests", budgets.requests);
     sink.integer("budget_regions", budgets.regions);
+    sink.integer("budget_work", budgets.work);
 }
 
 /// What the device said, and what it was told.
@@ -188,13 +189,18 @@ void tell_tool_spec(FieldSink& sink, const ToolSpec& tool)
 void tell_object(FieldSink& sink, const RecordedSetup& setup, std::size_t number)
 {
     const ObjectSpec& object = setup.objects[number];
+    const auto which = static_cast<std::uint32_t>(number);
+    sink.text("name", setup.name_of({RecordedName::Kind::object, which}));
     sink.integer("model", object.model.value);
     tell_pose(sink, setup.poses[number]);
     tell_material(sink, object.material);
 }
 
-void tell_model_spec(FieldSink& sink, const RecordedModel& model)
+void tell_model_spec(FieldSink& sink, const RecordedSetup& setup, std::size_t number)
 {
+    const RecordedModel& model = setup.models[number];
+    const auto which = static_cast<std::uint32_t>(number);
+    sink.text("name", setup.name_of({RecordedName::Kind::model, which}));
     sink.integer("pages", model.capacities.pages);
     sink.integer("index_pages", model.capacities.index_pages);
     sink.integer("faces", model.capacities.faces);

@@ -28,7 +28,7 @@ void tell_run(FieldSink& sink, const RecordedSetup& setup);
 void tell_tool_spec(FieldSink& sink, const ToolSpec& tool);
 /// `number` is of RecordedSetup::objects.
 void tell_object(FieldSink& sink, const RecordedSetup& setup, std::size_t number);
-void tell_model_spec(FieldSink& sink, const RecordedModel& model);
+void tell_model_spec(FieldSink& sink, const RecordedSetup& setup, std::size_t number);
 
 /// Time, work, faults and scene.
 void tell_frame(FieldSink& sink, const ReplayedFrameView& frame);

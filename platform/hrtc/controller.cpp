@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/hrtc/controller.hpp"
 
-#include "platform/base/printable.hpp"
+#include "platform/base/counted.hpp"
 #include "platform/hrtc/following_hand.hpp"
 #include "platform/hrtc/material_limits.hpp"
 #include "platform/hrtc/object_pose.hpp"
@@ -65,6 +65,7 @@ Controller::create(const Options& options, std::vector<ServedModel> models, cons
     std::unique_ptr<Controller> controller(new Controller(std::move(models), goes_on));
     controller->budgets_.splits = options.splits;
     controller->budgets_.merges = options.splits;
+    controller->budgets_.work = options.frame_work();
     controller->make_poses(options);
     if (std::optional<Refusal> error = controller->open_devices(options))
     {
@@ -208,12 +209,11 @@ std::optional<Refusal> Controller::lay_out_pools(const Options& options)
     if (!fits && !try_plan_as_guests(options, most, cache))
     {
         const std::size_t least = least_pool_bytes(setup_, headers_, cache) + sizeof(Frame);
-        return Refusal{
-            fmt::format("--pool-mib: {} MiB is too small for {} models; {:.2f} MiB would "
-                        "do for a start{}",
-                        options.pool_mib, models_.size(),
-                        up_to_cents(static_cast<double>(least) / kBytesPerMib),
-                        options.cache_mib > 0.0 ? ", or less --cache-mib" : "")};
+        return Refusal{fmt::format("--pool-mib: {} MiB is too small for {}; {:.2f} MiB would "
+                                   "do for a start{}",
+                                   options.pool_mib, counted(models_.size(), "model"),
+                                   up_to_cents(static_cast<double>(least) / kBytesPerMib),
+                                   options.cache_mib > 0.0 ? ", or less --cache-mib" : "")};
     }
     if (fits)
     {
@@ -301,7 +301,28 @@ std::optional<Refusal> Controller::finish_devices(const Options& options)
             return error;
         }
     }
+    if (auto error = check_grippers(options))
+    {
+        return error;
+    }
     return check_damping(options);
+}
+
+/// A gripper without motors can't be held.
+std::optional<Refusal> Controller::check_grippers(const Options& options) const
+{
+    for (std::size_t i = 0; i < options.guides.size(); ++i)
+    {
+        const DeviceInfo& device = tools_[i].device->info();
+        const bool wants_gripper =
+            options.guides[i] && options.guides[i]->kind == GuideKind::gripper;
+        if (wants_gripper && !(device.gripper_force_max_n > 0.0))
+        {
+            return Refusal{fmt::format("--guide: '{}': the device {} makes no force at a gripper",
+                                       options.guides[i]->words, device.name)};
+        }
+    }
+    return std::nullopt;
 }
 
 /// No more than half of what the device can make, so that walls are felt beside it.
@@ -433,8 +454,13 @@ void Controller::limit_force(const Options& options, ToolSetup& tool) const
 Result<std::size_t, Refusal> Controller::object_of_hand(const Options& options,
                                                         std::size_t tool) const
 {
-    if (const std::string& name = hand_choice_of(options, tool).model; !name.empty())
+    if (const std::string& name = hand_choice_of(options, tool).object; !name.empty())
     {
+        const auto called = std::ranges::find(options.objects, name, &PlacedObject::name);
+        if (called != options.objects.end())
+        {
+            return static_cast<std::size_t>(called - options.objects.begin());
+        }
         const auto shows = [&](const ObjectSpec& object)
         { return models_[object.model.value].name == name; };
         const auto found = std::ranges::find_if(objects_, shows);
@@ -443,12 +469,12 @@ Result<std::size_t, Refusal> Controller::object_of_hand(const Options& options,
             return static_cast<std::size_t>(found - objects_.begin());
         }
         std::set<std::string> names;
-        for (const ObjectSpec& object : objects_)
+        for (const PlacedObject& object : options.objects)
         {
-            names.insert(models_[object.model.value].name);
+            names.insert(object.name.empty() ? models_[object.model].name : object.name);
         }
-        return Refusal{fmt::format("--motion: '{}' is no model that is touched; there are: {}",
-                                   printable(name), fmt::join(names, ", "))};
+        return Refusal{"--motion: " +
+                       no_such_object(name, std::vector<std::string>(names.begin(), names.end()))};
     }
     for (std::size_t i = 0; i < objects_.size(); ++i)
     {

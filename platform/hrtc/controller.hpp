@@ -77,6 +77,7 @@ private:
     [[nodiscard]] std::optional<Refusal> simulate_device(const Options& options, std::size_t tool);
     [[nodiscard]] std::optional<Refusal> finish_devices(const Options& options);
     void limit_force(const Options& options, ToolSetup& tool) const;
+    [[nodiscard]] std::optional<Refusal> check_grippers(const Options& options) const;
     [[nodiscard]] std::optional<Refusal> check_damping(const Options& options) const;
     [[nodiscard]] std::optional<Refusal> hang_load(const Options& options, std::size_t tool);
     [[nodiscard]] Result<std::size_t, Refusal> object_of_hand(const Options& options,

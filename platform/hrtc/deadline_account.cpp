@@ -21,6 +21,13 @@ CycleFlag when(bool is_so, CycleFlag flag) noexcept
     return is_so ? flag : CycleFlag::none;
 }
 
+/// The flags of a cycle that took too much processor time: our own fault or the machine's.
+CycleFlag cpu_verdict(CycleFlag flags, bool is_slowed) noexcept
+{
+    return without(flags, CycleFlag::over_cpu | CycleFlag::slowed) |
+           (is_slowed ? CycleFlag::slowed : CycleFlag::over_cpu);
+}
+
 } // namespace
 
 DeadlineAccount::DeadlineAccount(Duration period)
@@ -32,28 +39,37 @@ DeadlineAccount::DeadlineAccount(Duration period)
     suspects_.reserve(kSuspectsMax);
 }
 
-void DeadlineAccount::add(std::uint64_t frame, const CycleMeasures& measures,
+void DeadlineAccount::add(std::uint64_t frame, const CycleMeasures& measures, std::uint64_t work,
                           bool over_work) noexcept
 {
+    outside_.record(measures.outside);
+    if (measures.cpu + measures.beside_cpu <= share_of(cpu_limit_, kShownShare))
+    {
+        shown_work_ = std::max(shown_work_.value_or(work), work);
+    }
     const Duration lost = period_ * (std::int64_t{measures.cycle.periods} - 1);
     (lost.ns > 0 ? after_loss_ : in_turn_).record(measures.lateness_of_end + lost);
-    const CycleFlag flags = flags_of(measures, over_work);
+    CycleFlag flags = flags_of(measures, over_work);
+    const bool is_suspect = has_any(flags, CycleFlag::over_cpu) &&
+                            !has_any(without(flags, CycleFlag::over_cpu), kOwnFaults);
+    if (is_suspect)
+    {
+        flags = cpu_verdict(flags, is_shown(work));
+    }
     allocations += measures.allocations;
     page_faults +=
         static_cast<std::uint64_t>(measures.usage.minor_faults + measures.usage.major_faults);
     calls = measures.calls;
     own_losses_ = std::max(measures.lateness_of_end, Duration{}) / period_;
     count(flags, 1);
-    if (has_any(flags, kOwnFaults | CycleFlag::over_cpu | CycleFlag::missed))
+    if (has_any(flags, kOwnFaults | CycleFlag::slowed | CycleFlag::missed))
     {
         note({frame, flags, measures.cycle.wake_lateness, measures.frame, measures.cpu,
               measures.lateness_of_end});
     }
-    const bool is_suspect = has_any(flags, CycleFlag::over_cpu) && !has_any(flags, kOwnFaults);
-    suspected += is_suspect ? 1U : 0U;
     if (is_suspect && suspects_.size() < kSuspectsMax)
     {
-        suspects_.push_back({frame, flags}); // Within what is reserved.
+        suspects_.push_back({frame, work, flags}); // Within what is reserved.
     }
 }
 
@@ -61,18 +77,21 @@ CycleFlag DeadlineAccount::flags_of(const CycleMeasures& measures, bool over_wor
 {
     const ThreadUsage& usage = measures.usage;
     const Cycle& cycle = measures.cycle;
+    const bool is_missed =
+        measures.lateness_of_end > period_ || std::int64_t{cycle.periods} - 1 > own_losses_;
+    const Duration computed = is_missed ? measures.cpu + measures.beside_cpu : measures.cpu;
     return when(usage.minor_faults + usage.major_faults > 0, CycleFlag::page_fault) |
            when(measures.allocations > 0, CycleFlag::allocation) |
-           when(usage.voluntary_switches > 0, CycleFlag::gave_way) |
+           when(usage.voluntary_switches > 0 && !measures.was_stopped, CycleFlag::gave_way) |
            when(measures.calls.in_frame > calls.in_frame, CycleFlag::system_call) |
            when(over_work, CycleFlag::over_work) |
-           when(measures.cpu > cpu_limit_, CycleFlag::over_cpu) |
+           when(computed > cpu_limit_, CycleFlag::over_cpu) |
+           when(measures.was_stopped, CycleFlag::stopped) |
            when(cycle.wake_lateness > machine_limit_, CycleFlag::woken_late) |
            when(std::max(measures.frame - measures.cpu, measures.beside - measures.beside_cpu) >
                     machine_limit_,
                 CycleFlag::held_up) |
-           when(measures.lateness_of_end > period_ || std::int64_t{cycle.periods} - 1 > own_losses_,
-                CycleFlag::missed);
+           when(is_missed, CycleFlag::missed);
 }
 
 /// `sign`: 1 to count, or the number that takes away again.
@@ -84,11 +103,11 @@ void DeadlineAccount::count(CycleFlag flags, std::uint64_t sign) noexcept
     }
     const bool own = has_any(flags, kOwnFaults);
     const bool is_missed = has_any(flags, CycleFlag::missed);
-    const bool machines = has_any(flags, kMachinesDoing);
+    const bool was_stopped = has_any(flags, CycleFlag::stopped);
     own_faults += own ? sign : 0U;
     missed += is_missed ? sign : 0U;
-    machine_late += is_missed && !own && machines ? sign : 0U;
-    unexplained += is_missed && !own && !machines ? sign : 0U;
+    stopped += is_missed && !own && was_stopped ? sign : 0U;
+    machine_late += is_missed && !own && !was_stopped ? sign : 0U;
 }
 
 void DeadlineAccount::note(const NotedCycle& cycle) noexcept
@@ -108,23 +127,34 @@ std::vector<std::uint64_t> DeadlineAccount::suspects() const
     return frames;
 }
 
-void DeadlineAccount::settle(std::span<const std::uint64_t> over) noexcept
+void DeadlineAccount::compare_work() noexcept
 {
-    constexpr std::uint64_t kTakeAway = ~std::uint64_t{0}; // Modulo 2^64 one less.
     for (Suspect& suspect : suspects_)
     {
-        count(suspect.flags, kTakeAway);
-        suspect.flags = suspect.flags | (std::ranges::binary_search(over, suspect.frame)
-                                             ? CycleFlag::repeated_cpu
-                                             : CycleFlag::acquitted_cpu);
-        count(suspect.flags, 1);
-        const auto noted = std::ranges::lower_bound(noted_, suspect.frame, {}, &NotedCycle::frame);
-        if (noted != noted_.end() && noted->frame == suspect.frame)
-        {
-            noted->flags = suspect.flags;
-        }
+        judge(suspect, is_shown(suspect.work));
     }
-    suspects_.clear();
+}
+
+void DeadlineAccount::settle(std::span<const std::uint64_t> over) noexcept
+{
+    for (Suspect& suspect : suspects_)
+    {
+        judge(suspect, !std::ranges::binary_search(over, suspect.frame));
+    }
+}
+
+/// Counts the cycle again as what it is now known to be.
+void DeadlineAccount::judge(Suspect& suspect, bool is_slowed) noexcept
+{
+    constexpr std::uint64_t kTakeAway = ~std::uint64_t{0}; // Modulo 2^64 one less.
+    count(suspect.flags, kTakeAway);
+    suspect.flags = cpu_verdict(suspect.flags, is_slowed);
+    count(suspect.flags, 1);
+    const auto noted = std::ranges::lower_bound(noted_, suspect.frame, {}, &NotedCycle::frame);
+    if (noted != noted_.end() && noted->frame == suspect.frame)
+    {
+        noted->flags = suspect.flags;
+    }
 }
 
 LatencyHistogram DeadlineAccount::response() const

@@ -26,10 +26,6 @@ struct DeadlinePhase
     LatencyHistogram response;
 };
 
-/// Of a run's cycles: so many misses that nobody is to blame for can be what a shared machine does
-/// between two readings of a clock, more are a fault that the accounting doesn't know.
-inline constexpr double kUnexplainedShareMax = 1e-3;
-
 /// The SCHED_FIFO priority and the period that a test ran with.
 struct DeadlineSetting
 {
@@ -56,7 +52,7 @@ struct DeadlineSetting
                                               const DeadlineSetting& setting,
                                               plot::ChartLibrary library);
 
-/// No own fault, few misses that nothing explains, and a self-check that saw all.
+/// No own fault, and a self-check that saw all.
 [[nodiscard]] bool is_passed(const SelfCheck& check, std::span<const DeadlinePhase> phases);
 
 } // namespace tactus::hrtc

@@ -2,11 +2,16 @@
 // Copyright the Tactus authors.
 #include "platform/hrtc/device_choice.hpp"
 
+#include "platform/base/nearest_word.hpp"
+#include "platform/base/printable.hpp"
 #include "platform/dhd/dhd_device.hpp"
 #include "platform/dhd/dhd_guard.hpp"
+#include "platform/hrtc/messages.hpp"
 #include "platform/hrtc/recorded_motion.hpp"
 #include "platform/plugin/device_plugin.hpp"
 #include "platform/simulated/device_classes.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
@@ -112,30 +117,8 @@ Result<std::unique_ptr<HapticDevice>, Refusal> open_replay(const std::string& pa
     return as_device(std::move(device));
 }
 
-} // namespace
-
-std::string device_forms_like(std::string_view text)
-{
-    constexpr std::pair<std::string_view, std::string_view> kForms[] = {
-        {"sim", "sim, or sim:CLASS with touch, omega or delta"},
-        {"udp", "udp, udp:PORT, or udp:ADDRESS:PORT with a numeric IPv4 address and a port of 1024 "
-                "to 65535"},
-        {"dhd", "dhd, or dhd:INDEX with 0 to 63"},
-        {"plugin", "plugin:FILE[,WORDS] with a library that has a TACTUS_DEVICE_PLUGIN"},
-        {"replay", "replay:FILE with what hrtc --record wrote"}};
-    std::string all;
-    for (const auto& [kind, forms] : kForms)
-    {
-        if (text.starts_with(kind))
-        {
-            return std::string(forms);
-        }
-        all += (all.empty() ? "" : "; ") + std::string(forms);
-    }
-    return all;
-}
-
-std::optional<DeviceChoice> parse_device(std::string_view text)
+/// None when the text is no device.
+std::optional<DeviceChoice> device_named(std::string_view text)
 {
     constexpr std::string_view kSimulated = "sim:";
     constexpr std::string_view kUdp = "udp:";
@@ -179,6 +162,42 @@ std::optional<DeviceChoice> parse_device(std::string_view text)
         return choice;
     }
     return text.starts_with(kDhd) ? parse_dhd(text.substr(kDhd.size())) : std::nullopt;
+}
+
+/// The refusal of a text that is no device: what its kind takes, or which kinds there are.
+Refusal no_device(std::string_view text)
+{
+    constexpr std::pair<std::string_view, std::string_view> kForms[] = {
+        {"sim", "sim, or sim:CLASS with touch, omega or delta"},
+        {"udp", "udp, udp:PORT, or udp:ADDRESS:PORT with a numeric IPv4 address and a port of 1024 "
+                "to 65535"},
+        {"dhd", "dhd, or dhd:INDEX with 0 to 63"},
+        {"plugin", "plugin:FILE[,WORDS] with a library that has a TACTUS_DEVICE_PLUGIN"},
+        {"replay", "replay:FILE with what hrtc --record wrote"}};
+    for (const auto& [kind, forms] : kForms)
+    {
+        if (text.starts_with(kind))
+        {
+            return {fmt::format("'{}' is not {}", printable(text), forms)};
+        }
+    }
+    constexpr std::string_view kWords[] = {"sim",       "udp",       "dhd",    "sim:touch",
+                                           "sim:omega", "sim:delta", "plugin", "replay"};
+    const std::string_view word = text.substr(0, text.find(':'));
+    const std::string of_class = fmt::format("sim:{}", word);
+    const std::string nearest = device_named(of_class) ? of_class : nearest_word(word, kWords);
+    return {nearest.empty() ? fmt::format("'{}' is not sim, udp, dhd, plugin:FILE or replay:FILE",
+                                          printable(text))
+                            : fmt::format("'{}': no device is called '{}'; {}?", printable(text),
+                                          printable(word), nearest)};
+}
+
+} // namespace
+
+Result<DeviceChoice, Refusal> parse_device(std::string_view text)
+{
+    auto device = device_named(text);
+    return device ? Result<DeviceChoice, Refusal>(*std::move(device)) : no_device(text);
 }
 
 std::optional<DeviceFault> parse_device_fault(std::string_view text)
@@ -225,7 +244,17 @@ Result<std::unique_ptr<HapticDevice>, Refusal> open_device(const DeviceChoice& c
         options.port = choice.port;
         options.seal = choice.seal.get();
         options.wait = wait.most;
-        options.goes_on = wait.goes_on;
+        options.goes_on = [asked = 0, told = wait.goes_on, choice]() mutable
+        {
+            constexpr int kQuiet =
+                static_cast<int>(milliseconds(1'000) / UdpDeviceOptions::kAskEvery);
+            if (++asked == kQuiet)
+            {
+                log_line(fmt::format("waits for a driver that describes its device to {}:{}",
+                                     choice.address, choice.port));
+            }
+            return !told || told();
+        };
         options.frame = frame.value();
         options.clock = &clock;
         return as_device(UdpDevice::create(options));

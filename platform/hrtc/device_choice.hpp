@@ -47,12 +47,8 @@ struct DeviceChoice
     Similarity frame;                                ///< Device coordinates in the world.
 };
 
-/// What the texts mean that `parse_device` takes, for messages: of the kind that the text begins
-/// with, or of all kinds.
-[[nodiscard]] std::string device_forms_like(std::string_view text);
-
-/// None when the text is no device.
-[[nodiscard]] std::optional<DeviceChoice> parse_device(std::string_view text);
+/// One of the forms that --help shows.
+[[nodiscard]] Result<DeviceChoice, Refusal> parse_device(std::string_view text);
 
 /// What the texts mean that `parse_device_fault` takes; for messages.
 inline constexpr std::string_view kDeviceFaultForms =

@@ -80,19 +80,24 @@ doctor::Finding check_domain(std::uint32_t domain, std::chrono::milliseconds wai
         return {kDomainCheck,
                 doctor::Verdict::advice,
                 "nobody is heard " + where + more,
-                "hrtc finds no model there: no spm_publish runs on that domain, or the file of "
-                "CYCLONEDDS_URI names another interface or other peers, or a firewall is between",
+                "hrtc finds no model there: " +
+                    printable_line(dds::why_unheard(domain).value_or(
+                        "no spm_publish runs on that domain, or the file "
+                        "of CYCLONEDDS_URI names another interface or "
+                        "other peers, or a firewall is between")),
                 {fmt::format("spm_publish MODEL.spm --domain {}", domain),
                  fmt::format("sudo ss -ulpn '( sport >= :{} and sport <= :{} )'",
                              7'410 + 250 * domain, 7'429 + 250 * domain)}};
     }
     const bool has_models = models != "none";
-    return {kDomainCheck, has_models ? doctor::Verdict::good : doctor::Verdict::advice,
+    return {kDomainCheck,
+            has_models ? doctor::Verdict::good : doctor::Verdict::advice,
             fmt::format("{} heard {}; models published: {}{}", joined_names(heard), where, models,
                         more),
             has_models ? "hrtc finds these models" : "hrtc finds no model there",
             has_models ? std::vector<std::string>{}
-                       : std::vector{fmt::format("spm_publish MODEL.spm --domain {}", domain)}};
+                       : std::vector{fmt::format("spm_publish MODEL.spm --domain {}", domain)},
+            true};
 }
 
 } // namespace tactus::hrtc

@@ -4,6 +4,7 @@
 
 #include "host_tools/mesh/read_mesh.hpp"
 #include "host_tools/scene/scene.hpp"
+#include "platform/base/files_near.hpp"
 #include "platform/base/printable.hpp"
 #include "platform/hrtc/subcommands.hpp"
 #include "platform/hrtc/tool_choice.hpp"
@@ -12,6 +13,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <system_error>
 #include <vector>
 
 namespace tactus::hrtc
@@ -54,6 +56,14 @@ std::string place_file(const std::string& file, Options& options, RawOptions& ra
     if (!is_file_name(file))
     {
         const std::string shown = printable(file);
+        if (std::error_code code; std::filesystem::is_directory(file, code))
+        {
+            return fmt::format("'{}' is a folder; it has {}", shown, files_in(file, ".spm"));
+        }
+        if (file.ends_with(".rec"))
+        {
+            return fmt::format("'{}' is a recording: --replay {} runs it again", shown, shown);
+        }
         return std::filesystem::exists(file + ".spm")
                    ? fmt::format("'{}': the file is called '{}.spm'", shown, shown)
                    : fmt::format("'{}' is no command ({}) and no model's or scene's file (.spm, "
@@ -115,9 +125,11 @@ std::string take_files(Options& options, RawOptions& raw)
     const auto published = std::ranges::find_if_not(all, is_file);
     if (file != all.end() && published != all.end())
     {
-        return fmt::format("{}: '{}' is a file and '{}' a published name; --transport says where "
-                           "all are to come from",
-                           file->option, printable(file->name), printable(published->name));
+        return fmt::format(
+            "{}: '{}' is a file and '{}' a published name; all come from files ('{}' "
+            "as '{}.spm') or by their names",
+            file->option, printable(file->name), printable(published->name),
+            printable(published->name), printable(published->name));
     }
     raw.transport = file != all.end() ? "file" : "dds";
     return {};

@@ -36,7 +36,9 @@ struct FinishedRun
     Duration period;
     std::time_t started{0}; ///< Calendar time.
     SafetyRecord safety;
-    bool host_was_lost{false};        ///< Some model's host went away during the run.
+    bool host_was_lost{false}; ///< Some model's host went away during the run.
+    /// One a tool: the object inside which it began, by its model's name; empty: none.
+    std::vector<std::string> begins_inside{};
     bool has_other_device{false};     ///< It ended: another one came in a tool's device's place.
     std::vector<PoseUse> pose_uses{}; ///< One an object; none from files.
     std::vector<dds::PoseCounts> pose_counts{};    ///< One a model; none with --ignore-poses.

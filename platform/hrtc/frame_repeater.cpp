@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <set>
 
 namespace tactus::hrtc
@@ -17,19 +16,18 @@ Result<std::vector<std::uint64_t>, std::string>
 frames_over_again(const Recording& recording, std::span<const std::uint64_t> suspects,
                   Duration limit)
 {
-    std::set<std::uint64_t> over;
+    std::set<std::uint64_t> over(suspects.begin(), suspects.end());
     Duration before;
     const ReplayWatch watch{
         [&before](std::uint64_t) { before = read_thread_cpu_time(); },
         [&](std::uint64_t frame, const RecordedFrame& /*unused*/, const FrameOutput& /*unused*/)
         {
-            if (read_thread_cpu_time() - before > limit &&
-                std::ranges::binary_search(suspects, frame))
+            if (read_thread_cpu_time() - before <= limit)
             {
-                over.insert(frame);
+                over.erase(frame);
             }
         }};
-    for (int i = 0; i < kRepetitions && over.size() < suspects.size(); ++i)
+    for (int i = 0; i < kRepetitions && !over.empty(); ++i)
     {
         const auto replayed = replay(recording, nullptr, watch);
         if (!replayed)

@@ -15,11 +15,11 @@ namespace tactus::hrtc
 {
 
 /// How often a frame under suspicion is repeated at most. Work that takes too long does so every
-/// time; what a machine adds it does not add always.
+/// time; what a machine adds it does not add always, and it takes nothing away.
 inline constexpr int kRepetitions = 5;
 
 /// Replays a run and returns which of the frames `suspects` (ascending) took more than `limit` of
-/// processor time in at least one of kRepetitions. Refused when the recording can't be replayed or
+/// processor time in each of kRepetitions. Refused when the recording can't be replayed or
 /// comes out otherwise, and when a suspect is not in it.
 [[nodiscard]] Result<std::vector<std::uint64_t>, std::string>
 frames_over_again(const Recording& recording, std::span<const std::uint64_t> suspects,

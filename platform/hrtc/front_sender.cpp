@@ -141,7 +141,13 @@ void FrontSender::step(MonotonicTime now, const SceneKeeper* keeper)
         last_sent_ = now;
         if (!is_old_)
         {
-            writer_->write(front_of(*copy, last_, controller_, keeper));
+            Front front = front_of(*copy, last_, controller_, keeper);
+            const std::uint32_t inside = begin_inside_.load(std::memory_order_relaxed);
+            for (std::size_t tool = 0; tool < front.tools.size(); ++tool)
+            {
+                front.tools[tool].begins_inside = (inside >> tool & 1U) != 0;
+            }
+            writer_->write(front);
         }
         is_old_ = false;
         last_ = copy->times;

@@ -10,6 +10,7 @@
 #include "transport/dds/dds_client.hpp"
 #include "transport/dds/front.hpp"
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 
@@ -41,6 +42,12 @@ public:
     /// so that the haptic thread makes none.
     void step(MonotonicTime now, const SceneKeeper* keeper);
 
+    /// Any thread.
+    void tell_begins_inside(std::size_t tool) noexcept
+    {
+        begin_inside_.fetch_or(1U << tool, std::memory_order_relaxed); // Pairs with none.
+    }
+
     [[nodiscard]] std::uint64_t sent() const noexcept { return writer_->sent(); }
 
 private:
@@ -49,6 +56,8 @@ private:
     const Controller& controller_;
     std::unique_ptr<dds::FrontWriter> writer_;
     FrontTap* tap_{nullptr};
+    static_assert(kMaxTools <= 32);
+    std::atomic<std::uint32_t> begin_inside_{0}; ///< A bit a tool.
     FrontCopy::AllTimes last_{};
     MonotonicTime last_sent_{};
     bool is_old_{true}; ///< The copy that is out was made before anybody watched.

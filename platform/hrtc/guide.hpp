@@ -2,9 +2,10 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/base/refusal.hpp"
 #include "platform/hrtc/tool_port.hpp"
+#include "rt_core/base/result.hpp"
 
-#include <optional>
 #include <string>
 #include <string_view>
 
@@ -14,9 +15,10 @@ namespace tactus::hrtc
 /// What a hand is guided to (virtual fixture: Rosenberg 1993); the world's frame.
 enum class GuideKind : std::uint8_t
 {
-    point, ///< Pulled to it.
-    line,  ///< Pulled to it, free along it.
-    plane, ///< Kept on its front side: free there, pushed back from behind it.
+    point,   ///< Pulled to it.
+    line,    ///< Pulled to it, free along it.
+    plane,   ///< Kept on its front side: free there, pushed back from behind it.
+    gripper, ///< The hand is free; its gripper is held so far open.
 };
 
 /// What --guide says of one tool.
@@ -24,24 +26,23 @@ struct GuideChoice
 {
     std::string words; ///< As they were given.
     GuideKind kind{GuideKind::point};
-    Vec3 at_m{0.0, 0.0, 0.0};      ///< The point, or one of the line or plane.
+    Vec3 at_m{0.0, 0.0, 0.0};      ///< The point, or one of the line or plane; of a gripper x is
+                                   ///< its opening.
     Vec3 direction{0.0, 0.0, 1.0}; ///< Of the line, or the plane's normal; unit length.
     double stiffness_n_per_m{100.0};
     double force_max_n{1.0};
 };
 
-inline constexpr const char* kGuideForm =
-    "point:X,Y,Z[,K[,F]], line:X,Y,Z,DX,DY,DZ[,K[,F]] or plane:X,Y,Z,NX,NY,NZ[,K[,F]], with places "
-    "within 1000 m, a direction that is not zero, 1 <= K <= 3000 N/m and 0.01 <= F <= 100 N";
-
-/// In metres; D and N are a line's direction and a plane's normal, of any length. None when it is
-/// anything else.
-[[nodiscard]] std::optional<GuideChoice> parse_guide(std::string_view text);
+/// point:X,Y,Z[,K[,F]], line:X,Y,Z,DX,DY,DZ[,K[,F]], plane:X,Y,Z,NX,NY,NZ[,K[,F]] or
+/// gripper:X[,K[,F]], in metres; D and N are a line's direction and a plane's normal, of any
+/// length.
+[[nodiscard]] Result<GuideChoice, Refusal> parse_guide(std::string_view text);
 
 /// A spring that guides a tool, at most so strong: of what it is stretched by it has the energy, so
 /// it makes none. It says its stiffness, so that cap and passivity take it as a wall's.
 ///
-/// Where the device says no place, it stays as it was: what is wrong is for SafeState to fade.
+/// Where the device says no place or opening, it stays as it was: what is wrong is for SafeState to
+/// fade.
 ///
 /// Haptic thread; create it before the loop. Allocates nothing.
 class Guide final : public OwnForceSource
@@ -53,6 +54,7 @@ public:
                                 const ToolOutput& output) noexcept override;
 
 private:
+    [[nodiscard]] OwnForce grip(double open_m) const noexcept;
     [[nodiscard]] Vec3 nearest_allowed(const Vec3& place_m) const noexcept;
 
     GuideKind kind_;

@@ -3,6 +3,7 @@
 #include "platform/hrtc/haptic_loop.hpp"
 
 #include "platform/allocation_counter.hpp"
+#include "platform/process_stop.hpp"
 #include "platform/system_call_trap.hpp"
 #include "rt_core/frame/list_touches.hpp"
 #include "rt_core/limits.hpp"
@@ -17,6 +18,7 @@ HapticLoop::HapticLoop(const LoopParts& parts, RunStatistics& statistics)
     , statistics_(statistics)
     , states_(parts.tools.size())
     , forces_(parts.tools.size())
+    , first_places_m_(parts.tools.size())
     , devices_(parts.tools.size())
     , end_(parts.frames)
 {
@@ -25,7 +27,7 @@ HapticLoop::HapticLoop(const LoopParts& parts, RunStatistics& statistics)
         ports_.emplace_back(tool);
         radii_m_.push_back(tool.spec.radius_m);
     }
-    measures_.budgets = parts.governor != nullptr ? parts.governor->budgets() : parts.budgets;
+    measures_.budgets = parts.budgets;
 }
 
 void HapticLoop::run() noexcept
@@ -59,10 +61,13 @@ void HapticLoop::run_period() noexcept
     stage_start_ = start;
     read_devices();
     const FrameInput input = read_scene(start);
+    measures_.outside = parts_.clock->now() - start;
     const FrameOutput output = run_frame(input);
+    const MonotonicTime answered = parts_.clock->now();
     make_safe(output);
     write_devices();
     last_end_ = parts_.clock->now();
+    measures_.outside += last_end_ - answered;
     const ThreadUsage now = thread_usage();
     record(input, output);
     measures_.frame = last_end_ - start;
@@ -85,12 +90,17 @@ Duration HapticLoop::cpu_time() const noexcept
     return parts_.is_virtual ? Duration{} : read_thread_cpu_time();
 }
 
-/// What the thread has used since the last cycle.
+/// What the thread has used since the last cycle. A stop of the process looks like a sleep of the
+/// thread's own, or makes it late.
 void HapticLoop::measure_thread(const ThreadUsage& now) noexcept
 {
     measures_.usage = now - usage_;
     measures_.usage.voluntary_switches -= timer_switches_;
     usage_ = now;
+    const bool looks_stopped = measures_.usage.voluntary_switches > 0 ||
+                               measures_.cycle.periods > 1 ||
+                               measures_.lateness_of_end > parts_.timer->period();
+    measures_.was_stopped = !parts_.is_virtual && looks_stopped && take_process_stop();
     measures_.allocations = allocation_counter::of_this_thread().allocations - allocations_;
     allocations_ += measures_.allocations;
     measures_.calls = system_call_trap::of_this_thread();
@@ -186,17 +196,14 @@ void HapticLoop::trace(const FrameOutput& output, MonotonicTime start) noexcept
     parts_.trace->add(traced);
 }
 
-/// Between frames, so that the frame that follows takes its budgets as an input like any other.
+/// Between frames, so that the frame that follows takes its budget as an input like any other.
 void HapticLoop::choose_budgets(const FrameOutput& output) noexcept
 {
     if (parts_.governor != nullptr)
     {
-        const auto stage = [this](Stage s) { return measures_.stage[static_cast<std::size_t>(s)]; };
-        parts_.governor->observe({measures_.frame,
-                                  stage(Stage::refine) + stage(Stage::refit) + stage(Stage::query),
-                                  stage(Stage::force), output.work});
-        measures_.budgets = parts_.governor->budgets();
-        measures_.budgets_at_floor = parts_.governor->is_at_floor();
+        parts_.governor->observe({measures_.frame, output.work.budget.used()});
+        measures_.budgets.work = parts_.governor->work();
+        measures_.is_work_at_floor = parts_.governor->is_at_floor();
     }
 }
 
@@ -257,6 +264,25 @@ void HapticLoop::read_devices() noexcept
     {
         states_[i] = ports_[i].read(measures_.cycle.periods);
     }
+    if (!has_places_.load(std::memory_order_relaxed)) // No other thread writes it.
+    {
+        note_first_places();
+    }
+}
+
+void HapticLoop::note_first_places() noexcept
+{
+    if (std::ranges::all_of(states_, &ToolState::valid))
+    {
+        std::ranges::transform(states_, first_places_m_.begin(), &ToolState::position_m);
+        has_places_.store(true, std::memory_order_release); // Pairs with first_places_m().
+    }
+}
+
+std::span<const Vec3> HapticLoop::first_places_m() const noexcept
+{
+    return has_places_.load(std::memory_order_acquire) ? std::span<const Vec3>(first_places_m_)
+                                                       : std::span<const Vec3>();
 }
 
 /// What the network says of the objects enters the frame here and nowhere else.

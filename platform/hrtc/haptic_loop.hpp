@@ -36,8 +36,8 @@ struct LoopParts
     std::span<const ToolSetup> tools;
     PeriodicTimer* timer{nullptr};
     const Clock* clock{nullptr};
-    Budgets budgets;                       ///< Of every frame, when there is no governor.
-    BudgetGovernor* governor{nullptr};     ///< Chooses each frame's budgets; may be none.
+    Budgets budgets;                       ///< Of every frame; the first one's work.
+    BudgetGovernor* governor{nullptr};     ///< Chooses the others' work; may be none.
     FrameTap* tap{nullptr};                ///< Takes every frame for a recording; may be none.
     LastInputs* last_inputs{nullptr};      ///< Takes every frame's hands; may be none.
     std::uint64_t frames{0};               ///< How many to run.
@@ -87,6 +87,9 @@ public:
 
     /// What the supervisor watches.
     [[nodiscard]] const Heartbeat& heartbeat() const noexcept { return heartbeat_; }
+    /// Any thread: where the tools were in the first frame in which all devices told it. None
+    /// before.
+    [[nodiscard]] std::span<const Vec3> first_places_m() const noexcept;
     /// State changes of the tools; one other thread may take them.
     [[nodiscard]] SafetyLog& safety_log() noexcept { return log_; }
 
@@ -103,6 +106,7 @@ private:
     void choose_budgets(const FrameOutput& output) noexcept;
     [[nodiscard]] bool has_to_end() noexcept;
     void read_devices() noexcept;
+    void note_first_places() noexcept;
     [[nodiscard]] FrameInput read_scene(MonotonicTime now) noexcept;
     void show(const FrameOutput& output, MonotonicTime start) noexcept;
     void make_safe(const FrameOutput& output) noexcept;
@@ -125,6 +129,7 @@ private:
     std::deque<ToolPort> ports_;        ///< One a tool; they are never moved.
     std::vector<ToolState> states_;     ///< Copied from the ports, in one piece for the frame.
     std::vector<ToolForce> forces_;     ///< Likewise, for those who keep figures.
+    std::vector<Vec3> first_places_m_;  ///< One a tool; written before has_places_ alone.
     std::vector<double> radii_m_;       ///< One a tool.
     std::vector<DeviceRecord> devices_; ///< Likewise, for those who show or record.
     ObjectTouches touches_;             ///< What tools may touch soon, after the last frame.
@@ -139,10 +144,11 @@ private:
     SafetyLog log_;
     CycleMeasures measures_;
     MonotonicTime stage_start_{};
-    MonotonicTime last_end_{};         ///< Of the last frame.
-    ThreadUsage usage_;                ///< Of this thread at that time.
-    std::int64_t timer_switches_{0};   ///< Voluntary ones in the timer's sleeps since then.
-    std::uint64_t allocations_{0};     ///< Likewise.
+    MonotonicTime last_end_{};       ///< Of the last frame.
+    ThreadUsage usage_;              ///< Of this thread at that time.
+    std::int64_t timer_switches_{0}; ///< Voluntary ones in the timer's sleeps since then.
+    std::uint64_t allocations_{0};   ///< Likewise.
+    std::atomic<bool> has_places_{false};
     std::atomic<bool> stopped_{false}; ///< Relaxed: it orders nothing else.
     std::atomic<bool> failing_{false}; ///< Set by the first that fails.
     std::atomic<bool> failed_{false};

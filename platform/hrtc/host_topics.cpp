@@ -54,7 +54,7 @@ HostTopics::HostTopics(const dds::DdsClient& client, const Controller& controlle
 }
 
 void HostTopics::connect(PoseDoor& door, const TelemetryTap& tap, FrontTap* front,
-                         MonotonicTime now)
+                         MonotonicTime now, SceneKeeper::NameSink names)
 {
     tap_ = &tap;
     if (front_ != nullptr)
@@ -64,7 +64,15 @@ void HostTopics::connect(PoseDoor& door, const TelemetryTap& tap, FrontTap* fron
     }
     if (keeper_ != nullptr)
     {
-        keeper_->connect(door, now);
+        keeper_->connect(door, now, std::move(names));
+    }
+}
+
+void HostTopics::tell_begins_inside(std::size_t tool) noexcept
+{
+    if (front_ != nullptr)
+    {
+        front_->tell_begins_inside(tool);
     }
 }
 

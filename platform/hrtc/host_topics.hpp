@@ -37,8 +37,11 @@ public:
            bool shows_front);
 
     /// Between these and the haptic thread; all live as long as the run. `front` may be null where
-    /// shows_front() is false.
-    void connect(PoseDoor& door, const TelemetryTap& tap, FrontTap* front, MonotonicTime now);
+    /// shows_front() is false; `names` is the keeper's.
+    void connect(PoseDoor& door, const TelemetryTap& tap, FrontTap* front, MonotonicTime now,
+                 SceneKeeper::NameSink names = {});
+    /// Any thread: viewers are told that the tool began inside a closed object.
+    void tell_begins_inside(std::size_t tool) noexcept;
     [[nodiscard]] bool shows_front() const noexcept { return front_ != nullptr; }
 
     /// The transport thread, after the couriers' round: poses to the door, telemetry and front when

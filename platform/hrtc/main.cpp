@@ -14,10 +14,12 @@
 #include "platform/hrtc/replay_file.hpp"
 #include "platform/hrtc/report.hpp"
 #include "platform/hrtc/report_page.hpp"
+#include "platform/hrtc/report_relief.hpp"
 #include "platform/hrtc/session.hpp"
 #include "platform/hrtc/start_lines.hpp"
 #include "platform/hrtc/subcommands.hpp"
 #include "platform/hrtc/verdict.hpp"
+#include "platform/process_stop.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -33,6 +35,7 @@ namespace
 int touch(const Options& options)
 {
     stop_on_signals();
+    watch_process_stops();
     install_assertion_brake();
     if (!options.replay_path.empty())
     {
@@ -43,7 +46,7 @@ int touch(const Options& options)
     {
         return leave_with(session.error());
     }
-    print_out(start_lines(options, session.value()->controller()));
+    print_out(start_lines(session.value()->options(), session.value()->controller()));
     const auto done = session.value()->run("touch");
     if (!done)
     {
@@ -54,11 +57,13 @@ int touch(const Options& options)
     print_out(make_summary(report));
     for (const std::string& path : options.report_paths)
     {
-        const auto error = is_page_name(path)
-                               ? write_text(make_page(report, done.value().statistics,
-                                                      plot::ChartLibrary::packaged()),
-                                            path)
-                               : write_report(report, path);
+        const auto error =
+            is_page_name(path)
+                ? write_text(
+                      make_page(report, done.value().statistics, plot::ChartLibrary::packaged(),
+                                relief_of(session.value()->controller(), done.value().statistics)),
+                      path)
+                : write_report(report, path);
         if (error)
         {
             return leave_with(failure("--report: " + error->text));
@@ -77,7 +82,7 @@ int touch(const Options& options)
     {
         return kExitFailed;
     }
-    return options.strict && !losses_of(report).empty() ? kExitCriterionNotMet : kExitDone;
+    return options.strict && has_loss(complaints_of(report)) ? kExitCriterionNotMet : kExitDone;
 }
 
 int run(int argc, char** argv)

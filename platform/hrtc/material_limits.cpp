@@ -2,10 +2,10 @@
 // Copyright the Tactus authors.
 #include "platform/hrtc/material_limits.hpp"
 
-#include "host_tools/scene/material_ranges.hpp"
 #include "host_tools/scene/material_text.hpp"
 #include "platform/hrtc/verdict.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
+#include "transport/material_ranges.hpp"
 
 #include <fmt/format.h>
 

@@ -3,9 +3,9 @@
 #include "platform/hrtc/option_table.hpp"
 
 #include "host_tools/cli/command_line.hpp"
-#include "host_tools/scene/material_ranges.hpp"
 #include "platform/simulated/simulated_device.hpp"
 #include "rt_core/limits.hpp"
+#include "transport/material_ranges.hpp"
 
 namespace tactus::hrtc
 {
@@ -14,7 +14,7 @@ namespace
 {
 
 constexpr double kLargestPool_mib = 4'096.0;
-constexpr double kFrameBudgetMin_us = 1.0;
+constexpr double kFrameBudgetMin_us = 1e-3 * WorkBudget::kLeast;
 constexpr double kFrameBudgetMax_us = 10'000.0;
 
 /// The models, the tools that touch them and their devices.
@@ -45,8 +45,9 @@ void declare_scene(CommandLine& line, Options& options, RawOptions& raw)
         .integer_between(1U, kMaxObjects);
     line.add_option(
             "--material", raw.materials,
-            "How the object feels, one for each in order; further ones feel as the last "
-            "--model: STIFFNESS in N/m, 1 to "
+            "How the object feels, one for each in order, and further ones as the last --model; "
+            "of a scene all objects, or with OBJECT: before it the one of this name: STIFFNESS in "
+            "N/m, 1 to "
             "3000, the softer of this and --stiffness counts [,STATIC friction, 0 to 3 "
             "[,DYNAMIC friction, at most the static one [,DAMPING in N s/m, 0 to 20]]]; or any "
             "of stiffness=, static=, dynamic=, damping=, viscosity= (drag along the surface in N "
@@ -71,8 +72,9 @@ void declare_scene(CommandLine& line, Options& options, RawOptions& raw)
                     "A spring of its own that guides the tool, one for each in order; world "
                     "coordinates in m: point:X,Y,Z pulls it there; line:X,Y,Z,DX,DY,DZ to the line "
                     "through X,Y,Z along D; plane:X,Y,Z,NX,NY,NZ pushes it back to the side where "
-                    "N points; each with [,STIFFNESS in N/m, 1 to 3000 [100] [,FORCE at most, in "
-                    "N, 0.01 to 100 [1]]]; none for a tool without; repeatable [none]")
+                    "N points; gripper:X holds the device's gripper X open, 0 to 1; each with "
+                    "[,STIFFNESS in N/m, 1 to 3000 [100] [,FORCE at most, in N, 0.01 to 100 [1]]]; "
+                    "none for a tool without; repeatable [none]")
         .repeatable();
     line.add_option("--tools", raw.tool_count,
                     "So many tools of that size, where no --tool says more; 1 to 16 [1]")
@@ -107,9 +109,9 @@ void declare_scene(CommandLine& line, Options& options, RawOptions& raw)
     line.add_option(
             "--motion", raw.motions,
             "What simulated hands do: script, free, approach, slide, tap, teleport, spin, tremor, "
-            "turn, edge or peg; with :MODEL behind it, on the first object that shows this model; "
-            "one for each tool in order, others as the last; repeatable [script, each hand on "
-            "another object]")
+            "turn, edge or peg; with :OBJECT behind it, on the scene's object of this name, or the "
+            "first that shows the model of this name; one for each tool in order, others as the "
+            "last; repeatable [script, each hand on another object]")
         .repeatable();
 }
 
@@ -155,9 +157,11 @@ void declare_budgets(CommandLine& line, Options& options, RawOptions& raw)
     line.add_option("--splits", options.splits, "Splits and merges in one frame at most")
         .integer_between(std::uint32_t{1}, kMaxSplitsPerFrame)
         .show_default();
-    line.add_option("--frame-budget-us", options.frame_budget_us,
-                    "Microseconds that a frame may take: its budgets follow what frames cost, "
-                    "--splits being the most [budgets fixed]")
+    line.add_option(
+            "--frame-budget-us", options.frame_budget_us,
+            "Microseconds that a frame may take: its work is at most an instruction for each "
+            "nanosecond, two with a hull, eight with a mesh, and follows what frames take [half of "
+            "the period]")
         .number_between(kFrameBudgetMin_us, kFrameBudgetMax_us);
     line.add_flag("--no-static", raw.refines_always,
                   "Refine locally also a model that fits the pools as a whole");
@@ -216,11 +220,13 @@ void declare_transport(CommandLine& line, Options& options, RawOptions& raw)
     line.add_option("--transport", raw.transport,
                     "Where models come from [files where they are named, else DDS]")
         .one_of({"dds", "file"});
-    line.add_option("--domain", options.domain, "DDS domain")
+    line.add_option("--domain", options.domain,
+                    "DDS domain; given with models from files, viewers (spm_view) see the run "
+                    "there")
         .integer_between(0, 232)
         .show_default();
     line.add_option("--name", options.name,
-                    "With DDS: the controller's name, 1 to 63 characters of A-Z a-z 0-9 . _ -, "
+                    "With DDS: the controller's name, 1 to 63 bytes of letters, digits, . _ -, "
                     "that hosts show and by which rights can be given [hrtc-PID]");
     line.add_option("--failover", raw.failover,
                     "Which server may take the place of the one that was taken at the start, when "

@@ -3,10 +3,10 @@
 #include "platform/hrtc/options.hpp"
 
 #include "host_tools/cli/command_line.hpp"
-#include "host_tools/scene/material_ranges.hpp"
 #include "host_tools/scene/material_text.hpp"
-#include "platform/base/numbers.hpp"
+#include "platform/base/counted.hpp"
 #include "platform/base/printable.hpp"
+#include "platform/base/program_log.hpp"
 #include "platform/export/frame_export.hpp"
 #include "platform/hrtc/device_key.hpp"
 #include "platform/hrtc/device_limits_text.hpp"
@@ -144,11 +144,13 @@ std::string check_models(Options& options, const RawOptions& raw)
 {
     if (!options.scene.empty())
     {
-        const bool has_others =
-            !raw.models.empty() || !raw.places.empty() || !raw.materials.empty();
-        if (has_others)
+        if (!raw.models.empty() || !raw.places.empty())
         {
-            return "--scene: takes the place of --model, --place and --material";
+            return "--scene: takes the place of --model and --place";
+        }
+        if (std::string fault = options.scene_materials.take(raw.materials); !fault.empty())
+        {
+            return fault;
         }
         if (raw.transport == "file")
         {
@@ -172,14 +174,15 @@ std::string check_models(Options& options, const RawOptions& raw)
     }
     if (raw.materials.size() > objects)
     {
-        return fmt::format("--material: {} given for {} objects", raw.materials.size(), objects);
+        return fmt::format("--material: {} given for {}", raw.materials.size(),
+                           counted(objects, "object"));
     }
     for (std::size_t i = 0; i < objects; ++i)
     {
         const std::string& name = raw.models[std::min(i, raw.models.size() - 1)];
         const auto known = std::ranges::find(options.models, name);
-        options.objects.push_back(
-            {static_cast<std::size_t>(known - options.models.begin()), {}, {}});
+        options.objects.emplace_back().model =
+            static_cast<std::size_t>(known - options.models.begin());
         if (known == options.models.end())
         {
             options.models.push_back(name);
@@ -202,12 +205,12 @@ std::string check_places(Options& options, const RawOptions& raw)
 {
     for (std::size_t i = 0; i < raw.places.size(); ++i)
     {
-        const std::optional<Similarity> place = parse_placement(raw.places[i]);
+        const auto place = parse_placement(raw.places[i]);
         if (!place)
         {
-            return fmt::format("--place: '{}' is not {}", printable(raw.places[i]), kPlacementForm);
+            return "--place: " + place.error().text;
         }
-        options.objects[i].place = *place;
+        options.objects[i].place = place.value();
         options.objects[i].has_place = true;
     }
     return {};
@@ -216,15 +219,21 @@ std::string check_places(Options& options, const RawOptions& raw)
 /// How they feel. Empty when all is well.
 std::string check_materials(Options& options, const RawOptions& raw)
 {
-    for (std::size_t i = 0; i < raw.materials.size(); ++i)
+    for (std::size_t i = 0; i < raw.materials.size() && options.scene.empty(); ++i)
     {
-        const std::optional<Material> material = parse_material(raw.materials[i]);
+        const auto material = parse_material(raw.materials[i]);
+        if (const std::size_t colon = raw.materials[i].find(':'); colon != std::string::npos)
+        {
+            return fmt::format("--material: '{}': only a --scene's objects have names; here "
+                               "materials are in the objects' order: '{}'?",
+                               printable(raw.materials[i]),
+                               printable(raw.materials[i].substr(colon + 1)));
+        }
         if (!material)
         {
-            return fmt::format("--material: '{}' is not {}, with {}", printable(raw.materials[i]),
-                               kMaterialForm, kMaterialRanges);
+            return "--material: " + material.error().text;
         }
-        options.objects[i].material = *material;
+        options.objects[i].material = material.value();
         options.objects[i].has_material = true;
     }
     for (std::size_t i = raw.models.size(); i < options.objects.size(); ++i)
@@ -248,18 +257,18 @@ std::string check_tools(Options& options, const RawOptions& raw)
     }
     if (raw.tool_count && !raw.tools.empty() && *raw.tool_count != raw.tools.size())
     {
-        return fmt::format("--tools: {}, but --tool is given {} times", *raw.tool_count,
-                           raw.tools.size());
+        return fmt::format("--tools: {}, but --tool is given {}", *raw.tool_count,
+                           counted(raw.tools.size(), "time"));
     }
     options.tools = raw.tools.empty() ? raw.tool_count.value_or(1) : raw.tools.size();
     for (const std::string& text : raw.tools)
     {
-        std::optional<ToolChoice> tool = parse_tool(text);
+        auto tool = parse_tool(text);
         if (!tool)
         {
-            return fmt::format("--tool: '{}' is not {}", printable(text), kToolForms);
+            return "--tool: " + tool.error().text;
         }
-        options.tool_choices.push_back(*std::move(tool));
+        options.tool_choices.push_back(std::move(tool).value());
     }
     const auto is_ball = [](const ToolChoice& tool)
     { return std::holds_alternative<PointCore>(tool.core) && tool.hull_file.empty(); };
@@ -276,17 +285,17 @@ std::string check_tool_masses(Options& options, const RawOptions& raw)
 {
     if (raw.tool_masses.size() > options.tools)
     {
-        return fmt::format("--tool-mass: {} given for {} tools", raw.tool_masses.size(),
-                           options.tools);
+        return fmt::format("--tool-mass: {} given for {}", raw.tool_masses.size(),
+                           counted(options.tools, "tool"));
     }
     for (const std::string& text : raw.tool_masses)
     {
-        const std::optional<ToolLoad> load = parse_tool_mass(text);
+        const auto load = parse_tool_mass(text);
         if (!load)
         {
-            return fmt::format("--tool-mass: '{}' is not {}", printable(text), kToolMassForm);
+            return "--tool-mass: " + load.error().text;
         }
-        options.tool_loads.push_back(*load);
+        options.tool_loads.push_back(load.value());
     }
     return {};
 }
@@ -296,17 +305,22 @@ std::string check_guides(Options& options, const RawOptions& raw)
 {
     if (raw.guides.size() > options.tools)
     {
-        return fmt::format("--guide: {} given for {} tools", raw.guides.size(), options.tools);
+        return fmt::format("--guide: {} given for {}", raw.guides.size(),
+                           counted(options.tools, "tool"));
     }
     for (const std::string& text : raw.guides)
     {
-        const bool is_none = text == "none";
-        std::optional<GuideChoice> guide = is_none ? std::nullopt : parse_guide(text);
-        if (!guide && !is_none)
+        if (text == "none")
         {
-            return fmt::format("--guide: '{}' is not {}", printable(text), kGuideForm);
+            options.guides.emplace_back();
+            continue;
         }
-        options.guides.push_back(std::move(guide));
+        auto guide = parse_guide(text);
+        if (!guide)
+        {
+            return "--guide: " + guide.error().text;
+        }
+        options.guides.emplace_back(std::move(guide).value());
     }
     return {};
 }
@@ -316,18 +330,17 @@ std::string check_device_frames(Options& options, const RawOptions& raw)
 {
     for (std::size_t i = 0; i < raw.device_frames.size(); ++i)
     {
-        const std::optional<Similarity> frame = parse_placement(raw.device_frames[i]);
+        const auto frame = parse_placement(raw.device_frames[i]);
         if (!frame)
         {
-            return fmt::format("--device-frame: '{}' is not {}", printable(raw.device_frames[i]),
-                               kPlacementForm);
+            return "--device-frame: " + frame.error().text;
         }
         if (options.devices[i].kind == DeviceKind::simulated ||
             options.devices[i].kind == DeviceKind::replay)
         {
             return "--device-frame: a simulated or recorded hand is in the world already";
         }
-        options.devices[i].frame = *frame;
+        options.devices[i].frame = frame.value();
     }
     return {};
 }
@@ -399,7 +412,8 @@ std::string check_devices(Options& options, const RawOptions& raw)
 {
     if (raw.devices.size() > options.tools)
     {
-        return fmt::format("--device: {} given for {} tools", raw.devices.size(), options.tools);
+        return fmt::format("--device: {} given for {}", raw.devices.size(),
+                           counted(options.tools, "tool"));
     }
     if (raw.device_frames.size() > raw.devices.size())
     {
@@ -408,13 +422,12 @@ std::string check_devices(Options& options, const RawOptions& raw)
     }
     for (const std::string& text : raw.devices)
     {
-        const std::optional<DeviceChoice> device = parse_device(text);
+        auto device = parse_device(text);
         if (!device)
         {
-            return fmt::format("--device: '{}' is not {}", printable(text),
-                               device_forms_like(text));
+            return "--device: " + device.error().text;
         }
-        options.devices.push_back(*device);
+        options.devices.push_back(std::move(device).value());
     }
     for (const auto check : {check_device_limits, check_device_key, check_device_frames})
     {
@@ -445,7 +458,8 @@ std::string check_simulated(Options& options, const RawOptions& raw)
     }
     if (raw.motions.size() > options.tools)
     {
-        return fmt::format("--motion: {} given for {} tools", raw.motions.size(), options.tools);
+        return fmt::format("--motion: {} given for {}", raw.motions.size(),
+                           counted(options.tools, "tool"));
     }
     for (const std::string& text : raw.motions)
     {
@@ -453,7 +467,7 @@ std::string check_simulated(Options& options, const RawOptions& raw)
         const std::optional<MotionKind> motion = motion_named(text.substr(0, colon));
         if (!motion || colon + 1 == text.size())
         {
-            return fmt::format("--motion: '{}' is not {}, perhaps with :MODEL behind it",
+            return fmt::format("--motion: '{}' is not {}, perhaps with :OBJECT behind it",
                                printable(text), kMotionNames);
         }
         options.hands.push_back(
@@ -471,14 +485,17 @@ std::string check_simulated(Options& options, const RawOptions& raw)
     return {};
 }
 
-/// Whether the models' names can be ones that are published, and ours one of a controller. Empty
+/// Whether our name can be that of a controller, and the models' those of published ones. Empty
 /// when all is well.
 std::string check_names(const CommandLine& line, const Options& options)
 {
     if (line.is_given("--name") && !is_valid_name(options.name))
     {
-        return fmt::format("--name: '{}' is not 1 to 63 characters of A-Z a-z 0-9 . _ -",
-                           printable(options.name));
+        return fmt::format("--name: '{}' is not {}", printable(options.name), kNameForm);
+    }
+    if (options.transport == TransportKind::file)
+    {
+        return {};
     }
     for (const std::string& model : options.models)
     {
@@ -537,6 +554,13 @@ std::string check_budgets(const CommandLine& line, Options& options)
     {
         return fmt::format("--frame-budget-us: must be less than the period of {} us", period_us);
     }
+    const std::uint32_t times = options.work_times();
+    const double least_us = 1e-3 * Budgets::least_work(times) / times;
+    if (options.frame_budget_us && *options.frame_budget_us < least_us)
+    {
+        return fmt::format(
+            "--frame-budget-us: a tool that is a hull or a mesh needs at least {} us", least_us);
+    }
     if (options.frame_budget_us && !line.is_given("--splits"))
     {
         options.splits = kMaxSplitsPerFrame;
@@ -561,10 +585,6 @@ std::string check_virtual_time(Options& options, const RawOptions& raw)
     {
         return "--virtual-time: takes devices that are simulated or recorded; others keep to the "
                "time of day";
-    }
-    if (options.frame_budget_us)
-    {
-        return "--virtual-time: a frame takes no time there that --frame-budget-us could limit";
     }
     if (!options.trace_path.empty() || !options.histograms_folder.empty())
     {
@@ -638,6 +658,12 @@ std::string check_together(const CommandLine& line, Options& options, RawOptions
     options.prediction = static_cast<Prediction>(
         std::ranges::find(kPredictionNames, raw.prediction) - kPredictionNames.begin());
     options.transport = raw.transport == "file" ? TransportKind::file : TransportKind::dds;
+    const bool is_shown = line.is_given("--domain") && !options.virtual_time;
+    options.is_watched = options.transport == TransportKind::dds || is_shown;
+    if (line.is_given("--domain") && !options.is_watched)
+    {
+        log_message(LogLevel::info, "hrtc", "note: --domain has no use in virtual time");
+    }
     if (const std::string fault = check_virtual_time(options, raw); !fault.empty())
     {
         return fault;
@@ -646,7 +672,7 @@ std::string check_together(const CommandLine& line, Options& options, RawOptions
     {
         return fault;
     }
-    return options.transport == TransportKind::dds ? check_names(line, options) : "";
+    return options.is_watched ? check_names(line, options) : "";
 }
 
 } // namespace

@@ -5,6 +5,7 @@
 #include "platform/hrtc/device_choice.hpp"
 #include "platform/hrtc/guide.hpp"
 #include "platform/hrtc/placement.hpp"
+#include "platform/hrtc/scene_materials.hpp"
 #include "platform/hrtc/tool_choice.hpp"
 #include "platform/rt_thread.hpp"
 #include "platform/simulated/hand_motions.hpp"
@@ -13,6 +14,7 @@
 #include "rt_core/records/prediction.hpp"
 #include "transport/model_name.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -40,15 +42,16 @@ struct PlacedObject
     std::size_t model{0}; ///< Of Options::models.
     Similarity place;
     Material material;
-    bool has_place{false}; ///< Of --place.
+    bool has_place{false}; ///< Given by --place or by the host.
     bool has_material{false};
+    std::string name; ///< In its scene; empty: it has none.
 };
 
 /// What a simulated hand does, and on what.
 struct HandChoice
 {
     MotionKind motion{MotionKind::script};
-    std::string model; ///< By its name; empty: each hand has another object.
+    std::string object; ///< Its name, or its model's; empty: each hand has another object.
 };
 
 /// Everything that the command line says; checked, in SI.
@@ -60,7 +63,8 @@ struct Options
     /// Not empty: models and objects are this file's, or with DDS those of the host whose scene has
     /// this name, or NAME@SERVER; see scene_choice.hpp.
     std::string scene;
-    std::uint32_t objects_max{0}; ///< Room for so many; 0: as many as there are.
+    SceneMaterials scene_materials; ///< Where --material says otherwise than the scene.
+    std::uint32_t objects_max{0};   ///< Room for so many; 0: as many as there are.
     std::size_t tools{1};
     std::vector<ToolChoice> tool_choices; ///< One a tool; none: all are default_tool().
     std::vector<ToolLoad> tool_loads;     ///< One a tool; fewer: the others weigh nothing.
@@ -70,6 +74,7 @@ struct Options
     std::vector<HandChoice> hands;          ///< One a tool; fewer: the others as the last.
     TransportKind transport{TransportKind::dds};
     std::uint32_t domain{0};
+    bool is_watched{false};   ///< On that domain viewers see it, with models from files, too.
     std::string name;         ///< Of the controller, with DDS; empty: hrtc-PID.
     Failover failover;        ///< With DDS.
     bool follows_poses{true}; ///< Objects move as the hosts say.
@@ -87,7 +92,7 @@ struct Options
     double pool_mib{2.0};
     double cache_mib{0.0};                 ///< 0: the usual share of the pool.
     std::uint32_t splits{64};              ///< At most, when there is a frame budget.
-    std::optional<double> frame_budget_us; ///< None: budgets are fixed.
+    std::optional<double> frame_budget_us; ///< None: half of the period.
     bool static_when_it_fits{true};
     Prediction prediction{Prediction::automatic};
     const Kernels* kernels{nullptr}; ///< Of the queries; null: the best of the processor.
@@ -113,6 +118,29 @@ struct Options
         return static_cast<std::size_t>(pool_mib * 0x1p20);
     }
     [[nodiscard]] Duration period() const noexcept { return nanoseconds(1'000'000'000 / rate_hz); }
+    /// The time that a frame may take.
+    [[nodiscard]] Duration frame_budget() const noexcept
+    {
+        return frame_budget_us ? nanoseconds(static_cast<std::int64_t>(*frame_budget_us * 1e3))
+                               : nanoseconds(period().ns / 2);
+    }
+    /// So many times the usual work a frame may do with the tools that there are.
+    [[nodiscard]] std::uint32_t work_times() const noexcept
+    {
+        const auto any = [this](std::string ToolChoice::*file)
+        {
+            return std::ranges::any_of(tool_choices, [file](const ToolChoice& tool)
+                                       { return !(tool.*file).empty(); });
+        };
+        return any(&ToolChoice::mesh_model)  ? Budgets::kMeshWork
+               : any(&ToolChoice::hull_file) ? Budgets::kHullWork
+                                             : 1U;
+    }
+    /// The work that a frame may do.
+    [[nodiscard]] std::uint32_t frame_work() const noexcept
+    {
+        return Budgets::work_of(frame_budget().ns, work_times());
+    }
     [[nodiscard]] std::uint64_t frames() const noexcept
     {
         return static_cast<std::uint64_t>(duration_s * static_cast<double>(rate_hz));

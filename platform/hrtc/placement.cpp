@@ -2,12 +2,13 @@
 // Copyright the Tactus authors.
 #include "platform/hrtc/placement.hpp"
 
-#include "platform/base/numbers.hpp"
+#include "platform/base/number_form.hpp"
 #include "rt_core/limits.hpp"
 
 #include <Eigen/Geometry>
 
 #include <numbers>
+#include <string_view>
 #include <vector>
 
 namespace tactus::hrtc
@@ -29,24 +30,35 @@ Mat3 rotation_of(const Vec3& vector_deg)
     return Eigen::AngleAxisd(angle_rad, vector_deg / angle_deg).toRotationMatrix();
 }
 
+constexpr double kTurnMax_deg = 360.0;
+constexpr NumberRange kPlaceAlong{-kPoseReachMax_m, kPoseReachMax_m, "m"};
+constexpr NumberRange kTurnAbout{-kTurnMax_deg, kTurnMax_deg, "degrees"};
+constexpr NumberRange kPlacementRanges[] = {kPlaceAlong,
+                                            kPlaceAlong,
+                                            kPlaceAlong,
+                                            kTurnAbout,
+                                            kTurnAbout,
+                                            kTurnAbout,
+                                            {kPoseScaleMin, kPoseScaleMax}};
+constexpr NumberForm kPlacementForm{"X,Y,Z[,RX,RY,RZ[,SCALE]]", kPlacementRanges};
+
 } // namespace
 
-std::optional<Similarity> parse_placement(std::string_view text)
+Result<Similarity, Refusal> parse_placement(std::string_view text)
 {
-    const std::optional<std::vector<double>> numbers = parse_numbers(text);
-    if (!numbers || (numbers->size() != 3 && numbers->size() != 6 && numbers->size() != 7))
+    const auto numbers = read_numbers(text, kPlacementForm);
+    if (!numbers)
     {
-        return std::nullopt;
+        return numbers.error();
     }
-    const std::vector<double>& n = *numbers;
-    const Vec3 translation_m(n[0], n[1], n[2]);
+    const std::vector<double>& n = numbers.value();
     const Vec3 rotation_deg = n.size() >= 6 ? Vec3(n[3], n[4], n[5]) : Vec3(0.0, 0.0, 0.0);
-    const double scale = n.size() == 7 ? n[6] : 1.0;
-    const bool in_range = translation_m.cwiseAbs().maxCoeff() <= kPoseReachMax_m &&
-                          rotation_deg.norm() <= 360.0 && scale >= kPoseScaleMin &&
-                          scale <= kPoseScaleMax;
-    return in_range ? std::optional<Similarity>({rotation_of(rotation_deg), translation_m, scale})
-                    : std::nullopt;
+    if (rotation_deg.norm() > kTurnMax_deg)
+    {
+        return not_of_form(text, kPlacementForm.text, "RX,RY,RZ is longer than 360 degrees");
+    }
+    return Similarity{rotation_of(rotation_deg), Vec3(n[0], n[1], n[2]),
+                      n.size() == 7 ? n[6] : 1.0};
 }
 
 } // namespace tactus::hrtc

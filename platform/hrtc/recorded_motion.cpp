@@ -3,6 +3,7 @@
 #include "platform/hrtc/recorded_motion.hpp"
 
 #include "platform/device_force.hpp"
+#include "platform/hrtc/messages.hpp"
 #include "platform/simulated/device_classes.hpp"
 #include "rt_core/base/assert.hpp"
 #include "rt_core/limits.hpp"
@@ -54,6 +55,10 @@ Result<ReplayDeviceOptions, Refusal> read_recorded_motion(const std::string& pat
     if (!recording)
     {
         return recording.error();
+    }
+    if (const std::string missing = recording.value().missing(); !missing.empty())
+    {
+        log_line(path + ": " + missing);
     }
     const RecordedSetup& setup = recording.value().setup();
     const std::size_t played = tool < setup.tools.size() ? tool : 0;

@@ -15,8 +15,8 @@ namespace tactus::hrtc
 
 /// What a device told in a recording of `hrtc --record`, frame by frame: that of its tool `tool`,
 /// or of its first one where it has no such. Force, torque and rate are those of that run. Where a
-/// clutch had parted hand and tool, it is the hand. Takes as much memory as the recording, and 250
-/// bytes a frame.
+/// clutch had parted hand and tool, it is the hand. Logs what of the run is missing. Takes as much
+/// memory as the recording, and 250 bytes a frame.
 [[nodiscard]] Result<ReplayDeviceOptions, Refusal> read_recorded_motion(const std::string& path,
                                                                         std::size_t tool);
 

@@ -7,8 +7,8 @@
 namespace tactus::hrtc
 {
 
-Recorder::Recorder(AtomicFile file, const FrameSetup& setup, Courier& courier, Worker worker)
-    : file_(std::move(file)), courier_(courier), writer_(to_recorded(setup))
+Recorder::Recorder(AtomicFile file, const RecordedSetup& setup, Courier& courier, Worker worker)
+    : file_(std::move(file)), courier_(courier), writer_(setup)
 {
     for (std::uint32_t model = 0; model < courier_.model_count(); ++model)
     {
@@ -53,6 +53,12 @@ void Recorder::add_failed(const GivenFrame& frame)
     tap_.record_failed(frame);
 }
 
+void Recorder::name_object(std::uint32_t number, std::uint32_t generation, const std::string& name)
+{
+    const std::lock_guard lock(mutex_);
+    names_[{RecordedName::Kind::object, number, generation}] = name;
+}
+
 void Recorder::stop()
 {
     thread_.reset();
@@ -79,9 +85,15 @@ void Recorder::take_frames()
 void Recorder::take_pieces()
 {
     std::vector<Piece> pieces;
+    std::map<RecordedName, std::string> names;
     {
         const std::lock_guard lock(mutex_);
         pieces = std::exchange(pieces_, {});
+        names = std::exchange(names_, {});
+    }
+    for (const auto& [what, name] : names)
+    {
+        writer_.add_name(what, name);
     }
     for (const Piece& piece : pieces)
     {

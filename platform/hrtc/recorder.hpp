@@ -10,9 +10,11 @@
 #include "transport/courier.hpp"
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace tactus::hrtc
@@ -39,13 +41,16 @@ public:
     };
     /// The courier must outlive the recorder, and nobody may run it while this is made or
     /// destroyed.
-    Recorder(AtomicFile file, const FrameSetup& setup, Courier& courier, Worker worker);
+    Recorder(AtomicFile file, const RecordedSetup& setup, Courier& courier, Worker worker);
     Recorder(const Recorder&) = delete;
     Recorder& operator=(const Recorder&) = delete;
     ~Recorder();
 
     /// What the haptic thread records through.
     [[nodiscard]] FrameTap& tap() noexcept { return tap_; }
+
+    /// Keeps the name of an object that comes, for the file. Transport thread.
+    void name_object(std::uint32_t number, std::uint32_t generation, const std::string& name);
 
     /// Writes what waits. The caller's thread, if that is the worker.
     void step();
@@ -87,7 +92,8 @@ private:
     FrameTap tap_;
     RecordingWriter writer_;
     std::mutex mutex_;
-    std::vector<Piece> pieces_; ///< Not yet in the writer; under the mutex.
+    std::vector<Piece> pieces_; ///< Not yet in the writer; under the mutex, as the names are.
+    std::map<RecordedName, std::string> names_;
     Result<Done, Refusal> stored_{Done{}};
     std::optional<WriterThread> thread_; ///< Last: it uses the others.
 };

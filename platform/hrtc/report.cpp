@@ -63,7 +63,8 @@ Json pool_of(const PoolUse& use, std::size_t bytes_each)
             {"bytes", use.capacity * bytes_each}};
 }
 
-/// `for_guests` is what no model brings.
+/// `for_guests` is what no model brings. The peaks of models that share a pool, at different times,
+/// may come to more than it has: no more than that was in use.
 PoolUse sum_of(const std::vector<ModelOutput>& models, PoolUse ModelOutput::*pool,
                std::uint32_t for_guests)
 {
@@ -74,6 +75,7 @@ PoolUse sum_of(const std::vector<ModelOutput>& models, PoolUse ModelOutput::*poo
         sum.used_max += (model.*pool).used_max;
         sum.capacity += (model.*pool).capacity;
     }
+    sum.used_max = std::min(sum.used_max, sum.capacity);
     return sum;
 }
 
@@ -183,6 +185,13 @@ Json traffic_of(const HapticDevice& device)
             {"refused", refused}};
 }
 
+/// The name of the model; null of a tool that begins outside.
+Json begins_inside(const FinishedRun& run, std::size_t tool)
+{
+    const bool is_inside = tool < run.begins_inside.size() && !run.begins_inside[tool].empty();
+    return is_inside ? Json(run.begins_inside[tool]) : Json();
+}
+
 Json tools_of(const RunRecord& record)
 {
     Json list = Json::array();
@@ -195,6 +204,7 @@ Json tools_of(const RunRecord& record)
         list.push_back(
             {{"shape", record.controller.tools()[i].shape},
              {"radius_m", record.controller.tools()[i].spec.radius_m},
+             {"begins_inside", begins_inside(record.run, i)},
              {"smooth_m", record.controller.tools()[i].spec.smooth_m},
              {"force_max_n", force.max_n},
              {"force_max_step_n", force.max_step_n},
@@ -313,23 +323,19 @@ Json machine_of(const RunRecord& record)
 
 Json budgets_of(const RunRecord& record)
 {
-    constexpr std::array<const char*, kGovernedBudgets.size()> kNames{
-        "splits", "merges", "scanned", "nodes", "triangles", "planes"};
-    Json budgets{{"frame_us", nullptr}, {"at_floor", record.run.statistics.budgets_at_floor}};
-    if (record.options.frame_budget_us)
+    const RunStatistics& run = record.run.statistics;
+    const auto range_of = [&run](const WorkRange& range)
     {
-        budgets["frame_us"] = *record.options.frame_budget_us;
-    }
-    const double frames =
-        static_cast<double>(std::max<std::uint64_t>(record.run.statistics.frames, 1));
-    for (std::size_t i = 0; i < kNames.size(); ++i)
-    {
-        const BudgetRange& range = record.run.statistics.budgets[i];
-        budgets[kNames[i]] = {{"min", range.min},
-                              {"mean", static_cast<double>(range.sum) / frames},
-                              {"max", range.max}};
-    }
-    return budgets;
+        return Json{{"min", range.min},
+                    {"mean", static_cast<double>(range.sum) /
+                                 static_cast<double>(std::max<std::uint64_t>(run.frames, 1))},
+                    {"max", range.max}};
+    };
+    return {{"frame_us", to_us(record.options.frame_budget())},
+            {"splits", record.options.splits},
+            {"work", range_of(run.work_allowed)},
+            {"work_done", range_of(run.work_done)},
+            {"at_floor", run.work_at_floor}};
 }
 
 Json work_of(const RunStatistics& statistics)

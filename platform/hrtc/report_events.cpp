@@ -79,12 +79,11 @@ Json deadlines_of(const FinishedRun& run)
     return {{"missed", deadlines.missed},
             {"own_fault", deadlines.own_faults},
             {"machine_late", deadlines.machine_late},
-            {"unexplained", deadlines.unexplained},
+            {"stopped", deadlines.stopped},
             {"missed_periods", run.timer.missed_periods},
             {"episodes", run.timer.episodes},
             {"extra_switches", deadlines.cycles_with(CycleFlag::gave_way)},
             {"over_budget", deadlines.cycles_with(CycleFlag::over_work)},
-            {"suspected", deadlines.suspected},
             {"cycles", cycles},
             {"noted", noted},
             {"noted_left_out", deadlines.noted().size() - noted.size() + deadlines.not_kept}};

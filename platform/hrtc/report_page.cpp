@@ -21,6 +21,9 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
+/// With more models their number is the title.
+constexpr std::size_t kNamesInTitle = 4;
+
 std::string text_of(const Json& value)
 {
     switch (value.type())
@@ -149,10 +152,10 @@ plot::Table times_of(const Json& all_times)
 
 void add_verdict(const Json& report, plot::Page& page)
 {
-    const std::vector<std::string> complaints = complaints_of(report);
+    const std::vector<Complaint> complaints = complaints_of(report);
     if (!complaints.empty())
     {
-        page.verdict(fmt::format("{}.", fmt::join(complaints, "; ")), false);
+        page.verdict(verdict_text(complaints) + ".", is_machine_alone(complaints));
         return;
     }
     const auto brackets = report["answers"]["bracket"].get<std::uint64_t>();
@@ -179,14 +182,15 @@ std::vector<plot::Mark> marks_of(const Json& report, const RunStatistics& statis
         {
             marks.push_back(
                 {time_s,
-                 has_any(cycle.flags, kMachinesDoing) ? "machine late" : "missed, nobody to blame",
+                 has_any(cycle.flags, CycleFlag::stopped) ? "stopped from outside" : "machine late",
                  plot::MarkKind::warning});
         }
     }
     for (const Json& event : report["safety"]["events"])
     {
         const Json& frame = event["frame"]; // None of the supervisor's.
-        if (frame.is_number() && !event["causes"].empty())
+        const bool is_end = event["causes"] == Json{"software"};
+        if (frame.is_number() && !event["causes"].empty() && !is_end)
         {
             marks.push_back({frame.get<double>() * period_s,
                              fmt::format("force withheld for {}", text_of(event["causes"])),
@@ -196,8 +200,9 @@ std::vector<plot::Mark> marks_of(const Json& report, const RunStatistics& statis
     return marks;
 }
 
-/// Force, bracket and stage times over the run.
-std::vector<plot::Chart> series_of(const Json& report, const RunStatistics& statistics)
+/// Force, bracket and, where there are some, stage times over the run.
+std::vector<plot::Chart> series_of(const Json& report, const RunStatistics& statistics,
+                                   bool has_times)
 {
     const std::vector<SeriesPoint> points = statistics.series.points();
     const double step_s =
@@ -234,6 +239,11 @@ std::vector<plot::Chart> series_of(const Json& report, const RunStatistics& stat
     charts[0].lines = {line("force", [](const SeriesPoint& point) { return point.force_n; })};
     charts[1].lines = {
         line("bracket", [](const SeriesPoint& point) { return 1e3F * point.width_m; })};
+    if (!has_times)
+    {
+        charts.pop_back();
+        return charts;
+    }
     for (std::size_t stage = 0; stage < kStages; ++stage)
     {
         charts[2].lines.push_back(line(kStageNames.at(stage), [stage](const SeriesPoint& point)
@@ -249,7 +259,12 @@ void add_times(const Json& report, const RunStatistics& statistics, plot::Page& 
     page.heading("Over the run");
     page.paragraph(fmt::format("Each point is the worst of {} neighbouring frames.",
                                statistics.series.stride()));
-    page.charts(series_of(report, statistics));
+    const bool has_times = !report["realtime"]["virtual_time"].get<bool>();
+    page.charts(series_of(report, statistics, has_times));
+    if (!has_times)
+    {
+        return; // Nothing took any.
+    }
     page.heading("Times");
     page.table(times_of(report["times_us"]));
     const Duration period{report["period_ns"].get<std::int64_t>()};
@@ -287,7 +302,8 @@ std::string title_of(const Json& report)
     {
         names.push_back(model["name"].get<std::string>());
     }
-    return fmt::format("hrtc: {}", fmt::join(names, ", "));
+    return names.size() > kNamesInTitle ? fmt::format("hrtc: {} models", names.size())
+                                        : fmt::format("hrtc: {}", fmt::join(names, ", "));
 }
 
 } // namespace
@@ -298,11 +314,12 @@ bool is_page_name(const std::string& path)
 }
 
 std::string make_page(const Json& report, const RunStatistics& statistics,
-                      plot::ChartLibrary library)
+                      plot::ChartLibrary library, const plot::Relief& relief)
 {
     plot::Page page(title_of(report), std::move(library));
     add_verdict(report, page);
     page.table(plot::facts(summary_facts(report)));
+    page.relief(relief);
     add_times(report, statistics, page);
     std::vector<plot::TitledTable> sections;
     for (const auto& [key, title] :
@@ -320,13 +337,6 @@ std::string make_page(const Json& report, const RunStatistics& statistics,
             sections.push_back({title, facts_of(report[key])});
         }
     }
-    SummaryFacts words;
-    for (const auto& [word, meaning] : report_words())
-    {
-        words.emplace_back(word, meaning);
-    }
-    page.heading("The words");
-    page.table(plot::facts(words));
     page.heading("Every figure");
     page.tables(sections);
     add_list("Models", report["models"], columns_of, page);
@@ -335,6 +345,13 @@ std::string make_page(const Json& report, const RunStatistics& statistics,
     add_list("Refused of others on the domain", report["refused"], columns_of, page);
     add_list("Safety events", report["safety"]["events"], table_of, page);
     add_list("Cycles of note", report["deadline"]["noted"], table_of, page);
+    SummaryFacts words;
+    for (const auto& [word, meaning] : report_words())
+    {
+        words.emplace_back(word, meaning);
+    }
+    page.heading("The words");
+    page.table(plot::facts(words));
     page.paragraph(fmt::format("Report schema {}, {} frames of {} ns, {} s.",
                                report["schema"].get<int>(), report["frames"].get<std::uint64_t>(),
                                report["period_ns"].get<std::int64_t>(),

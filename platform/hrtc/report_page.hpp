@@ -4,6 +4,7 @@
 
 #include "platform/hrtc/run_statistics.hpp"
 #include "platform/plot/chart.hpp"
+#include "platform/plot/relief.hpp"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -18,7 +19,9 @@ namespace tactus::hrtc
 /// A run's report as an HTML page: what it comes to, every figure of the report, and charts of
 /// `statistics`, those that the report is made from: force, bracket and stage times over the run,
 /// and histograms of the times.
+/// `relief` shows where the tools were; without it the page has no picture.
 [[nodiscard]] std::string make_page(const nlohmann::ordered_json& report,
-                                    const RunStatistics& statistics, plot::ChartLibrary library);
+                                    const RunStatistics& statistics, plot::ChartLibrary library,
+                                    const plot::Relief& relief = {});
 
 } // namespace tactus::hrtc

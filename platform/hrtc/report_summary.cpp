@@ -3,6 +3,7 @@
 
 /// The report for a person: a few lines.
 
+#include "platform/base/counted.hpp"
 #include "platform/hrtc/report.hpp"
 #include "platform/hrtc/verdict.hpp"
 
@@ -10,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <limits>
 
@@ -21,17 +23,14 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-std::string budgets_text(const Json& budgets)
+std::string work_text(const Json& budgets)
 {
-    const auto range = [&](const char* name)
-    {
-        return fmt::format(
-            "{} {} to {}, mean {:.1f}", name, budgets[name]["min"].get<std::uint32_t>(),
-            budgets[name]["max"].get<std::uint32_t>(), budgets[name]["mean"].get<double>());
-    };
-    return fmt::format("for {} us a frame: {}; {}; {} frames at the least",
-                       budgets["frame_us"].get<double>(), range("splits"), range("nodes"),
-                       budgets["at_floor"].get<std::uint64_t>());
+    return fmt::format(
+        "for {} us a frame: {} to {}, {:.0f} done in the mean and {} at most; {} frames "
+        "with the least",
+        budgets["frame_us"].get<double>(), budgets["work"]["min"].get<std::uint32_t>(),
+        budgets["work"]["max"].get<std::uint32_t>(), budgets["work_done"]["mean"].get<double>(),
+        budgets["work_done"]["max"].get<std::uint32_t>(), budgets["at_floor"].get<std::uint64_t>());
 }
 
 /// With more of them one line tells of all.
@@ -54,10 +53,11 @@ void add_poses(const Json& models, SummaryFacts& facts)
         const auto age_s = pose["age_max_s"].get<double>();
         step_max_m = std::max(step_max_m, step_m);
         age_max_s = std::max(age_max_s, age_s);
-        lines.emplace_back(
-            "poses", fmt::format("{}: moved in {} frames, by {:.4g} m at most; oldest {:.3g} s",
-                                 model["name"].get<std::string>(),
-                                 pose["moves"].get<std::uint64_t>(), step_m, age_s));
+        lines.emplace_back("poses",
+                           fmt::format("{}: moved in {}, by {:.4g} m at most; oldest {:.3g} s",
+                                       model["name"].get<std::string>(),
+                                       counted(pose["moves"].get<std::uint64_t>(), "frame"), step_m,
+                                       age_s));
     }
     if (lines.size() > kModelsInLines)
     {
@@ -112,13 +112,16 @@ void add_stability(const Json& tools, SummaryFacts& facts)
     }
     if (capped > 0)
     {
-        facts.emplace_back(
-            "stability",
-            fmt::format("{} forces softened, to a wall of {:.0f} N/m at the softest", capped, cap));
+        facts.emplace_back("stability",
+                           counted(capped, "force") + " softened" +
+                               (std::isfinite(cap)
+                                    ? fmt::format(", to a wall of {:.0f} N/m at the softest", cap)
+                                    : " in their turning"));
     }
     if (damped > 0)
     {
-        facts.emplace_back("stability", fmt::format("{} forces damped", damped));
+        facts.emplace_back("stability",
+                           counted(damped, "force") + " damped, lest the wall gives energy away");
     }
 }
 
@@ -136,27 +139,22 @@ void add_safety(const Json& safety, SummaryFacts& facts)
     }
     if (!causes.empty())
     {
-        facts.emplace_back("safety",
-                           fmt::format("force off for: {}; {} brakes by the supervisor", causes,
-                                       safety["supervisor_brakes"].get<std::uint64_t>()));
-    }
-    // Each of them cuts the force, and that is the machine's doing.
-    if (safety["begun"]["stall"].get<std::uint64_t>() > 0)
-    {
-        facts.emplace_back("machine", "it held the loop up, and each time the force went off: "
-                                      "'hrtc doctor' says why, and what helps");
+        facts.emplace_back(
+            "safety",
+            fmt::format("force faded for: {}; {} by the supervisor", causes,
+                        counted(safety["supervisor_brakes"].get<std::uint64_t>(), "brake")));
     }
 }
 
 std::string recording_text(const Json& recording)
 {
     const Json& lost_from = recording["lost_from"];
-    return fmt::format("{} frames, {:.1f} KB{}", recording["frames"].get<std::uint64_t>(),
-                       recording["bytes"].get<double>() / 1e3,
-                       lost_from.is_null()
-                           ? ""
-                           : fmt::format("; incomplete: frame {} and all later ones are lost",
-                                         lost_from.get<std::uint64_t>()));
+    return fmt::format(
+        "{}, {:.1f} KB{}", counted(recording["frames"].get<std::uint64_t>(), "frame"),
+        recording["bytes"].get<double>() / 1e3,
+        lost_from.is_null() ? ""
+                            : fmt::format("; incomplete: frame {} and all later ones are lost",
+                                          lost_from.get<std::uint64_t>()));
 }
 
 std::string answers_text(const Json& report)
@@ -164,23 +162,24 @@ std::string answers_text(const Json& report)
     const double frames = std::max(report["frames"].get<double>(), 1.0);
     const auto share = [&](const char* kind)
     { return 100.0 * report["answers"][kind].get<double>() / frames; };
-    return fmt::format("exact {:.2f} %, decided {:.2f} %, bracket {:.2f} %, stale {:.2f} %; "
-                       "longest inexact run {} frames",
-                       share("exact"), share("decided"), share("bracket"), share("stale"),
-                       report["answers"]["longest_inexact_run"].get<std::uint64_t>());
+    return fmt::format(
+        "exact {:.2f} %, decided {:.2f} %, bracket {:.2f} %, stale {:.2f} %; "
+        "longest inexact run {}",
+        share("exact"), share("decided"), share("bracket"), share("stale"),
+        counted(report["answers"]["longest_inexact_run"].get<std::uint64_t>(), "frame"));
 }
 
 std::string deadlines_text(const Json& report)
 {
     const Json& deadline = report["deadline"];
-    const auto unexplained = deadline["unexplained"].get<std::uint64_t>();
+    const auto stopped = deadline["stopped"].get<std::uint64_t>();
     return fmt::format(
-        "{} missed: {} own faults, {} machine late{}; {} allocations, {} page faults",
-        deadline["missed"].get<std::uint64_t>(), deadline["own_fault"].get<std::uint64_t>(),
+        "{} missed: {}, {} machine late{}; {}, {}", deadline["missed"].get<std::uint64_t>(),
+        counted(deadline["own_fault"].get<std::uint64_t>(), "own fault"),
         deadline["machine_late"].get<std::uint64_t>(),
-        unexplained > 0 ? fmt::format(", {} other", unexplained) : "",
-        report["realtime"]["allocations"].get<std::uint64_t>(),
-        report["realtime"]["page_faults"].get<std::uint64_t>());
+        stopped > 0 ? fmt::format(", {} stopped from outside", stopped) : "",
+        counted(report["realtime"]["allocations"].get<std::uint64_t>(), "allocation"),
+        counted(report["realtime"]["page_faults"].get<std::uint64_t>(), "page fault"));
 }
 
 /// Models that are here as a whole.
@@ -219,10 +218,9 @@ void add_refused(const Json& peers, SummaryFacts& facts)
     }
     if (refused > 0)
     {
-        facts.emplace_back("refused",
-                           fmt::format("{} {} of {} {} on the domain; the report says why", refused,
-                                       refused == 1 ? "statement" : "statements", peers.size(),
-                                       peers.size() == 1 ? "program" : "programs"));
+        facts.emplace_back("refused", fmt::format("{} of {} on the domain; the report says why",
+                                                  counted(refused, "statement"),
+                                                  counted(peers.size(), "program")));
     }
 }
 
@@ -254,9 +252,9 @@ void add_models(const Json& report, SummaryFacts& facts)
     add_static(report["models"], facts);
     facts.emplace_back(
         "streaming",
-        fmt::format("{:.1f} KB received, {} pages loaded, {} evicted{}",
+        fmt::format("{:.1f} KB received, {} loaded, {} evicted{}",
                     report["wire"]["bytes_received"].get<double>() / 1e3,
-                    report["cache"]["loads"].get<std::uint64_t>(),
+                    counted(report["cache"]["loads"].get<std::uint64_t>(), "page"),
                     report["cache"]["evictions"].get<std::uint64_t>(),
                     report["wire"]["host_lost"].get<bool>() ? "; the host went away" : ""));
     if (const Json& arrival = report["wire"]["arrival_ms"]; !arrival["max"].is_null())
@@ -308,9 +306,10 @@ SummaryFacts touch_facts(const Json& report)
 SummaryFacts run_facts(const Json& report)
 {
     SummaryFacts facts;
-    if (!report["budgets"]["frame_us"].is_null())
+    if (const Json& budgets = report["budgets"];
+        budgets["work"].is_object() && budgets["work"]["min"] != budgets["work"]["max"])
     {
-        facts.emplace_back("budgets", budgets_text(report["budgets"]));
+        facts.emplace_back("work", work_text(budgets));
     }
     add_scene(report["scene"], facts);
     add_models(report, facts);
@@ -373,9 +372,7 @@ SummaryFacts summary_facts(const Json& report)
 
 std::string make_summary(const Json& report)
 {
-    const std::vector<std::string> complaints = complaints_of(report);
-    const SummaryFacts verdict{
-        {"verdict", complaints.empty() ? "ok" : fmt::format("{}", fmt::join(complaints, "; "))}};
+    const SummaryFacts verdict{{"verdict", verdict_text(complaints_of(report))}};
     const std::string times =
         report["realtime"]["virtual_time"].get<bool>()
             ? to_lines({{"times", "none: in virtual time a frame takes none"}})

@@ -25,6 +25,7 @@ constexpr ReportWord kWords[] = {
     {"response", "from the deadline to the force, deadlines without a frame included"},
     {"own fault", "deadline: the loop did what it must not do; a bug"},
     {"machine late", "deadline: the machine held the loop up; hrtc doctor says why"},
+    {"stopped from outside", "deadline: the process was stopped and continued"},
     {"arrival", "from the wish for a piece of a model to its being here"},
     {"static", "model that is here as a whole: it needs no host while it is touched"},
     {"forces softened", "the wall was made as soft as the device can carry"},

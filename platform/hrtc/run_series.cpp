@@ -18,7 +18,8 @@ void SeriesPoint::take(const SeriesPoint& other) noexcept
     }
 }
 
-void RunSeries::add(const SeriesPoint& frame) noexcept
+template <typename Point>
+void Series<Point>::add(const Point& frame) noexcept
 {
     constexpr std::size_t kHalf = kPoints / 2;
     if (unmerged_from_ < kHalf) // Done long before the other half is full.
@@ -43,9 +44,10 @@ void RunSeries::add(const SeriesPoint& frame) noexcept
     in_last_ = 1;
 }
 
-std::vector<SeriesPoint> RunSeries::points() const
+template <typename Point>
+std::vector<Point> Series<Point>::points() const
 {
-    std::vector<SeriesPoint> all(now_.begin(), now_.begin() + static_cast<std::ptrdiff_t>(used_));
+    std::vector<Point> all(now_.begin(), now_.begin() + static_cast<std::ptrdiff_t>(used_));
     for (std::size_t pair = unmerged_from_; pair < kPoints / 2; ++pair)
     {
         all[pair] = merged(pair);
@@ -53,11 +55,15 @@ std::vector<SeriesPoint> RunSeries::points() const
     return all;
 }
 
-SeriesPoint RunSeries::merged(std::size_t pair) const noexcept
+template <typename Point>
+Point Series<Point>::merged(std::size_t pair) const noexcept
 {
-    SeriesPoint point = before_[2 * pair];
+    Point point = before_[2 * pair];
     point.take(before_[2 * pair + 1]);
     return point;
 }
+
+template class Series<SeriesPoint>;
+template class Series<PathPoint>;
 
 } // namespace tactus::hrtc

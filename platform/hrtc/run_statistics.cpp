@@ -49,7 +49,7 @@ void AnswerCounts::add(AnswerKind kind, double width_m) noexcept
 
 void ForceCounts::add(const ToolOutput& output, const ToolForce& force) noexcept
 {
-    add_sent(force);
+    add_sent(force, output.in_contact);
     contact_frames += output.in_contact ? 1 : 0;
     force_frames += is_felt(output, force) ? 1U : 0U;
     frozen_frames += output.frozen ? 1 : 0;
@@ -72,30 +72,38 @@ void ForceCounts::add(const ToolOutput& output, const ToolForce& force) noexcept
     }
 }
 
-/// The end of a run damps the motion, in the air too: that is no force of what was touched.
-void ForceCounts::add_sent(const ToolForce& force) noexcept
+/// The end of a run, and a force that goes off, damp the motion, in the air too: that is no force
+/// of what was touched, and going there and back no step of one.
+void ForceCounts::add_sent(const ToolForce& force, bool in_contact) noexcept
 {
-    if (!has_cause(force.causes, ForceOff::software))
+    const bool is_damping_air = force.causes != ForceOff::none && !in_contact;
+    if (!is_damping_air && !has_cause(force.causes, ForceOff::software))
     {
         max_n = std::max(max_n, force.push.force_n.norm());
-        max_step_n = std::max(max_step_n, (force.push.force_n - last_n_).norm());
         torque_max_nm = std::max(torque_max_nm, force.turn.force_n.norm());
-        torque_max_step_nm = std::max(torque_max_step_nm, (force.turn.force_n - last_nm_).norm());
+        if (!damped_air_)
+        {
+            max_step_n = std::max(max_step_n, (force.push.force_n - last_n_).norm());
+            torque_max_step_nm =
+                std::max(torque_max_step_nm, (force.turn.force_n - last_nm_).norm());
+        }
     }
+    damped_air_ = is_damping_air;
     last_n_ = force.push.force_n;
     last_nm_ = force.turn.force_n;
 }
 
-void BudgetRange::add(std::uint32_t budget, bool is_first) noexcept
+void WorkRange::add(std::uint32_t work, bool is_first) noexcept
 {
-    min = is_first ? budget : std::min(min, budget);
-    max = std::max(max, budget);
-    sum += budget;
+    min = is_first ? work : std::min(min, work);
+    max = std::max(max, work);
+    sum += work;
 }
 
 RunStatistics::RunStatistics(std::size_t tool_count, std::size_t object_count,
                              std::size_t model_count, Duration period)
-    : deadlines(period)
+    : paths(tool_count)
+    , deadlines(period)
     , objects(object_count)
     , pairs(tool_count * object_count)
     , tools(tool_count)
@@ -117,14 +125,19 @@ void RunStatistics::add(const FrameOutput& output, std::span<const ToolForce> fo
     add_point(measures, forces, add_answers(output));
     add_work(output);
     add_scene(output);
-    add_budgets(measures);
-    deadlines.add(index, measures, is_over_budget(output.work, measures.budgets));
+    add_work_budget(output.work, measures);
+    deadlines.add(index, measures, output.work.budget.used(),
+                  is_over_budget(output.work, measures.budgets));
     bool any_contact = false;
     bool any_force = false;
     bool any_held_back = false;
     for (std::size_t i = 0; i < tools.size(); ++i)
     {
         tools[i].add(output.tools[i], forces[i]);
+        const Vec3& place_m = output.tools[i].proxy_m;
+        paths[i].add({{static_cast<float>(place_m.x()), static_cast<float>(place_m.y()),
+                       static_cast<float>(place_m.z())},
+                      static_cast<float>(forces[i].push.force_n.norm())});
         any_contact = any_contact || output.tools[i].in_contact;
         any_force = any_force || is_felt(output.tools[i], forces[i]);
         any_held_back = any_held_back || output.tools[i].held_back;
@@ -209,13 +222,12 @@ void RunStatistics::add_scene(const FrameOutput& output) noexcept
     }
 }
 
-void RunStatistics::add_budgets(const CycleMeasures& measures) noexcept
+void RunStatistics::add_work_budget(const WorkCounters& work,
+                                    const CycleMeasures& measures) noexcept
 {
-    for (std::size_t i = 0; i < budgets.size(); ++i)
-    {
-        budgets[i].add(measures.budgets.*kGovernedBudgets[i], frames == 1);
-    }
-    budgets_at_floor += measures.budgets_at_floor ? 1 : 0;
+    work_allowed.add(measures.budgets.work, frames == 1);
+    work_done.add(work.budget.used(), frames == 1);
+    work_at_floor += measures.is_work_at_floor ? 1 : 0;
 }
 
 bool RunStatistics::is_over_budget(const WorkCounters& work, const Budgets& limits) const noexcept
@@ -226,7 +238,8 @@ bool RunStatistics::is_over_budget(const WorkCounters& work, const Budgets& limi
            work.triangles_tested > kWalks * limits.triangles ||
            work.planes_looked_at > kFrameWalks * limits.planes ||
            work.pages_adopted > limits.pages || work.requests > limits.requests + limits.regions ||
-           work.regions_searched > limits.regions;
+           work.regions_searched > limits.regions ||
+           work.budget.used() > WorkBudget::most_of(limits.work);
 }
 
 std::vector<std::pair<const char*, LatencyHistogram>> RunStatistics::times() const

@@ -64,26 +64,22 @@ struct ForceCounts
     void add(const ToolOutput& output, const ToolForce& force) noexcept;
 
 private:
-    void add_sent(const ToolForce& force) noexcept;
+    void add_sent(const ToolForce& force, bool in_contact) noexcept;
 
     Vec3 last_n_{0.0, 0.0, 0.0};
     Vec3 last_nm_{0.0, 0.0, 0.0};
+    bool damped_air_{false}; ///< In the last frame.
 };
 
-/// One budget over the run.
-struct BudgetRange
+/// A number of each frame over the run.
+struct WorkRange
 {
     std::uint32_t min{0};
     std::uint32_t max{0};
     std::uint64_t sum{0};
 
-    void add(std::uint32_t budget, bool is_first) noexcept;
+    void add(std::uint32_t work, bool is_first) noexcept;
 };
-
-/// The budgets that follow a frame's cost, in the order of kGovernedBudgets.
-inline constexpr std::array kGovernedBudgets{&Budgets::splits,    &Budgets::merges,
-                                             &Budgets::scanned,   &Budgets::nodes,
-                                             &Budgets::triangles, &Budgets::planes};
 
 /// Everything a run's report is made of. Filled by the haptic thread without allocating; read by
 /// others once the loop has ended.
@@ -105,6 +101,7 @@ public:
     LatencyHistogram cpu; ///< Processor time of a frame.
     LatencyHistogram wake;
     RunSeries series;
+    std::vector<ToolPath> paths; ///< One a tool.
     DeadlineAccount deadlines;
     AnswerCounts answers; ///< By each frame's worst pair.
     std::size_t objects;  ///< Places for them: one more than their largest number.
@@ -137,8 +134,9 @@ public:
     /// Changes that were not made, in the order of ChangeRefusal.
     std::array<std::uint64_t, kChangeRefusals> changes_refused{};
 
-    std::array<BudgetRange, kGovernedBudgets.size()> budgets;
-    std::uint64_t budgets_at_floor{0}; ///< Frames with the least budgets there are.
+    WorkRange work_allowed;         ///< Budgets::work,
+    WorkRange work_done;            ///< and WorkBudget::used().
+    std::uint64_t work_at_floor{0}; ///< Frames for which the least work is more than fits.
 
 private:
     /// The width of the widest bracket, in m.
@@ -147,7 +145,7 @@ private:
                    double width_m) noexcept;
     void add_work(const FrameOutput& output) noexcept;
     void add_scene(const FrameOutput& output) noexcept;
-    void add_budgets(const CycleMeasures& measures) noexcept;
+    void add_work_budget(const WorkCounters& work, const CycleMeasures& measures) noexcept;
     [[nodiscard]] bool is_over_budget(const WorkCounters& work,
                                       const Budgets& limits) const noexcept;
 };

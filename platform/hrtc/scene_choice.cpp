@@ -3,6 +3,7 @@
 #include "platform/hrtc/scene_choice.hpp"
 
 #include "host_tools/scene/placed_models.hpp"
+#include "platform/base/program_log.hpp"
 #include "platform/hrtc/messages.hpp"
 #include "platform/hrtc/object_pose.hpp"
 #include "platform/hrtc/scene_room.hpp"
@@ -14,8 +15,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <iterator>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace tactus::hrtc
@@ -25,6 +28,9 @@ namespace
 {
 
 constexpr std::chrono::milliseconds kPause{2};
+
+/// Without a scene a host that tells nothing of its objects for so long has none that counts.
+constexpr std::chrono::seconds kPlacesMax{3};
 
 /// Hosts that are asked at the same time; only strangers could be so many.
 constexpr std::size_t kMaxCandidates = 256;
@@ -47,8 +53,12 @@ void take_objects(Options& options, ShownScene& scene, const dds::Catalogue& cat
             std::ranges::find(offers, object.shown.model, &dds::Catalogue::Offer::hash);
         if (offer != offers.end()) // Otherwise the keeper names it in the run.
         {
-            options.objects.push_back({static_cast<std::size_t>(offer - offers.begin()),
-                                       to_similarity(object.shown.pose), object.shown.material});
+            const ShownObject& shown = object.shown;
+            options.objects.push_back(
+                {.model = static_cast<std::size_t>(offer - offers.begin()),
+                 .place = to_similarity(shown.pose),
+                 .material = options.scene_materials.felt(shown.name, shown.material),
+                 .name = shown.name});
             scene.objects.push_back({scene.host_epoch, number});
         }
     }
@@ -92,6 +102,13 @@ std::optional<std::string> try_take(Options& options, const ModelSelector& selec
                              options.domain, reader.fault().empty() ? "" : "; ", reader.fault());
 }
 
+std::vector<std::string> names_of(const Options& options)
+{
+    std::vector<std::string> names;
+    std::ranges::transform(options.objects, std::back_inserter(names), &PlacedObject::name);
+    return names;
+}
+
 std::optional<Refusal> check_counts(const Options& options)
 {
     if (options.models.size() > kMaxModels)
@@ -117,13 +134,25 @@ std::optional<Refusal> take_scene_file(Options& options)
         return failure("--scene: " + scene.error().text);
     }
     const PlacedModels& placed = scene.value();
+    for (const std::string& note : placed.notes)
+    {
+        log_message(LogLevel::info, "hrtc", "note: " + note);
+    }
     for (const auto& file : placed.files)
     {
         options.models.push_back(file.string());
     }
     for (const PlacedModel& object : placed.objects)
     {
-        options.objects.push_back({object.model, to_similarity(object.pose), object.material});
+        options.objects.push_back(
+            {.model = object.model,
+             .place = to_similarity(object.pose),
+             .material = options.scene_materials.felt(object.name, object.material),
+             .name = object.name});
+    }
+    if (std::string fault = options.scene_materials.missing(names_of(options)); !fault.empty())
+    {
+        return failure(std::move(fault));
     }
     return check_counts(options);
 }
@@ -137,7 +166,7 @@ Result<ShownScene, Refusal> take_shown_scene(Options& options, dds::DdsClient& c
     const std::chrono::duration<double> longest(options.wait_s);
     const ModelSelector selector = parse_selector(options.scene).value();
     client.catalogue().ask_for_scene(selector.name);
-    ShownScene scene{selector.name, 0, {}};
+    ShownScene scene{selector.name, 0, {}, options.scene_materials};
     for (;;)
     {
         client.exchange().step();
@@ -149,8 +178,11 @@ Result<ShownScene, Refusal> take_shown_scene(Options& options, dds::DdsClient& c
         const std::chrono::duration<double> waited = Clock::now() - start;
         if (waited >= longest || !goes_on())
         {
-            return failure(fmt::format("--scene: '{}' {}; waited {:.3g} s", options.scene, *missing,
-                                       waited.count()));
+            const auto why = client.catalogue().scene_names() == "none"
+                                 ? dds::why_unheard(client.domain().id())
+                                 : std::nullopt;
+            return failure(fmt::format("--scene: '{}' {}{}; waited {:.3g} s", options.scene,
+                                       *missing, why ? "; " + *why : "", waited.count()));
         }
         std::this_thread::sleep_for(kPause);
     }
@@ -158,12 +190,54 @@ Result<ShownScene, Refusal> take_shown_scene(Options& options, dds::DdsClient& c
     {
         return *refusal;
     }
+    if (const std::string line = options.scene_materials.missing(names_of(options)); !line.empty())
+    {
+        log_message(LogLevel::info, "hrtc",
+                    "note: " + line + "; one that comes later will feel so");
+    }
     if (options.objects_max == 0)
     {
         options.objects_max = std::max(SceneRoom::of(options.pool_bytes()).objects,
                                        static_cast<std::uint32_t>(options.objects.size()));
     }
     return scene;
+}
+
+void take_first_places(Options& options, std::span<const ServedModel> models,
+                       dds::DdsClient& client, dds::SceneReader& reader,
+                       const std::function<bool()>& goes_on)
+{
+    using Clock = std::chrono::steady_clock;
+    const auto start = Clock::now();
+    std::vector<std::uint64_t> hosts;
+    for (const ServedModel& model : models)
+    {
+        if (std::ranges::find(hosts, model.host_epoch) == hosts.end())
+        {
+            hosts.push_back(model.host_epoch);
+        }
+    }
+    const auto is_complete = [&](std::uint64_t host) { return reader.is_complete(host); };
+    while (!std::ranges::all_of(hosts, is_complete) && Clock::now() - start < kPlacesMax &&
+           goes_on())
+    {
+        client.exchange().step();
+        reader.poll(hosts, [](dds::SceneNews /*news*/, const dds::SeenObject& /*object*/) {});
+        std::this_thread::sleep_for(kPause);
+    }
+    for (std::size_t i = 0; i < models.size(); ++i)
+    {
+        const auto& shown = reader.objects(models[i].host_epoch);
+        const auto first = std::ranges::find_if(
+            shown, [&](const auto& entry) { return entry.second.shown.model == models[i].hash; });
+        const auto ours = std::ranges::find(options.objects, i, &PlacedObject::model);
+        if (first != shown.end() && ours != options.objects.end())
+        {
+            ours->place = to_similarity(first->second.shown.pose);
+            ours->has_place = true;
+            ours->name = first->second.shown.name;
+        }
+    }
 }
 
 } // namespace tactus::hrtc

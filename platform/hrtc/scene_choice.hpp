@@ -6,10 +6,12 @@
 #include "platform/hrtc/options.hpp"
 #include "transport/dds/dds_client.hpp"
 #include "transport/dds/scene_reader.hpp"
+#include "transport/served_model.hpp"
 
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -31,6 +33,7 @@ struct ShownScene
     std::string name;
     std::uint64_t host_epoch{0};
     std::vector<HostObject> objects; ///< In the order of Options::objects.
+    SceneMaterials materials;        ///< That go before the host's.
 };
 
 /// Reads the scene file that the options name and puts its models and objects in their places.
@@ -44,5 +47,11 @@ struct ShownScene
 [[nodiscard]] Result<ShownScene, Refusal> take_shown_scene(Options& options, dds::DdsClient& client,
                                                            dds::SceneReader& reader,
                                                            const std::function<bool()>& goes_on);
+
+/// Waits a moment for what the models' hosts show, and puts the first object of each model where
+/// its host has the first one that shows it, under that one's name. The others stay where they are.
+void take_first_places(Options& options, std::span<const ServedModel> models,
+                       dds::DdsClient& client, dds::SceneReader& reader,
+                       const std::function<bool()>& goes_on);
 
 } // namespace tactus::hrtc

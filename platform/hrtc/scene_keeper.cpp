@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace tactus::hrtc
 {
@@ -20,6 +21,7 @@ SceneKeeper::SceneKeeper(std::span<const dds::Authority> authorities,
     , reader_(std::move(reader))
     , controller_(controller)
     , scene_(std::move(scene.name))
+    , materials_(std::move(scene.materials))
     , log_(std::move(log))
     , model_hosts_(controller.models().size())
     , first_(controller.first_objects())
@@ -54,9 +56,10 @@ SceneKeeper::SceneKeeper(std::span<const dds::Authority> authorities,
     }
 }
 
-void SceneKeeper::connect(PoseDoor& door, MonotonicTime now)
+void SceneKeeper::connect(PoseDoor& door, MonotonicTime now, NameSink names)
 {
     door_ = &door;
+    names_ = std::move(names);
     for (const auto& [name, place] : places_) // What has come since comes with the first step.
     {
         const auto& objects = reader_->objects(name.host_epoch);
@@ -243,6 +246,7 @@ void SceneKeeper::bind(std::uint32_t place, const dds::SeenObject& object, Monot
         slot.spec = {ModelId{static_cast<std::uint32_t>(*model_of(object.shown.model))},
                      felt(name, object.shown)};
         slot.is_here = true;
+        slot.name = object.shown.name;
         untold_.push_back(place);
     }
     move(place, object, now);
@@ -285,17 +289,18 @@ void SceneKeeper::feel(std::uint32_t place, const ShownObject& shown)
     }
 }
 
-/// A server takes no wall from a device.
+/// Neither a server nor --material takes a wall from a device.
 Material SceneKeeper::felt(const HostObject& object, const ShownObject& shown)
 {
-    const Material material = limited(shown.material, controller_.tools());
-    if (material != shown.material)
+    const Material& wanted = materials_.felt(shown.name, shown.material);
+    const Material material = limited(wanted, controller_.tools());
+    if (material != wanted)
     {
         ++news_.limited;
         if (limited_.insert(object).second)
         {
             log_.write(fmt::format("the material of object '{}' is limited: {}", shown.name,
-                                   differences(shown.material, material)));
+                                   differences(wanted, material)));
         }
     }
     return material;
@@ -322,6 +327,10 @@ void SceneKeeper::pass_on(MonotonicTime now)
                 return;
             }
             ++slot.generation;
+            if (names_)
+            {
+                names_(place, slot.generation, slot.name);
+            }
             ++news_.came;
             slot.owes_feel = false; // It comes with the newest.
         }

@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -55,8 +56,12 @@ public:
                 std::unique_ptr<dds::SceneReader> reader, const Controller& controller,
                 ShownScene scene, Log log);
 
-    /// Where it puts what it learns; lives as long as the run. First of all.
-    void connect(PoseDoor& door, MonotonicTime now);
+    /// Gets an object's number, its generation and its name when it comes.
+    using NameSink = std::function<void(std::uint32_t, std::uint32_t, const std::string&)>;
+
+    /// Where it puts what it learns; both live as long as the run, and `names` may be empty. First
+    /// of all.
+    void connect(PoseDoor& door, MonotonicTime now, NameSink names = {});
     /// Never waits.
     void step(MonotonicTime now);
 
@@ -81,6 +86,7 @@ private:
     struct Slot
     {
         std::optional<HostObject> bound;
+        std::string name; ///< Empty unless the object came later.
         ObjectSpec spec;
         ObjectPose pose;       ///< The newest.
         dds::PoseCounts known; ///< What is in `counts_` of the host's object.
@@ -111,9 +117,11 @@ private:
     std::unique_ptr<dds::SceneReader> reader_;
     const Controller& controller_;
     std::string scene_;
+    SceneMaterials materials_;
     RateLimitedLog log_;
     std::vector<ModelHeader> headers_; ///< Views into the controller's models.
     PoseDoor* door_{nullptr};
+    NameSink names_;
     std::vector<std::uint64_t> hosts_;       ///< That are followed.
     std::vector<std::uint64_t> model_hosts_; ///< Without a scene: of each model, or 0.
     std::vector<std::uint32_t> first_;       ///< Without a scene: the object of each model.

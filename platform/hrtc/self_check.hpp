@@ -18,7 +18,7 @@ namespace tactus::hrtc
 /// What the loop must not do, done to it on purpose.
 enum class InjectedFault : std::uint8_t
 {
-    overrun,    ///< More processor time than a period.
+    overwork,   ///< More arithmetic than a period has room for.
     page_fault, ///< A page that isn't there is touched.
     allocation, ///< A call on the heap.
     sleep,      ///< The processor is given away.
@@ -26,7 +26,7 @@ enum class InjectedFault : std::uint8_t
 inline constexpr std::size_t kInjectedFaults = 4;
 /// In the order of InjectedFault.
 inline constexpr std::array<const char*, kInjectedFaults> kInjectedFaultNames{
-    "overrun", "page fault", "allocation", "sleep"};
+    "overwork", "page fault", "allocation", "sleep"};
 
 /// Which frames of a self-check are spoilt, and how.
 struct InjectionPlan
@@ -39,8 +39,17 @@ struct InjectionPlan
     [[nodiscard]] static std::optional<InjectedFault> at(std::uint64_t frame) noexcept;
 };
 
-/// Does it on the calling thread. `period`: of the loop.
-void inject(InjectedFault fault, Duration period) noexcept;
+/// Does it on the calling thread. What is too much work is measured when this is made, and is the
+/// same each time.
+class FaultInjector
+{
+public:
+    explicit FaultInjector(Duration period);
+    void inject(InjectedFault fault) const noexcept;
+
+private:
+    std::uint64_t overwork_steps_;
+};
 
 /// What a self-check came to.
 struct SelfCheck
@@ -59,7 +68,7 @@ struct SelfCheck
 
 /// Compares what the account of a run that was spoilt by the plan has flagged with the plan, after
 /// settling its suspects by doing to them again what the plan did.
-[[nodiscard]] SelfCheck judge_injections(DeadlineAccount& deadlines);
+[[nodiscard]] SelfCheck judge_injections(DeadlineAccount& deadlines, const FaultInjector& injector);
 
 /// Proof that the accounting sees what it has to see: a short run as the options have it, with
 /// simulated devices, in which each fault is injected InjectionPlan::kOfEachKind times.

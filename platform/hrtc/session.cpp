@@ -67,6 +67,24 @@ Result<std::vector<ServedModel>, Refusal> find_published(const Options& options,
     return models;
 }
 
+/// With the names of what is there at the start.
+RecordedSetup recorded_setup(const Options& options, const Controller& controller)
+{
+    RecordedSetup setup = to_recorded(controller.setup());
+    for (std::uint32_t i = 0; i < controller.models().size(); ++i)
+    {
+        setup.names[{RecordedName::Kind::model, i}] = controller.models()[i].name;
+    }
+    for (std::uint32_t i = 0; i < options.objects.size(); ++i)
+    {
+        if (const std::string& name = options.objects[i].name; !name.empty())
+        {
+            setup.names[{RecordedName::Kind::object, i}] = name;
+        }
+    }
+    return setup;
+}
+
 /// No recorder when none is wanted; returns why it can't be had.
 std::optional<std::string> start_recorder(const Options& options, Controller& controller,
                                           std::optional<Recorder>& recorder)
@@ -80,9 +98,9 @@ std::optional<std::string> start_recorder(const Options& options, Controller& co
     {
         return "--record: " + file.error().text;
     }
-    recorder.emplace(std::move(file).value(), controller.setup(), controller.courier(),
-                     options.virtual_time ? Recorder::Worker::caller
-                                          : Recorder::Worker::own_thread);
+    recorder.emplace(
+        std::move(file).value(), recorded_setup(options, controller), controller.courier(),
+        options.virtual_time ? Recorder::Worker::caller : Recorder::Worker::own_thread);
     return std::nullopt;
 }
 
@@ -246,14 +264,19 @@ Result<std::unique_ptr<Session>, Refusal> Session::open(const Options& options)
     return session;
 }
 
-/// To the hosts; nothing to do for files.
+/// To the hosts and viewers; nothing to do for files that no viewer is to see.
 std::optional<Refusal> Session::connect()
 {
-    if (options_.transport == TransportKind::dds)
+    if (options_.is_watched)
     {
         const std::string name =
             options_.name.empty() ? fmt::format("hrtc-{}", getpid()) : options_.name;
         auto client = dds::DdsClient::create(options_.domain, name, log_line);
+        if (!client && options_.transport == TransportKind::file)
+        {
+            log_line(client.error().text + "; no viewer sees the run");
+            return std::nullopt;
+        }
         if (!client)
         {
             return failure(client.error().text);
@@ -266,7 +289,8 @@ std::optional<Refusal> Session::connect()
 /// Of a file or of a host; nothing to do without --scene.
 std::optional<Refusal> Session::take_scene()
 {
-    if (client_ != nullptr && (options_.follows_poses || !options_.scene.empty()))
+    const bool has_hosts = options_.transport == TransportKind::dds;
+    if (has_hosts && (options_.follows_poses || !options_.scene.empty()))
     {
         reader_ =
             std::make_unique<dds::SceneReader>(client_->domain(), client_->exchange(), log_line);
@@ -275,7 +299,7 @@ std::optional<Refusal> Session::take_scene()
     {
         return std::nullopt;
     }
-    if (client_ == nullptr)
+    if (!has_hosts)
     {
         return take_scene_file(options_);
     }
@@ -300,17 +324,23 @@ void Session::pin(const ModelSelector& name, bool is_scene, std::uint64_t host_e
 /// The controller from the models, and the topics beside it.
 std::optional<Refusal> Session::assemble()
 {
-    auto models = client_ != nullptr ? find_published(options_, *client_) : find_in_files(options_);
+    const bool has_hosts = options_.transport == TransportKind::dds;
+    auto models = has_hosts ? find_published(options_, *client_) : find_in_files(options_);
     if (!models)
     {
         return models.error();
     }
     for (const ServedModel& model : models.value())
     {
-        if (client_ != nullptr && options_.scene.empty())
+        if (has_hosts && options_.scene.empty())
         {
             pin({model.name, model.hash}, false, model.host_epoch);
         }
+    }
+    if (reader_ != nullptr && options_.scene.empty())
+    {
+        take_first_places(options_, models.value(), *client_, *reader_,
+                          [] { return !is_stop_requested(); });
     }
     auto controller = Controller::create(options_, std::move(models).value(), log_line,
                                          [] { return !is_stop_requested(); });
@@ -322,7 +352,7 @@ std::optional<Refusal> Session::assemble()
     if (client_ != nullptr)
     {
         std::unique_ptr<SceneKeeper> keeper;
-        if (options_.follows_poses)
+        if (has_hosts && options_.follows_poses)
         {
             keeper = std::make_unique<SceneKeeper>(authorities_, std::move(reader_), *controller_,
                                                    scene_, log_line);

@@ -31,6 +31,8 @@ public:
     /// those that nobody publishes yet, and assembles the controller.
     [[nodiscard]] static Result<std::unique_ptr<Session>, Refusal> open(const Options& options);
 
+    /// With the objects and models of the scene, and their places.
+    [[nodiscard]] const Options& options() const noexcept { return options_; }
     [[nodiscard]] Controller& controller() noexcept { return *controller_; }
     [[nodiscard]] const Controller& controller() const noexcept { return *controller_; }
 

@@ -5,11 +5,13 @@
 #include "host_tools/cli/progress.hpp"
 #include "host_tools/cli/stop_signals.hpp"
 #include "platform/allocation_counter.hpp"
+#include "platform/base/counted.hpp"
 #include "platform/hrtc/failed_run.hpp"
 #include "platform/hrtc/machine.hpp"
 #include "platform/posix/service_notify.hpp"
 #include "platform/system_call_trap.hpp"
 #include "platform/udp/udp_device.hpp"
+#include "transport/inside_test.hpp"
 
 #include <fmt/format.h>
 
@@ -20,6 +22,7 @@
 #include <cstdio>
 #include <ctime>
 #include <numeric>
+#include <string>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -34,6 +37,8 @@ namespace
 constexpr Duration kMarginMost = microseconds(100);
 /// Between two looks at the loop.
 constexpr std::chrono::milliseconds kLook{20};
+/// A device so many times its workspace's radius away from its middle is in another unit.
+constexpr double kFarOutside = 5.0;
 /// Descriptions of another device in a row: half a second of a driver that waits.
 constexpr std::uint64_t kOthersMax = 5;
 
@@ -50,20 +55,24 @@ FinishedRun empty_run(const Controller& controller, const Options& options)
             .safety = SafetyRecord(tools)};
 }
 
-/// None when the budgets are to stay as they are.
-std::optional<BudgetGovernor> make_governor(const Options& options, const Controller& controller)
+/// With a time to keep; none in virtual time, where work takes none.
+std::optional<BudgetGovernor> make_governor(const Options& options)
 {
-    if (!options.frame_budget_us)
+    if (options.virtual_time || !options.frame_budget_us)
     {
         return std::nullopt;
     }
-    const auto budget_ns = static_cast<std::int64_t>(*options.frame_budget_us * 1e3);
-    const std::uint32_t pairs = capacities_of(controller.setup()).pairs;
-    // Each pair is walked to refine and to answer, until the frame has no more walks.
-    const auto walks = 2 * std::min(pairs, kFrameWalks);
-    const auto tools = static_cast<std::uint32_t>(controller.setup().tools.size());
-    return BudgetGovernor(nanoseconds(budget_ns), controller.budgets(), walks,
-                          std::min(tools, kFrameWalks));
+    return BudgetGovernor(options.frame_budget(), Budgets::least_work(options.work_times()),
+                          options.frame_work());
+}
+
+/// Whether a place in the model's frame is in the model's box.
+bool is_in_box(const ModelHeader& header, const Vec3& place_m)
+{
+    const auto& extent = header.fields().extent_quanta;
+    const Vec3 high_m =
+        static_cast<double>(header.quantum_m()) * Vec3(extent[0], extent[1], extent[2]);
+    return place_m.minCoeff() >= 0.0 && (high_m - place_m).minCoeff() >= 0.0;
 }
 
 /// On the haptic thread; returns why the option can't be had.
@@ -84,7 +93,7 @@ SessionRun::SessionRun(const RunParts& parts)
     , period_(parts.options.period())
     , done_(empty_run(parts.controller, parts.options))
     , time_(parts.options.virtual_time)
-    , governor_(make_governor(parts.options, parts.controller))
+    , governor_(make_governor(parts.options))
     , door_(parts.controller.poses(), parts.controller.frame().objects().capacity(),
             nanoseconds(parts.controller.setup().pose_age_max_ns),
             parts.options.object_speed_m_per_s)
@@ -123,7 +132,15 @@ HostTopics* SessionRun::connected_topics()
 {
     if (parts_.topics != nullptr)
     {
-        parts_.topics->connect(door_, telemetry_, make_front(), time_.clock().now());
+        SceneKeeper::NameSink names;
+        if (Recorder* const recorder = parts_.recorder; recorder != nullptr)
+        {
+            names =
+                [recorder](std::uint32_t number, std::uint32_t generation, const std::string& name)
+            { recorder->name_object(number, generation, name); };
+        }
+        parts_.topics->connect(door_, telemetry_, make_front(), time_.clock().now(),
+                               std::move(names));
     }
     return parts_.topics;
 }
@@ -278,6 +295,64 @@ void SessionRun::take_events()
         done_.safety.add(event);
         tell_of_device(event);
     }
+    tell_of_first_places();
+}
+
+/// A line for each tool that begins where it most likely shouldn't.
+void SessionRun::tell_of_first_places()
+{
+    const std::span<const Vec3> places_m = loop_.first_places_m();
+    if (places_m.empty() || !done_.begins_inside.empty())
+    {
+        return;
+    }
+    done_.begins_inside.resize(places_m.size());
+    for (std::size_t tool = 0; tool < places_m.size(); ++tool)
+    {
+        const DeviceInfo& device = parts_.controller.tools()[tool].device->info();
+        const auto& centre_m = device.workspace_centre_world_m;
+        const double away_m = (places_m[tool] - Vec3(centre_m[0], centre_m[1], centre_m[2])).norm();
+        if (away_m > kFarOutside * device.workspace_radius_m)
+        {
+            log_line(fmt::format("tool {}: its device is {:.3g} m from the middle of its workspace "
+                                 "of {:.3g} m: does it send m?",
+                                 tool, away_m, device.workspace_radius_m));
+        }
+    }
+    tell_of_insides(places_m);
+}
+
+/// Of closed objects, where they stood at the start.
+void SessionRun::tell_of_insides(std::span<const Vec3> places_m)
+{
+    const Controller& controller = parts_.controller;
+    for (std::size_t object = 0; object < controller.objects().size(); ++object)
+    {
+        const ServedModel& model = controller.models()[controller.objects()[object].model.value];
+        const ModelHeader header = ModelHeader::parse(model.header).value();
+        const ObjectPose pose = model_pose(controller.poses()[object], header.origin_m());
+        const auto is_near = [&](const Vec3& place_m)
+        { return is_in_box(header, to_model(pose, place_m)); };
+        if (std::ranges::none_of(places_m, is_near)) // A scene may have thousands of objects.
+        {
+            continue;
+        }
+        const InsideTest inside(header, model.base);
+        for (std::size_t tool = 0; tool < places_m.size(); ++tool)
+        {
+            if (inside.holds(to_model(pose, places_m[tool])))
+            {
+                done_.begins_inside[tool] = model.name;
+                if (parts_.topics != nullptr)
+                {
+                    parts_.topics->tell_begins_inside(tool);
+                }
+                log_line(fmt::format("tool {} begins inside {}, a closed surface, which holds it "
+                                     "from within and pulls back a hand that leaves: begin outside",
+                                     tool, model.name));
+            }
+        }
+    }
 }
 
 /// A line when a tool's device goes, and when it is back.
@@ -323,9 +398,13 @@ void SessionRun::tell_of_strangers()
         {
             strangers_[tool] = all;
             const auto most = std::ranges::max_element(refused) - refused.begin();
+            const auto fault = static_cast<udp::DatagramFault>(most);
+            const bool has_value =
+                fault == udp::DatagramFault::content && traffic.wrong_value != nullptr;
             device_log_.write(
-                fmt::format("tool {}: {} datagrams to its device's port refused, most of them: {}",
-                            tool, all, udp::text_of(static_cast<udp::DatagramFault>(most))));
+                fmt::format("tool {}: {} to its device's port refused, most of them: {}{}{}", tool,
+                            counted(all, "datagram"), udp::text_of(fault), has_value ? ": " : "",
+                            has_value ? traffic.wrong_value : ""));
         }
     }
 }
@@ -387,6 +466,7 @@ std::string SessionRun::keep_failed_frame()
 FinishedRun SessionRun::finish()
 {
     haptic_thread_->join();
+    done_.statistics.deadlines.compare_work();
     brake_.reset();
     supervisor_.stop();
     const bool is_supervised = supervisor_thread_.has_value();

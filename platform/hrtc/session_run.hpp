@@ -73,6 +73,8 @@ private:
     void work_between_frames();
     void watch(const std::string& what);
     void take_events();
+    void tell_of_first_places();
+    void tell_of_insides(std::span<const Vec3> places_m);
     void tell_of_device(const SafetyEvent& event);
     void tell_of_strangers();
     void tell_of_guardian();

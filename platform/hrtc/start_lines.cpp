@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/hrtc/start_lines.hpp"
 
+#include "platform/base/counted.hpp"
 #include "platform/hrtc/verdict.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
 #include "rt_core/limits.hpp"
@@ -23,12 +24,16 @@ namespace
 
 /// With more objects one line tells of all.
 constexpr std::size_t kObjectsInLines = 4;
+/// A tool so many times as large as what it touches is most likely in another unit.
+constexpr double kMuchLarger = 3.0;
 
-/// The ball round an object's box, in the world.
+/// Where an object's box is in the world, and how large.
 struct Surroundings
 {
     Vec3 center_m;
-    double radius_m{0.0};
+    Vec3 edges_m; ///< Along the model's axes, scaled.
+
+    [[nodiscard]] double radius_m() const { return 0.5 * edges_m.norm(); }
 };
 
 /// To a tenth of a millimetre.
@@ -50,14 +55,17 @@ std::vector<Surroundings> surroundings_of(const Controller& controller)
         const Vec3 half_m =
             0.5 * static_cast<double>(header.quantum_m()) * Vec3(extent[0], extent[1], extent[2]);
         const ObjectPose pose = model_pose(controller.poses()[i], header.origin_m());
-        all.push_back({to_world(pose, half_m), pose.scale * half_m.norm()});
+        all.push_back({to_world(pose, half_m), 2.0 * pose.scale * half_m});
     }
     return all;
 }
 
-const std::string& name_of(const Controller& controller, std::size_t object)
+/// The object's own name, of a scene's, and its model's.
+std::string name_of(const Options& options, const Controller& controller, std::size_t object)
 {
-    return controller.models()[controller.objects()[object].model.value].name;
+    const std::string& model = controller.models()[controller.objects()[object].model.value].name;
+    const std::string own = object < options.objects.size() ? options.objects[object].name : "";
+    return own.empty() || own == model ? model : fmt::format("{} ({})", own, model);
 }
 
 /// What was left to its default, of so many of the objects, where others were not; in words.
@@ -88,8 +96,9 @@ std::string object_lines(const Options& options, const Controller& controller,
     std::string text;
     for (std::size_t i = 0; i < objects.size() && objects.size() <= kObjectsInLines; ++i)
     {
-        text += fmt::format("{:<12}{}: {:.4g} m across, round {}{}\n", "touches",
-                            name_of(controller, i), 2.0 * objects[i].radius_m,
+        const Vec3& edges_m = objects[i].edges_m;
+        text += fmt::format("{:<12}{}: {:.4g} x {:.4g} x {:.4g} m, round {}{}\n", "touches",
+                            name_of(options, controller, i), edges_m.x(), edges_m.y(), edges_m.z(),
                             text_of(objects[i].center_m),
                             defaults_of(options, placed_object(options, i)));
     }
@@ -102,15 +111,15 @@ std::string object_lines(const Options& options, const Controller& controller,
             low_m = low_m.cwiseMin(object.center_m);
             high_m = high_m.cwiseMax(object.center_m);
         }
-        text = fmt::format("{:<12}{} objects of {} models, round {} to {}{}\n", "touches",
-                           objects.size(), controller.models().size(), text_of(low_m),
+        text = fmt::format("{:<12}{} objects of {}, round {} to {}{}\n", "touches", objects.size(),
+                           counted(controller.models().size(), "model"), text_of(low_m),
                            text_of(high_m), defaults_of(options, options.objects));
     }
     return text;
 }
 
 /// What the tool comes to where its device reaches; of nothing, how far the nearest object is away.
-std::string reach_of(const ToolSetup& tool, const Controller& controller,
+std::string reach_of(const Options& options, const ToolSetup& tool, const Controller& controller,
                      const std::vector<Surroundings>& objects)
 {
     const DeviceInfo& device = tool.device->info();
@@ -119,23 +128,59 @@ std::string reach_of(const ToolSetup& tool, const Controller& controller,
     std::vector<double> beyond_m;
     for (const Surroundings& object : objects)
     {
-        beyond_m.push_back((object.center_m - centre_m).norm() - object.radius_m -
+        beyond_m.push_back((object.center_m - centre_m).norm() - object.radius_m() -
                            device.workspace_radius_m - tool.hand_radius_m);
     }
     const auto reached =
         std::ranges::count_if(beyond_m, [](double distance_m) { return distance_m <= 0.0; });
     if (reached > 0)
     {
-        return reached == 1 ? "1 object in reach" : fmt::format("{} objects in reach", reached);
+        return counted(static_cast<std::uint64_t>(reached), "object") + " in reach";
     }
     if (objects.empty())
     {
         return "WHERE NO OBJECT IS";
     }
     const auto nearest = std::ranges::min_element(beyond_m);
-    return fmt::format("WHERE NO OBJECT IS: {} is {:.3g} m beyond its reach",
-                       name_of(controller, static_cast<std::size_t>(nearest - beyond_m.begin())),
-                       *nearest);
+    return fmt::format(
+        "WHERE NO OBJECT IS: {} is {:.3g} m beyond its reach",
+        name_of(options, controller, static_cast<std::size_t>(nearest - beyond_m.begin())),
+        *nearest);
+}
+
+/// Nothing unless the tool is several times as large as all that it can touch.
+std::string size_note(const ToolSetup& tool, const std::vector<Surroundings>& objects)
+{
+    double largest_m = 0.0;
+    for (const Surroundings& object : objects)
+    {
+        largest_m = std::max(largest_m, object.edges_m.maxCoeff());
+    }
+    const double times = largest_m > 0.0 ? 2.0 * tool.spec.radius_m / largest_m : 0.0;
+    return times < kMuchLarger ? std::string()
+                               : fmt::format(", {:.2g} TIMES AS LARGE as what it can touch", times);
+}
+
+/// Which of the rule's terms makes the wall softer than asked.
+std::string softened_by(const ToolSetup& tool, double damping_n_s_per_m, double asked_n_per_m)
+{
+    const DeviceLimits& device = tool.device->info().limits;
+    const double period_s = tool.conditioner.period_s;
+    const StiffnessLimits limits = stiffness_limits(device, period_s, damping_n_s_per_m);
+    const double least_n_per_m = std::min(limits.sampling_n_per_m, limits.quantisation_n_per_m);
+    const std::string of_surface =
+        damping_n_s_per_m > 0.0 ? fmt::format(" less {:.3g} of the surface", damping_n_s_per_m)
+                                : "";
+    const std::string cause =
+        limits.device_n_per_m < least_n_per_m ? "the device's own limit"
+        : limits.quantisation_n_per_m < limits.sampling_n_per_m
+            ? fmt::format("its friction of {:.3g} N and steps of {:.3g} mm", device.friction_n,
+                          1e3 * device.quantum_m)
+            : fmt::format("its damping of {:.3g} N s/m{}, delay of {:.3g} ms and the period of "
+                          "{:.3g} ms",
+                          device.damping_n_s_per_m, of_surface, 1e3 * device.delay_s,
+                          1e3 * period_s);
+    return fmt::format(", of {:.4g} asked for: by {}", asked_n_per_m, cause);
 }
 
 std::string tool_line(const Options& options, const ToolSetup& tool, const Controller& controller,
@@ -144,23 +189,26 @@ std::string tool_line(const Options& options, const ToolSetup& tool, const Contr
     const DeviceInfo& device = tool.device->info();
     const auto& centre = device.workspace_centre_world_m;
     const double asked = options.stiffness_n_per_m;
-    double stiffest = tool.limits.stiffness_n_per_m;
+    double damping_n_s_per_m = 0.0; // The most there is allows the least.
     for (const PlacedObject& object : options.objects)
     {
-        stiffest = std::min(stiffest, stiffness_cap(device.limits, tool.conditioner.period_s,
-                                                    object.material.damping_n_s_per_m));
+        damping_n_s_per_m = std::max(damping_n_s_per_m, object.material.damping_n_s_per_m);
     }
+    const double stiffest =
+        std::min(tool.limits.stiffness_n_per_m,
+                 stiffness_cap(device.limits, tool.conditioner.period_s, damping_n_s_per_m));
     const std::string wall =
         stiffest < kSoftestFelt_n_per_m
             ? "NOTHING WILL BE FELT: the device's own damping, friction and rate allow no wall"
             : fmt::format("a wall of {:.4g} N/m{}", stiffest,
-                          stiffest < asked ? fmt::format(", of {:.4g} asked for", asked) : "");
+                          stiffest < asked ? softened_by(tool, damping_n_s_per_m, asked) : "");
     const std::string where = device.workspace_radius_m < kPoseReachMax_m
                                   ? fmt::format("{:.3g} m round {}", device.workspace_radius_m,
                                                 text_of(Vec3(centre[0], centre[1], centre[2])))
                                   : "anywhere"; // A simulated hand that follows an object.
-    return fmt::format("{:<12}{} on {}, {}: {}; {}\n", "tool", tool.shape, device.name, where,
-                       reach_of(tool, controller, objects), wall);
+    return fmt::format("{:<12}{} on {}, {}: {}{}; {}\n", "tool", tool.shape, device.name, where,
+                       reach_of(options, tool, controller, objects), size_note(tool, objects),
+                       wall);
 }
 
 } // namespace

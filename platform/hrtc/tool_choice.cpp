@@ -3,7 +3,10 @@
 #include "platform/hrtc/tool_choice.hpp"
 
 #include "host_tools/mesh/read_mesh.hpp"
+#include "platform/base/nearest_word.hpp"
+#include "platform/base/number_form.hpp"
 #include "platform/base/numbers.hpp"
+#include "platform/base/printable.hpp"
 #include "platform/hrtc/messages.hpp"
 #include "platform/hrtc/options.hpp"
 #include "rt_core/limits.hpp"
@@ -12,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -25,57 +29,59 @@ namespace
 constexpr double kLengthMin_m = 1e-5;
 constexpr double kLengthMax_m = 1.0;
 constexpr double kDefaultShare = 0.01;
-constexpr double kToolMassMax_kg = 5.0;
 
-bool is_length(double value_m)
-{
-    return value_m >= kLengthMin_m && value_m <= kLengthMax_m;
-}
+constexpr NumberRange kLengthRange{kLengthMin_m, kLengthMax_m, "m"};
+constexpr NumberRange kRoundRange{kLengthMin_m, kLengthMax_m, "m", true};
+constexpr NumberRange kOfSphere[] = {kLengthRange};
+constexpr NumberRange kOfCapsule[] = {kLengthRange, kLengthRange};
+constexpr NumberRange kOfBox[] = {kLengthRange, kLengthRange, kLengthRange, kRoundRange};
+constexpr NumberForm kSphereForm{"sphere:R", kOfSphere};
+constexpr NumberForm kCapsuleForm{"capsule:R,L", kOfCapsule};
+constexpr NumberForm kBoxForm{"box:X,Y,Z[,R]", kOfBox};
+constexpr std::string_view kHullForm = "hull:FILE[,R]";
+constexpr std::string_view kMeshForm = "mesh:NAME[,R]";
 
-bool is_radius_round(double value_m)
-{
-    return value_m == 0.0 || is_length(value_m);
-}
+constexpr NumberRange kCentreRange{-kLengthMax_m, kLengthMax_m, "m"};
+constexpr NumberRange kOfMass[] = {{0.0, 5.0, "kg"}, kCentreRange, kCentreRange, kCentreRange};
+constexpr NumberForm kMassForm{"KG[,X,Y,Z]", kOfMass};
 
-bool take_sphere(const std::vector<double>& numbers, ToolChoice& tool)
+/// "NAME[,R]" behind the form's word: what stands behind the last comma is part of the name unless
+/// it is a number.
+std::optional<Refusal> take_name(std::string_view text, std::string_view form, std::string& name,
+                                 double& radius_m)
 {
-    tool.radius_m = numbers.front();
-    return numbers.size() == 1 && is_length(tool.radius_m);
-}
-
-bool take_capsule(const std::vector<double>& numbers, ToolChoice& tool)
-{
-    if (numbers.size() != 2 || !std::ranges::all_of(numbers, is_length))
-    {
-        return false;
-    }
-    tool.radius_m = numbers[0];
-    const Vec3 end(0.0, 0.0, 0.5 * numbers[1]);
-    tool.core = Segment{-end, end};
-    return true;
-}
-
-bool take_box(const std::vector<double>& numbers, ToolChoice& tool)
-{
-    if (numbers.size() < 3 || numbers.size() > 4 ||
-        !std::all_of(numbers.begin(), numbers.begin() + 3, is_length))
-    {
-        return false;
-    }
-    tool.core = Box{0.5 * Vec3(numbers[0], numbers[1], numbers[2])};
-    tool.radius_m = numbers.size() == 4 ? numbers[3] : 0.0;
-    return is_radius_round(tool.radius_m);
-}
-
-/// "NAME[,R]": what stands behind the last comma is part of the name unless it is a number.
-bool take_name(std::string_view text, std::string& name, double& radius_m)
-{
-    const std::size_t comma = text.rfind(',');
+    const std::string_view rest = text.substr(std::min(text.find(':'), text.size() - 1) + 1);
+    const std::size_t comma = rest.rfind(',');
     const std::optional<double> radius =
-        comma == std::string_view::npos ? std::nullopt : parse_number(text.substr(comma + 1));
-    name = radius ? text.substr(0, comma) : text;
+        comma == std::string_view::npos ? std::nullopt : parse_number(rest.substr(comma + 1));
+    name = radius ? rest.substr(0, comma) : rest;
     radius_m = radius.value_or(0.0);
-    return !name.empty() && is_radius_round(radius_m);
+    const std::string fault = name.empty() ? "its name is missing"
+                              : radius ? fault_of_number("R", rest.substr(comma + 1), kRoundRange)
+                                       : "";
+    return fault.empty() ? std::nullopt : std::optional(not_of_form(text, form, fault));
+}
+
+/// Words that others have for a form.
+constexpr std::pair<std::string_view, std::string_view> kOtherWords[] = {
+    {"ball", "sphere"}, {"cube", "box"}, {"cuboid", "box"}, {"cylinder", "capsule"}};
+
+/// The refusal of a tool whose word is none.
+Refusal no_tool(std::string_view text)
+{
+    constexpr std::string_view kWords[] = {"point", "sphere", "capsule", "box", "hull", "mesh"};
+    const std::string_view word = text.substr(0, text.find(':'));
+    const auto* other =
+        std::ranges::find(kOtherWords, word, &std::pair<std::string_view, std::string_view>::first);
+    const std::string nearest =
+        other != std::end(kOtherWords) ? std::string(other->second) : nearest_word(word, kWords);
+    const std::string meant = nearest + std::string(text.substr(word.size()));
+    return {nearest.empty() || nearest == word || !parse_tool(meant)
+                ? fmt::format("'{}' is not point, {}, {}, {}, {} or {}", printable(text),
+                              kSphereForm.text, kCapsuleForm.text, kBoxForm.text, kHullForm,
+                              kMeshForm)
+                : fmt::format("'{}': no tool is called '{}'; {}?", printable(text), printable(word),
+                              printable(meant))};
 }
 
 std::optional<Refusal> read_hull(ToolChoice& tool)
@@ -133,55 +139,70 @@ std::optional<Refusal> add_model(ToolChoice& tool, Options& options)
 
 } // namespace
 
-std::optional<ToolChoice> parse_tool(std::string_view text)
+Result<ToolChoice, Refusal> parse_tool(std::string_view text)
 {
     ToolChoice tool;
     tool.words = text;
+    const std::string_view word = text.substr(0, text.find(':'));
     if (text == "point")
     {
         return tool;
     }
-    const std::size_t colon = text.find(':');
-    if (colon == std::string_view::npos)
+    if (word == "hull" || word == "mesh")
     {
-        return std::nullopt;
+        const bool is_hull = word == "hull";
+        const auto refusal = take_name(text, is_hull ? kHullForm : kMeshForm,
+                                       is_hull ? tool.hull_file : tool.mesh_model, tool.radius_m);
+        return refusal ? Result<ToolChoice, Refusal>(*refusal) : std::move(tool);
     }
-    const std::string_view form = text.substr(0, colon);
-    const std::string_view rest = text.substr(colon + 1);
-    bool is_right = false;
-    if (form == "hull")
+    const NumberForm* const form = word == "sphere"    ? &kSphereForm
+                                   : word == "capsule" ? &kCapsuleForm
+                                   : word == "box"     ? &kBoxForm
+                                                       : nullptr;
+    if (form == nullptr)
     {
-        is_right = take_name(rest, tool.hull_file, tool.radius_m);
+        return no_tool(text);
     }
-    else if (form == "mesh")
+    const auto numbers = read_numbers(text, *form);
+    if (!numbers)
     {
-        is_right = take_name(rest, tool.mesh_model, tool.radius_m);
+        return numbers.error();
     }
-    else if (const auto numbers = parse_numbers(rest))
+    const std::vector<double>& n = numbers.value();
+    if (form == &kBoxForm)
     {
-        is_right = (form == "sphere" && take_sphere(*numbers, tool)) ||
-                   (form == "capsule" && take_capsule(*numbers, tool)) ||
-                   (form == "box" && take_box(*numbers, tool));
+        tool.core = Box{0.5 * Vec3(n[0], n[1], n[2])};
+        tool.radius_m = n.size() == 4 ? n[3] : 0.0;
+        return tool;
     }
-    return is_right ? std::optional(std::move(tool)) : std::nullopt;
+    tool.radius_m = n[0];
+    if (form == &kCapsuleForm)
+    {
+        const Vec3 end(0.0, 0.0, 0.5 * n[1]);
+        tool.core = Segment{-end, end};
+    }
+    return tool;
 }
 
-std::optional<ToolLoad> parse_tool_mass(std::string_view text)
+Result<ToolLoad, Refusal> parse_tool_mass(std::string_view text)
 {
-    const std::optional<std::vector<double>> numbers = parse_numbers(text);
-    if (!numbers || (numbers->size() != 1 && numbers->size() != 4))
+    const auto numbers = read_numbers(text, kMassForm);
+    if (!numbers)
     {
-        return std::nullopt;
+        return numbers.error();
     }
+    const std::vector<double>& n = numbers.value();
     ToolLoad load;
-    load.mass_kg = numbers->front();
-    if (numbers->size() == 4)
+    load.mass_kg = n[0];
+    if (n.size() == 4)
     {
-        load.centre_m = Vec3((*numbers)[1], (*numbers)[2], (*numbers)[3]);
+        load.centre_m = Vec3(n[1], n[2], n[3]);
     }
-    const bool is_right = load.mass_kg >= 0.0 && load.mass_kg <= kToolMassMax_kg &&
-                          load.centre_m.norm() <= kLengthMax_m;
-    return is_right ? std::optional(load) : std::nullopt;
+    if (load.centre_m.norm() > kLengthMax_m)
+    {
+        return not_of_form(text, kMassForm.text, "X,Y,Z is more than 1 m away");
+    }
+    return load;
 }
 
 ToolChoice default_tool(double diagonal_m)

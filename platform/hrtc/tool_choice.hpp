@@ -3,6 +3,7 @@
 #pragma once
 
 #include "platform/base/refusal.hpp"
+#include "rt_core/base/result.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/tool_load.hpp"
 #include "rt_core/spm/header.hpp"
@@ -29,20 +30,13 @@ struct ToolChoice
     std::shared_ptr<const std::vector<Vec3>> hull_vertices; ///< The core's; in metres.
 };
 
-inline constexpr const char* kToolForms =
-    "point, sphere:R, capsule:R,L, box:X,Y,Z[,R], hull:FILE[,R] or mesh:NAME[,R], with lengths of "
-    "1e-5 to 1 m, or an R of 0 behind others";
-
 /// "point", "sphere:R", "capsule:R,L", "box:X,Y,Z[,R]", "hull:FILE[,R]" or "mesh:NAME[@HASH][,R]",
 /// in metres: R is the radius, L the length of the axis, which is the tool's z, without its caps,
-/// X, Y and Z are whole edges before R. None when it is anything else.
-[[nodiscard]] std::optional<ToolChoice> parse_tool(std::string_view text);
+/// X, Y and Z are whole edges before R.
+[[nodiscard]] Result<ToolChoice, Refusal> parse_tool(std::string_view text);
 
-inline constexpr const char* kToolMassForm =
-    "KG[,X,Y,Z]: 0 to 5 kg, and its centre in metres, within 1 m";
-
-/// KG[,X,Y,Z]; down is -z. None when the text is nothing of that.
-[[nodiscard]] std::optional<ToolLoad> parse_tool_mass(std::string_view text);
+/// KG[,X,Y,Z]: 0 to 5 kg, and its centre in metres, within 1 m; down is -z.
+[[nodiscard]] Result<ToolLoad, Refusal> parse_tool_mass(std::string_view text);
 
 /// The sphere of tools that nothing is said of: 1 % of a diagonal, within what parse_tool() takes.
 [[nodiscard]] ToolChoice default_tool(double diagonal_m);

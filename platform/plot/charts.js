@@ -6,7 +6,6 @@
 
 const COLOURS = ["#1f8fd1", "#d55e00", "#009e73", "#cc79a7", "#c98a00", "#7a5cc0", "#8a8a3c",
   "#7f8790"];
-const MARK_COLOURS = { plain: "#808080", warning: "#e69f00", fault: "#e0301e" };
 
 const charts = [];
 
@@ -29,7 +28,7 @@ function draw_marks(canvas, area, graph, marks) {
   for (const kind of ["plain", "warning", "fault"]) {
     const shares = marks.filter((mark) => mark.kind === kind).flatMap((mark) => mark.x)
       .map((x) => share_of(graph, x)).filter((share) => share >= 0 && share <= 1);
-    canvas.strokeStyle = MARK_COLOURS[kind];
+    canvas.strokeStyle = paint(`--${kind}`);
     canvas.globalAlpha = Math.max(0.15, Math.min(0.7, area.w / (8 * shares.length)));
     canvas.setLineDash(kind === "plain" ? [3, 3] : []);
     canvas.beginPath();
@@ -48,7 +47,7 @@ function name_marks(parent, marks) {
   for (const { name, kind, x } of marks) {
     const line = document.createElement("span");
     line.textContent = `| ${name}${x.length > 1 ? `: ${x.length}` : ""}`;
-    line.style.color = MARK_COLOURS[kind];
+    line.style.color = `var(--${kind})`;
     parent.append(line, " ");
   }
 }

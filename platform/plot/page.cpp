@@ -23,11 +23,13 @@ namespace
 
 constexpr const char* kPageStyle =
     ":root { --ink: #222; --grid: #d8d8d8; --paper: #fff;\n"
-    "  --good: #00704f; --bad: #b34700; --stripe: #f4f4f4; }\n"
+    "  --good: #00704f; --bad: #b34700; --stripe: #f4f4f4;\n"
+    "  --plain: #6b6b6b; --warning: #8f5a00; --fault: #c4161c; }\n"
     "@media screen { :root { color-scheme: light dark; } }\n"
     "@media screen and (prefers-color-scheme: dark) {\n"
     "  :root { --ink: #e8e8e8; --grid: #444; --paper: #181818;\n"
-    "    --good: #4fd3a5; --bad: #ff9a57; --stripe: #232323; }\n"
+    "    --good: #4fd3a5; --bad: #ff9a57; --stripe: #232323;\n"
+    "    --plain: #a0a0a0; --warning: #ffb84d; --fault: #ff6b6b; }\n"
     "}\n"
     "* { box-sizing: border-box; }\n"
     "body { margin: 0 auto; padding: 1rem; max-width: 80rem; background: var(--paper);\n"
@@ -53,16 +55,19 @@ constexpr const char* kPageStyle =
     "  grid-template-columns: repeat(auto-fit, minmax(min(100%, 30rem), 1fr)); }\n"
     ".tables { columns: 22rem auto; column-gap: 2rem; }\n"
     ".tables section { break-inside: avoid; padding-top: 0.1rem; }\n"
+    ".charts figure:last-child:nth-child(odd) { grid-column: 1 / -1; }\n"
     "figure { margin: 0; min-width: 0; }\n"
     "figcaption { font-weight: 600; }\n"
     ".legend, .marks { font-size: 0.8rem; min-height: 1.2em; }\n"
     ".chart { width: 100%; height: 17rem; }\n"
     ".dygraph-label, .dygraph-axis-label { color: var(--ink); font-size: 0.8rem; }\n"
     ".note { font-size: 0.875rem; }\n"
-    "@media screen and (max-width: 40rem) {\n"
-    "  th[scope=row] { white-space: normal; min-width: 7.5rem; }\n"
-    "  thead th.number { min-width: 3rem; }\n"
+    "@media screen and (max-width: 64rem) {\n"
+    "  th, td { padding-right: 0.25rem; overflow-wrap: anywhere; }\n"
+    "  th[scope=row] { white-space: normal; min-width: 4.7rem; }\n"
+    "  .number { padding-left: 0.25rem; }\n"
     "}\n"
+    "@media screen and (max-width: 40rem) { table { font-size: 0.75rem; } }\n"
     "@page { margin: 12mm; }\n"
     "@media print {\n"
     "  body { padding: 0; max-width: none; font-size: 10pt; }\n"
@@ -236,6 +241,13 @@ void Page::tables(const std::vector<TitledTable>& tables)
     body_ += "</div>\n";
 }
 
+void Page::relief(const Relief& relief)
+{
+    const std::string figure = figure_of(relief);
+    has_relief_ = has_relief_ || !figure.empty();
+    body_ += figure;
+}
+
 void Page::charts(const std::vector<Chart>& charts)
 {
     if (charts.empty())
@@ -280,7 +292,8 @@ std::string Page::scripts() const
 std::string Page::html() const
 {
     const std::string style =
-        charts_.empty() ? "" : fmt::format("/*<![CDATA[*/\n{}\n/*]]>*/\n", library_.style);
+        (has_relief_ ? relief_style() : "") +
+        (charts_.empty() ? "" : fmt::format("/*<![CDATA[*/\n{}\n/*]]>*/\n", library_.style));
     return fmt::format(
         "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n"
         "<meta charset=\"utf-8\"/>\n<meta http-equiv=\"Content-Security-Policy\" "

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "platform/plot/chart.hpp"
+#include "platform/plot/relief.hpp"
 
 #include <string>
 #include <vector>
@@ -47,6 +48,8 @@ public:
     void table(const Table& table);
     /// Small ones, side by side where there is room.
     void tables(const std::vector<TitledTable>& tables);
+    /// Nothing of one without a way or a face.
+    void relief(const Relief& relief);
     /// Side by side where there is room.
     void charts(const std::vector<Chart>& charts);
 
@@ -58,6 +61,7 @@ private:
     std::string title_;
     ChartLibrary library_;
     std::string body_;
+    bool has_relief_{false};
     std::vector<std::string> charts_; ///< The JSON of each.
 };
 

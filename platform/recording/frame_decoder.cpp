@@ -19,7 +19,7 @@ Budgets read_budgets(ByteReader& reader)
     Budgets budgets;
     for (std::uint32_t* budget :
          {&budgets.splits, &budgets.merges, &budgets.scanned, &budgets.nodes, &budgets.triangles,
-          &budgets.pages, &budgets.requests, &budgets.regions, &budgets.planes})
+          &budgets.pages, &budgets.requests, &budgets.regions, &budgets.planes, &budgets.work})
     {
         *budget = reader.read<std::uint32_t>();
     }

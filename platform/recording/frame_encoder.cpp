@@ -18,7 +18,7 @@ void write_budgets(FixedWriter& writer, const Budgets& budgets) noexcept
 {
     for (const std::uint32_t budget :
          {budgets.splits, budgets.merges, budgets.scanned, budgets.nodes, budgets.triangles,
-          budgets.pages, budgets.requests, budgets.regions, budgets.planes})
+          budgets.pages, budgets.requests, budgets.regions, budgets.planes, budgets.work})
     {
         writer.write(budget);
     }

@@ -19,7 +19,7 @@ namespace tactus
 {
 
 /// Sizes of the coded parts of a frame, in bytes; docs/recording.md lists the fields.
-inline constexpr std::size_t kBudgetsBytes = 36;
+inline constexpr std::size_t kBudgetsBytes = 40;
 inline constexpr std::size_t kDoorEventBytes = 23;
 inline constexpr std::size_t kMaxDoorEvents = kMaxArrivalsPerFrame + kMaxLinkUpdatesPerFrame;
 /// The largest frame: every tool, change, model and event there can be.

@@ -16,7 +16,7 @@ static_assert(sizeof(PairOutput) == 128);
 static_assert(sizeof(Contact) == 96);
 static_assert(sizeof(MeshReport) == 8 * kMaxMeetingFaces + 24);
 static_assert(sizeof(ModelOutput) == 80);
-static_assert(sizeof(WorkCounters) == 56 + 4 * kSkips);
+static_assert(sizeof(WorkCounters) == 64 + 4 * kSkips);
 static_assert(sizeof(SceneOutput) == 20 + 4 * kChangeRefusals);
 
 class Hash
@@ -171,7 +171,7 @@ std::uint64_t hash_work(const WorkCounters& work, const SceneOutput& scene,
          {work.splits, work.merges, work.scanned, work.nodes_visited, work.triangles_tested,
           work.planes_looked_at, work.pages_adopted, work.requests, work.regions_searched,
           work.nodes_refitted, work.blocks_refitted, work.evictions, work.cache_hits,
-          work.cache_misses})
+          work.cache_misses, work.budget.used()})
     {
         hash.add(std::uint64_t{count});
     }

@@ -34,6 +34,18 @@ Result<Recording, Refusal> Recording::read(const std::string& path)
     return parse(bytes, path);
 }
 
+std::string Recording::missing() const
+{
+    if (cut_at_)
+    {
+        return "the file was cut: behind frame " + std::to_string(frame_count_ - 1) + ", at byte " +
+               std::to_string(*cut_at_) + ", no section is whole";
+    }
+    return lost_from_ == kNoFrame
+               ? ""
+               : "the recorder lost frame " + std::to_string(lost_from_) + " and all later ones";
+}
+
 std::span<const std::byte> Recording::piece(std::uint32_t model, ContentKey key) const noexcept
 {
     const auto at = pieces_.find({model, key.kind, key.number});

@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <tuple>
@@ -22,7 +23,8 @@ namespace tactus
 {
 
 /// A recording in memory, checked as a whole: every section's checksum, every count and range, and
-/// that each piece that a frame takes from the door is there before it.
+/// that each piece that a frame takes from the door is there before it. Of a file that was cut,
+/// since its program was killed or its copy ended, it has the frames up to the last whole section.
 class Recording
 {
 public:
@@ -52,6 +54,10 @@ public:
     [[nodiscard]] bool has_failed() const noexcept { return failed_frames_ > 0; }
     /// The first frame that the recorder lost; kNoFrame when it lost none.
     [[nodiscard]] std::uint64_t lost_from() const noexcept { return lost_from_; }
+    /// The byte at which the file was cut; none when it is whole.
+    [[nodiscard]] std::optional<std::size_t> cut_at() const noexcept { return cut_at_; }
+    /// What of the run is missing behind the last frame, in one clause; empty: nothing.
+    [[nodiscard]] std::string missing() const;
 
 private:
     friend class RecordingParser;
@@ -63,6 +69,7 @@ private:
     std::uint64_t frame_count_{0};
     std::uint64_t failed_frames_{0}; ///< Without hashes: the last ones.
     std::uint64_t lost_from_{kNoFrame};
+    std::optional<std::size_t> cut_at_;
 };
 
 } // namespace tactus

@@ -8,9 +8,11 @@
 #include "rt_core/records/frame_input.hpp"
 
 #include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -30,6 +32,7 @@ enum class SectionKind : std::uint32_t
     piece = 3,
     frames = 4,
     end = 5,
+    name = 6,
 };
 
 /// In front of every section: kind, payload bytes, CRC-32C of those two and the payload.
@@ -43,6 +46,21 @@ struct RecordedModel
     ModelCapacities capacities;
     std::vector<std::byte> header; ///< Coded, as ModelSource takes them.
     std::vector<std::byte> base;   ///< Empty: a guest, which comes and goes.
+};
+
+/// What people call it: a model, or an object under its number and of one generation.
+struct RecordedName
+{
+    enum class Kind : std::uint8_t
+    {
+        model = 0,
+        object = 1,
+    };
+    Kind kind{Kind::model};
+    std::uint32_t number{0};
+    std::uint32_t generation{0}; ///< Of a model 0.
+
+    auto operator<=>(const RecordedName&) const noexcept = default;
 };
 
 /// What the frame was made of.
@@ -59,11 +77,20 @@ struct RecordedSetup
     SceneCapacities capacities;
     ModelCapacities for_guests;
     std::vector<RecordedModel> models;
+    /// Of what has one, also of objects that come later; at most kMaxRecordedNameBytes each.
+    std::map<RecordedName, std::string> names;
     /// For the reader of a difference: how the program that recorded was built, and the kernels it
     /// ran. At most kMaxRecordedNameBytes each.
     std::string compiler;
     std::string architecture;
     std::string kernels;
+
+    /// Empty: it has none.
+    [[nodiscard]] std::string name_of(const RecordedName& what) const
+    {
+        const auto found = names.find(what);
+        return found == names.end() ? std::string() : found->second;
+    }
 };
 
 inline constexpr std::size_t kMaxRecordedNameBytes = 63;

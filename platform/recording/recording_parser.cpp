@@ -18,6 +18,12 @@ namespace tactus
 namespace
 {
 
+/// A section that ends in so many zeros, at the end of the file, was not written to its end. None
+/// that was written does: an end section has 12 at most.
+constexpr std::size_t kLostZeros = 512;
+/// A length above this is a damaged one; a model's header and base mesh have 8 MiB and 1 MiB.
+constexpr std::size_t kMaxOtherSectionBytes = std::size_t{16} << 20U;
+
 constexpr const char* kNotARecording = "is not a Tactus recording: it doesn't begin with TACTREC";
 
 } // namespace
@@ -27,18 +33,26 @@ class RecordingParser
 {
 public:
     RecordingParser(std::span<const std::byte> bytes, std::string name)
-        : bytes_(bytes), name_(std::move(name))
+        : bytes_(bytes), name_(std::move(name)), data_end_(bytes.size())
     {
+        while (data_end_ > 0 && bytes[data_end_ - 1] == std::byte{0})
+        {
+            --data_end_;
+        }
     }
 
     [[nodiscard]] Result<Recording, Refusal> parse()
     {
         std::optional<std::string> fault = parse_prologue();
-        while (!fault && !has_end_)
+        while (!fault && !has_end_ && !is_cut())
         {
             fault = parse_section();
         }
-        if (!fault && at_ != bytes_.size())
+        if (!fault && !has_end_)
+        {
+            fault = end_where_cut();
+        }
+        else if (!fault && at_ != bytes_.size())
         {
             fault = "the end section is followed by " + std::to_string(bytes_.size() - at_) +
                     " bytes; nothing may follow it";
@@ -81,6 +95,44 @@ private:
         return std::nullopt;
     }
 
+    /// Whether the file ends within the section that is next, or is nothing but zeros from
+    /// somewhere within it on: a file system that lost its power may keep a length without the
+    /// content.
+    [[nodiscard]] bool is_cut() const
+    {
+        const std::span<const std::byte> rest = bytes_.subspan(at_);
+        if (rest.size() < kSectionHeaderBytes || at_ >= data_end_)
+        {
+            return true;
+        }
+        ByteReader reader(rest);
+        const auto kind = reader.read<std::uint32_t>();
+        const std::size_t end = at_ + kSectionHeaderBytes + reader.read<std::uint32_t>();
+        const std::size_t most = kind == static_cast<std::uint32_t>(SectionKind::frames)
+                                     ? kMaxFramesSectionBytes
+                                     : kMaxOtherSectionBytes;
+        const bool is_cut_off = end > bytes_.size() && end - at_ - kSectionHeaderBytes <= most;
+        return is_known(kind) &&
+               (is_cut_off || (bytes_.size() - data_end_ >= kLostZeros && end > data_end_));
+    }
+
+    static bool is_known(std::uint32_t kind)
+    {
+        return kind >= static_cast<std::uint32_t>(SectionKind::setup) &&
+               kind <= static_cast<std::uint32_t>(SectionKind::name);
+    }
+
+    /// What there is up to here counts, if it is a frame at least.
+    Fault end_where_cut()
+    {
+        if (recording_.frame_count_ == 0)
+        {
+            return "the file is cut short: no frame is whole";
+        }
+        recording_.cut_at_ = at_;
+        return std::nullopt;
+    }
+
     [[nodiscard]] std::string cut_short(std::size_t needed) const
     {
         return "the file is cut short: " + std::to_string(needed) + " bytes are needed here and " +
@@ -90,22 +142,19 @@ private:
     Fault parse_section()
     {
         const std::span<const std::byte> rest = bytes_.subspan(at_);
-        if (rest.size() < kSectionHeaderBytes)
-        {
-            return cut_short(kSectionHeaderBytes);
-        }
         ByteReader reader(rest);
         const auto kind = reader.read<std::uint32_t>();
         const auto size = reader.read<std::uint32_t>();
         const auto checksum = reader.read<std::uint32_t>();
-        if (kind < static_cast<std::uint32_t>(SectionKind::setup) ||
-            kind > static_cast<std::uint32_t>(SectionKind::end))
+        if (!is_known(kind))
         {
-            return "section kind " + std::to_string(kind) + " is unknown; 1 to 5 are allowed";
+            return "section kind " + std::to_string(kind) + " is unknown; 1 to 6 are allowed";
         }
         if (size > reader.remaining())
         {
-            return cut_short(kSectionHeaderBytes + std::size_t{size});
+            return "section of kind " + std::to_string(kind) + " says that it has " +
+                   std::to_string(size) + " bytes; " + std::to_string(reader.remaining()) +
+                   " are left";
         }
         std::vector<std::byte> covered(rest.begin(), rest.begin() + 8);
         const std::span<const std::byte> payload = reader.read_bytes(size);
@@ -131,7 +180,7 @@ private:
             (!wants_setup && wants_model != (kind == SectionKind::model)))
         {
             return "a section is out of order: the setup comes first, then " +
-                   std::to_string(model_count_) + " models, then pieces and frames";
+                   std::to_string(model_count_) + " models, then names, pieces and frames";
         }
         switch (kind)
         {
@@ -146,6 +195,8 @@ private:
             return parse_frames(payload);
         case SectionKind::end:
             return parse_end(payload);
+        case SectionKind::name:
+            return parse_name(payload, recording_.setup_);
         }
         return std::nullopt;
     }
@@ -314,6 +365,7 @@ private:
 
     std::span<const std::byte> bytes_;
     std::string name_;
+    std::size_t data_end_; ///< From here on there are only zeros.
     std::size_t at_{0};
     Recording recording_;
     std::uint32_t model_count_{0};

@@ -28,6 +28,15 @@ RecordingWriter::RecordingWriter(const RecordedSetup& setup)
     {
         append_section(SectionKind::model, code_model(model));
     }
+    for (const auto& [what, name] : setup.names)
+    {
+        add_name(what, name);
+    }
+}
+
+void RecordingWriter::add_name(const RecordedName& what, std::string_view name)
+{
+    append_section(SectionKind::name, code_name(what, name));
 }
 
 void RecordingWriter::add_piece(std::uint32_t model, ContentKey key,

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <set>
 #include <span>
+#include <string_view>
 #include <tuple>
 #include <vector>
 
@@ -22,6 +23,9 @@ class RecordingWriter
 {
 public:
     explicit RecordingWriter(const RecordedSetup& setup);
+
+    /// A name of a model or object; may come at any time.
+    void add_name(const RecordedName& what, std::string_view name);
 
     /// A coded chunk or index page of one of the set-up's models; a second one under the same key
     /// is the same and left out.

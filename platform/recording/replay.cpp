@@ -177,10 +177,9 @@ std::string replay_line(const Recording& recording, const ReplayReport& report)
     {
         line += "; the frame after them failed in the run";
     }
-    if (recording.lost_from() != kNoFrame)
+    if (const std::string missing = recording.missing(); !missing.empty())
     {
-        line += "; the recorder lost frame " + std::to_string(recording.lost_from()) +
-                " and all later ones";
+        line += "; " + missing;
     }
     return line;
 }

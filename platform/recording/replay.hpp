@@ -59,7 +59,7 @@ struct ReplayWatch
 replay(const Recording& recording, const Kernels* kernels = nullptr, const ReplayWatch& watch = {});
 
 /// The outcome in one line without an end: how many frames agree, or the first that differs; what
-/// recorded them; and whether the recorder lost some.
+/// recorded them; and whether some are missing.
 [[nodiscard]] std::string replay_line(const Recording& recording, const ReplayReport& report);
 
 } // namespace tactus

@@ -23,9 +23,9 @@ using Fault = std::optional<std::string>;
 /// 32 bits would wrap.
 constexpr std::uint32_t kMaxCapacity = 1U << 28U;
 
-void append_name(std::vector<std::byte>& bytes, const std::string& name)
+void append_name(std::vector<std::byte>& bytes, std::string_view name)
 {
-    const std::string_view kept = std::string_view(name).substr(0, kMaxRecordedNameBytes);
+    const std::string_view kept = name.substr(0, kMaxRecordedNameBytes);
     append(bytes, static_cast<std::uint8_t>(kept.size()));
     append_bytes(bytes, std::as_bytes(std::span(kept)));
 }
@@ -364,6 +364,44 @@ std::optional<std::string> parse_model(std::span<const std::byte> payload, bool 
     }
     bytes_left -= needed;
     return std::nullopt;
+}
+
+std::vector<std::byte> code_name(const RecordedName& what, std::string_view name)
+{
+    std::vector<std::byte> bytes;
+    append(bytes, static_cast<std::uint8_t>(what.kind));
+    append(bytes, what.number);
+    append(bytes, what.generation);
+    append_name(bytes, name);
+    return bytes;
+}
+
+std::optional<std::string> parse_name(std::span<const std::byte> payload, RecordedSetup& setup)
+{
+    ByteReader reader(payload);
+    const auto kind = reader.read<std::uint8_t>();
+    RecordedName what{static_cast<RecordedName::Kind>(kind)};
+    what.number = reader.read<std::uint32_t>();
+    what.generation = reader.read<std::uint32_t>();
+    const std::string name = read_name(reader);
+    if (Fault fault = unless_whole(reader, "name"))
+    {
+        return fault;
+    }
+    const bool is_model = what.kind == RecordedName::Kind::model;
+    const std::size_t most = is_model ? setup.models.size() : setup.capacities.objects;
+    if (kind > static_cast<std::uint8_t>(RecordedName::Kind::object) || what.number >= most ||
+        (is_model && what.generation != 0))
+    {
+        return "a name is of no model or object of the recording";
+    }
+    if (name.size() > kMaxRecordedNameBytes || name != printable_line(name))
+    {
+        return "a name is not of at most 63 bytes, of characters that can be seen";
+    }
+    return setup.names.try_emplace(what, name).second
+               ? std::nullopt
+               : Fault("a model or an object of one generation has two names");
 }
 
 std::optional<std::string> unless_whole(const ByteReader& reader, const char* section)

@@ -11,6 +11,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tactus
@@ -21,6 +22,9 @@ namespace tactus
 /// Content of one model section.
 [[nodiscard]] std::vector<std::byte> code_model(const RecordedModel& model);
 
+/// Content of a name section; what of the name is too long is left out.
+[[nodiscard]] std::vector<std::byte> code_name(const RecordedName& what, std::string_view name);
+
 /// Reads a setup section and how many models follow. Returns what is wrong, or nothing.
 [[nodiscard]] std::optional<std::string> parse_setup(std::span<const std::byte> payload,
                                                      RecordedSetup& setup, std::uint32_t& models);
@@ -29,6 +33,11 @@ namespace tactus
 [[nodiscard]] std::optional<std::string> parse_model(std::span<const std::byte> payload,
                                                      bool has_guests, RecordedModel& model,
                                                      ModelCounts& counts, std::size_t& bytes_left);
+
+/// Reads a name section into the names of the setup, whose models were read. Returns what is wrong,
+/// or nothing.
+[[nodiscard]] std::optional<std::string> parse_name(std::span<const std::byte> payload,
+                                                    RecordedSetup& setup);
 
 /// What is wrong when a section's content ends before or after its payload does.
 [[nodiscard]] std::optional<std::string> unless_whole(const ByteReader& reader,

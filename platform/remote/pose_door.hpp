@@ -64,7 +64,7 @@ public:
     static constexpr std::size_t kAgedAFrame = 256;
     /// Comings, goings and other materials that may wait for their frame.
     static constexpr std::size_t kWaiting = 512;
-    /// Of them, a frame takes so many: the rest of its changes is for moves.
+    /// How many of those a frame takes at most. The other changes of a frame are for moves.
     static constexpr std::size_t kTakenAFrame = kMaxSceneChanges / 2;
 
     /// Objects by their numbers, of generation 0, where they stand at the start, and room for

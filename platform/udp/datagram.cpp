@@ -162,11 +162,11 @@ bool read_name(ByteReader& reader, std::string& name)
     return std::all_of(end, field.end(), [](char c) { return c == '\0'; });
 }
 
-FromDevice decode_describe(const Envelope& envelope, ByteReader reader)
+FromDevice decode_describe(const Envelope& envelope, ByteReader reader, const char*& wrong)
 {
     DescribeDatagram datagram{envelope.address, {}, envelope.version};
     DeviceInfo& info = datagram.info;
-    bool is_clean = read_name(reader, info.name);
+    const bool has_name = read_name(reader, info.name);
     for (double DeviceLimits::*const limit : kLimits)
     {
         info.limits.*limit = reader.read<double>();
@@ -189,25 +189,29 @@ FromDevice decode_describe(const Envelope& envelope, ByteReader reader)
     }
     const auto flags = reader.read<std::uint32_t>();
     info.limits.turn.is_measured = (flags & kMeasuresRotation) != 0;
-    is_clean = is_clean && (flags & ~known) == 0;
-    if (!is_clean || envelope.address.session != 0 || find_fault(info) != nullptr)
-    {
-        return DatagramFault::content;
-    }
-    return datagram;
+    wrong = !has_name                       ? "name"
+            : (flags & ~known) != 0         ? "flags"
+            : envelope.address.session != 0 ? "session"
+                                            : find_fault(info);
+    return wrong == nullptr ? FromDevice(std::move(datagram)) : FromDevice(DatagramFault::content);
 }
 
-bool is_sound(const SampleDatagram& datagram) noexcept
+/// The value that is not finite or out of range; null when all are sound.
+const char* wrong_value_in(const SampleDatagram& datagram) noexcept
 {
     const auto is_good = [](const std::optional<std::array<double, 3>>& vector)
     { return !vector || are_in_range(*vector, kCoordinateMax); };
-    return are_in_range(datagram.position_m, kCoordinateMax) &&
-           is_good(datagram.velocity_m_per_s) && is_good(datagram.angular_velocity_rad_per_s) &&
-           (!datagram.rotation || is_unit(*datagram.rotation, kRotationTolerance)) &&
-           (!datagram.gripper_m || std::abs(*datagram.gripper_m) <= kCoordinateMax);
+    const bool is_turned = datagram.rotation.has_value();
+    return !are_in_range(datagram.position_m, kCoordinateMax) ? "position"
+           : !is_good(datagram.velocity_m_per_s)              ? "velocity"
+           : !is_good(datagram.angular_velocity_rad_per_s)    ? "angular velocity"
+           : is_turned && !is_unit(*datagram.rotation, kRotationTolerance)
+               ? "rotation, whose length is not within 1e-6 of 1"
+           : datagram.gripper_m && !(std::abs(*datagram.gripper_m) <= kCoordinateMax) ? "gripper"
+                                                                                      : nullptr;
 }
 
-FromDevice decode_sample(const Envelope& envelope, ByteReader reader) noexcept
+FromDevice decode_sample(const Envelope& envelope, ByteReader reader, const char*& wrong) noexcept
 {
     SampleDatagram datagram;
     datagram.address = envelope.address;
@@ -231,7 +235,9 @@ FromDevice decode_sample(const Envelope& envelope, ByteReader reader) noexcept
     const auto flags = reader.read<std::uint32_t>();
     datagram.valid = (flags & kValid) != 0;
     datagram.deadman_held = (flags & kDeadmanHeld) != 0;
-    if ((flags & ~known) != 0 || datagram.time_ns < 0 || datagram.time_ns > kTimeMax_ns)
+    const bool has_time = datagram.time_ns >= 0 && datagram.time_ns <= kTimeMax_ns;
+    wrong = (flags & ~known) != 0 ? "flags" : has_time ? nullptr : "time";
+    if (wrong != nullptr)
     {
         return DatagramFault::content;
     }
@@ -246,7 +252,8 @@ FromDevice decode_sample(const Envelope& envelope, ByteReader reader) noexcept
     datagram.rotation = given(kHasRotation, rotation);
     datagram.angular_velocity_rad_per_s = given(kHasAngularVelocity, angular_velocity);
     datagram.gripper_m = given(kHasGripper, gripper_m);
-    return is_sound(datagram) ? FromDevice(datagram) : FromDevice(DatagramFault::content);
+    wrong = wrong_value_in(datagram);
+    return wrong == nullptr ? FromDevice(datagram) : FromDevice(DatagramFault::content);
 }
 
 std::uint32_t flag_when(bool is_so, std::uint32_t flag) noexcept
@@ -386,20 +393,23 @@ std::string_view text_of(DatagramFault fault) noexcept
     return kTexts.at(static_cast<std::size_t>(fault));
 }
 
-FromDevice decode_from_device(std::span<const std::byte> bytes)
+FromDevice decode_from_device(std::span<const std::byte> bytes, const char** wrong)
 {
+    const char* ignored = nullptr;
+    const char*& value = wrong != nullptr ? *wrong : ignored;
     Envelope envelope;
     if (const auto fault = open(bytes, envelope))
     {
+        value = "address"; // The one content that open() looks at.
         return *fault;
     }
     const ByteReader body(bytes.subspan(kHeaderBytes));
     switch (envelope.kind)
     {
     case Kind::describe:
-        return decode_describe(envelope, body);
+        return decode_describe(envelope, body, value);
     case Kind::sample:
-        return decode_sample(envelope, body);
+        return decode_sample(envelope, body, value);
     case Kind::force:
         break;
     }

@@ -150,7 +150,9 @@ using FromDevice = std::variant<DescribeDatagram, SampleDatagram, DatagramFault>
 /// What a device takes in.
 using FromController = std::variant<ForceDatagram, DatagramFault>;
 
-[[nodiscard]] FromDevice decode_from_device(std::span<const std::byte> bytes);
+/// Of DatagramFault::content, `wrong`, if it isn't null, is set to the name of the value.
+[[nodiscard]] FromDevice decode_from_device(std::span<const std::byte> bytes,
+                                            const char** wrong = nullptr);
 [[nodiscard]] FromController decode_from_controller(std::span<const std::byte> bytes);
 
 } // namespace tactus::udp

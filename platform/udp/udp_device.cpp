@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/udp/udp_device.hpp"
 
+#include "platform/base/counted.hpp"
 #include "platform/device_force.hpp"
 #include "platform/posix/linux_extras.hpp"
 
@@ -62,8 +63,17 @@ std::span<const std::byte> part_of(const Buffer& buffer, std::size_t bytes) noex
     return std::span(buffer).first(bytes);
 }
 
+/// "wrong version", and of a content the value that was wrong.
+std::string words_of(DatagramFault fault, std::span<const std::byte> bytes)
+{
+    const char* wrong = nullptr;
+    static_cast<void>(udp::decode_from_device(bytes, &wrong));
+    const std::string words(udp::text_of(fault));
+    return fault == DatagramFault::content && wrong != nullptr ? words + ": " + wrong : words;
+}
+
 Refusal nobody_came(const udp::Socket& socket, const udp::Session& session, Duration wait,
-                    std::uint64_t refused, std::optional<DatagramFault> last)
+                    std::uint64_t refused, const std::string& last)
 {
     const std::string within = " within " + std::to_string(wait / milliseconds(1)) + " ms";
     if (session.peer().is_attached && session.rival())
@@ -77,11 +87,11 @@ Refusal nobody_came(const udp::Socket& socket, const udp::Session& session, Dura
     std::string line = "udp device: no device described itself to " +
                        udp::text_of(socket.endpoint()) +
                        (session.info() ? " and sent samples" : "") + within;
-    if (last)
-    {
-        line += " (" + std::to_string(refused) +
-                " datagrams refused, the last: " + std::string(udp::text_of(*last)) + ")";
-    }
+    line += refused == 0
+                ? session.info() ? ""
+                                 : "; no datagram came: is its driver running, and does "
+                                   "it send there?"
+                : " (" + counted(refused, "datagram") + " refused, the last: " + last + ")";
     return {std::move(line)};
 }
 
@@ -115,7 +125,7 @@ std::optional<Refusal> await_device(const udp::Socket& socket, udp::Session& ses
     MonotonicTime answered = start;
     Buffer buffer{};
     std::uint64_t refused = 0;
-    std::optional<DatagramFault> last;
+    std::string last;
     for (;;)
     {
         const auto received = socket.receive(buffer);
@@ -128,7 +138,7 @@ std::optional<Refusal> await_device(const udp::Socket& socket, udp::Session& ses
             const auto* refusal = std::get_if<DatagramFault>(&result);
             is_due |= refusal == nullptr;
             refused += refusal != nullptr ? 1U : 0U;
-            last = refusal != nullptr ? *refusal : last;
+            last = refusal != nullptr ? words_of(*refusal, part_of(buffer, received->bytes)) : last;
         }
         static_cast<void>(session.lapse(now));
         const bool is_attached = session.peer().is_attached;
@@ -275,6 +285,10 @@ bool UdpDevice::receive_one(std::span<const std::byte> bytes, const udp::Endpoin
     {
         ++counts_.refused.at(static_cast<std::size_t>(*refusal));
         counts_.others += *refusal == DatagramFault::other_device ? 1U : 0U;
+        if (*refusal == DatagramFault::content)
+        {
+            static_cast<void>(udp::decode_from_device(bytes, &counts_.wrong_value));
+        }
         return false;
     }
     counts_.others = 0;

@@ -67,6 +67,7 @@ struct UdpTraffic
     std::uint64_t forces{0};    ///< Sent by the I/O thread.
     std::uint64_t unsent{0};    ///< Those of them that the system refused.
     std::array<std::uint64_t, udp::kDatagramFaults> refused{}; ///< By udp::DatagramFault.
+    const char* wrong_value{nullptr}; ///< That the last of them had whose content was wrong.
     /// Descriptions of another device since the last datagram that was accepted: its own has gone,
     /// and given its place back.
     std::uint64_t others{0};
