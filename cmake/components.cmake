@@ -180,6 +180,7 @@ tactus_component(transport
         transport/dds/object_publisher.hpp
         transport/dds/scene_reader.hpp
         transport/dds/telemetry.hpp
+        transport/inside_test.hpp
         transport/log.hpp
         transport/model_identity.hpp
         transport/model_name.hpp

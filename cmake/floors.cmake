@@ -27,7 +27,7 @@ tactus_room(rt_core/limits.hpp rt_core/base)
 tactus_room(rt_core/spm rt_core/base rt_core/math rt_core/limits.hpp)
 tactus_room(rt_core/records
     rt_core/base rt_core/math rt_core/limits.hpp rt_core/geometry rt_core/spm)
-tactus_room(rt_core/cache ${stage_floor})
+tactus_room(rt_core/cache ${stage_floor} rt_core/kernels)
 tactus_room(rt_core/kernels rt_core/base rt_core/limits.hpp rt_core/math/seen_triangle.hpp)
 tactus_room(rt_core/abtree ${stage_floor} rt_core/kernels)
 tactus_room(rt_core/forest ${stage_floor} rt_core/abtree rt_core/kernels)

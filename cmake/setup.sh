@@ -223,7 +223,7 @@ start_program() { # start_program READY NAME OPTION...: until its log has a line
 
 start_view() { # start_view OPTION...: tells where, and opens a browser where there is a screen.
     local url
-    start_program ' shows ' spm_view "$@" --port 0 # A free one.
+    start_program '^http[^ ]* shows ' spm_view "$@" --port 0 # A free one.
     url=$(sed -n 's/^\(http[^ ]*\) shows .*/\1/p' "$demo/spm_view.log")
     echo "View: $url"
     if [[ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]] && command -v xdg-open >/dev/null; then

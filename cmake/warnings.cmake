@@ -9,6 +9,7 @@ target_compile_options(tactus_warnings INTERFACE
 if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(tactus_warnings INTERFACE -Wno-subobject-linkage)
 endif()
+# Not for the sanitizers' presets: g++ warns of what their checks make of the standard library.
 if(TACTUS_WERROR)
     target_compile_options(tactus_warnings INTERFACE -Werror)
 endif()

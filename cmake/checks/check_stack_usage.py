@@ -71,6 +71,13 @@ def stem(path):
     return os.path.basename(path).rsplit('.', 1)[0]
 
 
+def name_in_source(path, line):
+    """g++ writes a clone's suffix in place of its name, which then stands where it is defined."""
+    with open(path, encoding='utf-8') as lines:
+        text = lines.readlines()[int(line) - 1]
+    return simple_name(text.split('(')[0] + '(')
+
+
 def read_stack_usage(folder):
     """(object, simple name) -> bytes, the most where several share it; None where unbounded."""
     usage = {}
@@ -81,7 +88,11 @@ def read_stack_usage(folder):
             with open(os.path.join(place, name), encoding='utf-8') as lines:
                 for line in lines:
                     where, size, kind = line.rstrip('\n').split('\t')
-                    key = (stem(name), simple_name(where.split(':', 3)[3]))
+                    path, row, _, function = where.split(':', 3)
+                    simple = simple_name(function)
+                    if simple in ('constprop', 'isra', 'part'):
+                        simple = name_in_source(path, row)
+                    key = (stem(name), simple)
                     known = usage.get(key, 0)
                     bounded = kind in ('static', 'dynamic,bounded') and known is not None
                     usage[key] = max(known, int(size)) if bounded else None
@@ -240,6 +251,8 @@ class Walk:
                 return 0
             return self.rules.outside[key[1]]
         place = (stem(key[0]), simple_name(self.names[key]))
+        if place not in self.usage: # A clone: without its namespace.
+            place = (place[0], place[1].split('::')[-1])
         if self.usage.get(place, None) is None:
             unknown = 'has no bound' if place in self.usage else 'stands in no .su file'
             self.fault(f'{self.names[key]}: its stack {unknown}')
