@@ -64,9 +64,10 @@ struct FrameCase
     double cold_max{kNoGoal};
     /// Of T_R + T_B, in instructions.
     double counted_p99{kNoGoal}, counted_max{kNoGoal};
+    double counted_mean{kNoGoal}; ///< Goal for the mean of whole frames, in instructions.
 };
-/// A tool slides over a model that streams; all of T_R + T_B + T_Q, warm, cold and rehearsed, and
-/// with --instructions those of T_R + T_B.
+/// A tool slides over a model that streams; all of T_L + T_R + T_B + T_Q, warm, cold and
+/// rehearsed, and with --instructions those of a frame and of T_R + T_B.
 void run_frame_case(const CaseContext& context, const FrameCase& test_case);
 
 /// Goal in MiB.

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <numeric>
 
 namespace tactus::bench
 {
@@ -144,9 +145,19 @@ void run_frame_case(const CaseContext& context, const FrameCase& test_case)
                  cold_frames);
     }
     add_work(rows, replay, test_case.pool_bytes);
-    const auto counted = count_refinements(context);
+    std::vector<double> counted;
+    double counted_frames = 0.0;
+    for (const StageCounts& stages : count_stages(context))
+    {
+        const auto of = [&stages](Stage stage) { return stages[static_cast<std::size_t>(stage)]; };
+        counted.push_back(static_cast<double>(of(Stage::refine) + of(Stage::refit)));
+        counted_frames +=
+            static_cast<double>(std::accumulate(stages.begin(), stages.end(), std::uint64_t{0}));
+    }
     if (!counted.empty())
     {
+        rows.add("frame", counted_frames / static_cast<double>(counted.size()), "instructions",
+                 goal_if(test_case.counted_mean));
         add_spread(rows, "T_R + T_B", spread_of(counted),
                    {kNoGoal, test_case.counted_p99, test_case.counted_max}, "instructions");
     }

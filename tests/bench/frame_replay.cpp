@@ -109,8 +109,7 @@ void FrameReplay::run_once(CacheState caches, std::size_t frames)
         }
         allocations += frame_allocations;
         const std::size_t place = i - run_.lead_in;
-        sum_us_[index(caches)].keep(place, timer.us(Stage::refine) + timer.us(Stage::refit) +
-                                               timer.us(Stage::query));
+        sum_us_[index(caches)].keep(place, timer.sum_us() - timer.us(Stage::force));
         for (std::size_t stage = 0; caches == CacheState::warm && stage < kStages; ++stage)
         {
             stage_us_[stage].keep(place, timer.us(static_cast<Stage>(stage)));

@@ -78,7 +78,7 @@ public:
     /// Of all counted frames, the caches warm.
     void run(std::uint32_t passes) { run(CacheState::warm, passes, run_.counted()); }
 
-    /// T_R + T_B + T_Q, in microseconds, of the counted frames.
+    /// T_L + T_R + T_B + T_Q, in microseconds, of the counted frames.
     [[nodiscard]] const LeastTimes& sum_us(CacheState caches) const
     {
         return sum_us_[index(caches)];

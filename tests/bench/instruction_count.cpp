@@ -66,12 +66,12 @@ std::vector<std::uint64_t> totals_in(const std::filesystem::path& file)
 
 // Callgrind knows functions by their names. They must be called, though they do nothing, and
 // differ, or the compiler makes one of both.
-[[gnu::noinline]] void refinement_begins() noexcept
+[[gnu::noinline]] void frame_begins() noexcept
 {
     asm volatile("" : : "i"(1));
 }
 
-[[gnu::noinline]] void refinement_ended() noexcept
+[[gnu::noinline]] void stage_ended() noexcept
 {
     asm volatile("" : : "i"(2));
 }
@@ -80,14 +80,7 @@ std::vector<std::uint64_t> totals_in(const std::filesystem::path& file)
 TACTUS_TRUSTED_BEGIN
 void end_stage(void* context, Stage stage) noexcept TACTUS_NONBLOCKING
 {
-    if (stage == Stage::load)
-    {
-        refinement_begins();
-    }
-    if (stage == Stage::refit)
-    {
-        refinement_ended();
-    }
+    stage_ended();
     (*static_cast<const StageMark*>(context))(stage);
 }
 TACTUS_TRUSTED_END
@@ -131,9 +124,17 @@ std::vector<std::uint64_t> run_counted(const CaseContext& context,
 
 } // namespace
 
+[[gnu::noinline]] FrameOutput counted_step(test::FrameRig& rig, std::span<const ToolState> tools,
+                                           const Budgets& budgets, StageMark mark)
+{
+    frame_begins();
+    return rig.step_without_delivery(tools, budgets, {&end_stage, &mark});
+}
+
 [[gnu::noinline]] FrameOutput counted_step(test::FrameRig& rig, const std::vector<Vec3>& goals_m,
                                            const Budgets& budgets, StageMark mark)
 {
+    frame_begins();
     return rig.step_without_delivery(goals_m, budgets, {&end_stage, &mark});
 }
 
@@ -147,18 +148,23 @@ std::optional<std::uint64_t> count_instructions(const CaseContext& context)
     return std::optional(counted.front());
 }
 
-std::vector<double> count_refinements(const CaseContext& context)
+std::vector<StageCounts> count_stages(const CaseContext& context)
 {
     if (!context.options.instructions || context.options.count)
     {
-        return std::vector<double>{};
+        return std::vector<StageCounts>{};
     }
-    // Each frame is a part, and what comes after the last one.
-    const auto counted = run_counted(
-        context, {"--zero-before=tactus::bench::(anonymous namespace)::refinement_begins(*",
-                  "--dump-before=tactus::bench::(anonymous namespace)::refinement_ended(*",
-                  "--combine-dumps=yes"});
-    return std::vector<double>(counted.begin(), counted.end() - 1);
+    // Each stage is a part, and what comes after the last one.
+    const auto parts =
+        run_counted(context, {"--zero-before=tactus::bench::(anonymous namespace)::frame_begins(*",
+                              "--dump-before=tactus::bench::(anonymous namespace)::stage_ended(*",
+                              "--combine-dumps=yes", "--dump-line=no"});
+    std::vector<StageCounts> frames((parts.size() - 1) / kStages);
+    for (std::size_t i = 0; i < frames.size() * kStages; ++i)
+    {
+        frames[i / kStages][i % kStages] = parts[i];
+    }
+    return frames;
 }
 
 } // namespace tactus::bench

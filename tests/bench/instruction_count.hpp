@@ -5,15 +5,19 @@
 #include "tests/bench/cases.hpp"
 #include "tests/shared/frame_rig.hpp"
 
+#include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace tactus::bench
 {
 
 /// rig.step_without_delivery(): a frame that is measured, under a name by which callgrind finds it.
-/// Its T_R + T_B lie between two calls with names of their own.
+/// Its stages end at calls with names of their own.
+[[nodiscard]] FrameOutput counted_step(test::FrameRig& rig, std::span<const ToolState> tools,
+                                       const Budgets& budgets, StageMark mark);
 [[nodiscard]] FrameOutput counted_step(test::FrameRig& rig, const std::vector<Vec3>& goals_m,
                                        const Budgets& budgets, StageMark mark);
 
@@ -23,7 +27,9 @@ namespace tactus::bench
 /// valgrind, or it fails.
 [[nodiscard]] std::optional<std::uint64_t> count_instructions(const CaseContext& context);
 
-/// The same, of T_R + T_B alone and call by call.
-[[nodiscard]] std::vector<double> count_refinements(const CaseContext& context);
+/// Of one frame, by Stage.
+using StageCounts = std::array<std::uint64_t, kStages>;
+/// The same, call by call and stage by stage.
+[[nodiscard]] std::vector<StageCounts> count_stages(const CaseContext& context);
 
 } // namespace tactus::bench

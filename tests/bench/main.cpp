@@ -78,8 +78,8 @@ void declare_options(CommandLine& line, Request& request)
     line.add_flag("--count", options.count,
                   "One warm pass, nothing evicted and no peers: for counting instructions");
     line.add_flag("--instructions", options.instructions,
-                  "Suites frame, skip and scene: count instructions as well, by valgrind; takes "
-                  "some 20 times as long");
+                  "Suites frame, skip, scene and worst: count instructions as well, by valgrind; "
+                  "takes some 20 times as long");
     line.add_flag("--all", request.all,
                   "Print every row, not only those with a goal, of the suite frame");
     line.add_flag("--check", request.check, "Leave with code 1 when a goal is not met");

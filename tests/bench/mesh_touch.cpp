@@ -142,12 +142,20 @@ void TactusPairQuery::place(const Similarity& tool)
 void TactusPairQuery::forget()
 {
     memory_ = {};
+    front_.count = 0;
+}
+
+MeshQuestion TactusPairQuery::question()
+{
+    MeshQuestion question{tool_.tree(), object_.tree(), place_};
+    question.front = &front_;
+    return question;
 }
 
 void TactusPairQuery::find_meeting(std::uint32_t enough)
 {
     WalkBudget budget{kUnlimited, kUnlimited};
-    find_meeting_faces({tool_.tree(), object_.tree(), place_}, enough, budget, memory_, report_);
+    find_meeting_faces(question(), enough, budget, memory_, report_);
 }
 
 bool TactusPairQuery::do_meet()
@@ -166,8 +174,11 @@ const std::vector<test::FacePair>& TactusPairQuery::contacts()
 {
     OtherSurface surface(object_.tree(), place_, {kUnlimited, kUnlimited});
     ends_.is_empty = true;
-    query_meshes({tool_.tree(), object_.tree(), place_, skin_m_, skin_m_, &ends_}, surface, memory_,
-                 answer_, report_, contacts_);
+    MeshQuestion asked = question();
+    asked.reach_m = skin_m_;
+    asked.contact_m = skin_m_;
+    asked.ends = &ends_;
+    query_meshes(asked, surface, memory_, answer_, report_, contacts_);
     return pairs_of_report();
 }
 
@@ -184,7 +195,7 @@ const std::vector<test::FacePair>& TactusPairQuery::pairs_of_report()
 double TactusPairQuery::distance_m()
 {
     OtherSurface surface(object_.tree(), place_, {kUnlimited, kUnlimited});
-    find_nearest_faces({tool_.tree(), object_.tree(), place_}, surface, memory_, answer_, report_);
+    find_nearest_faces(question(), surface, memory_, answer_, report_);
     return answer_.kind == AnswerKind::exact ? answer_.upper_m
                                              : std::numeric_limits<double>::quiet_NaN();
 }

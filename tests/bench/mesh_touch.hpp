@@ -61,6 +61,7 @@ public:
     void forget() override;
 
 private:
+    [[nodiscard]] MeshQuestion question();
     void find_meeting(std::uint32_t enough);
     [[nodiscard]] const std::vector<test::FacePair>& pairs_of_report();
     StaticModel tool_;
@@ -69,6 +70,7 @@ private:
     test::FaceNames object_names_;
     MeshPlacement place_;
     MeshMemory memory_;
+    PairFront front_;
     DistanceAnswer answer_;
     MeshReport report_;
     double skin_m_;

@@ -211,7 +211,7 @@ void add_frame_answers(const TouchTrial& trial, CaseRows& rows, const FrameRepla
     rows.add("open frames", static_cast<double>(open), "");
 }
 
-/// T_R + T_B + T_Q of a frame that streams into small pools.
+/// T_L + T_R + T_B + T_Q of a frame that streams into small pools.
 void add_streaming(const TouchTrial& trial, std::size_t pool_bytes)
 {
     const FrameRun run = make_streaming_run(trial, pool_bytes);

@@ -10,7 +10,7 @@
 
 A file has what tactus_bench --json writes, a row a line. store leaves and names: a suite that failed;
 one of a full run when the new one is not (--quick, --frames, --only ...) or lacks rows that it has;
-and `counts`, which counts.py renews and tests compare with. check: each file, and RESULTS, have the
+and those that counts.py renews and tests compare with. check: each file, and RESULTS, have the
 keys of HEADER and ROW; remarks and page name each commit that is not in the history of HEAD, where
 there is one; the page shows each picture of the folder and no other; and each table that has above it
 
@@ -32,7 +32,7 @@ MACHINE = {"processor", "processors", "kernel", "date_utc"}
 ROW = {"suite", "case", "metric", "value", "unit"}
 NAME = ("case", "by", "setting", "metric")  # What tells the rows of a suite apart.
 TOGETHER = {"goal": "met", "peer": "peer_value"}  # Neither comes without the other.
-COUNTS = "counts"
+COUNTS = {"counts", "worst"}  # Tests compare with them.
 
 TABLE = re.compile(r"<!--((?: benchmarks/\w+\.json)+) -->\n\n((?:\|.*\|\n)+)")
 NUMBER = re.compile(r"(?<![\w.,-])-?\d+(?:,\d{3})*(?:\.\d+)?(?:e-?\d+)?(?![\w.])")
@@ -70,7 +70,7 @@ def name_of(row):
 
 def refusal(suite, results, path):
     """Why the suite's file must stay as it is; None when it can be written."""
-    if suite == COUNTS:
+    if suite in COUNTS:
         return "what tests compare with; counts.py --write renews it"
     if any(text.startswith(f"{suite} ") for text in results.get("failures", [])):
         return "the suite failed"
@@ -92,7 +92,7 @@ def store(folder, path):
         if reason is None:
             head = {key: value for key, value in results.items() if key != "failures"}
             write(file, head | {"rows": [row for row in results["rows"] if row["suite"] == suite]})
-        elif suite != COUNTS:
+        elif suite not in COUNTS:
             code = 1
         print(f"{file}: {'left: ' + reason if reason else 'written'}")
     return code

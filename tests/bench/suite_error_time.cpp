@@ -193,16 +193,6 @@ private:
     std::map<std::pair<double, double>, std::optional<TrueAnswers>> known_;
 };
 
-/// T_L + T_R + T_B + T_Q of each frame.
-std::vector<double> whole_us(const FrameReplay& replay)
-{
-    std::vector<double> us;
-    std::ranges::transform(replay.sum_us(CacheState::warm).least(),
-                           replay.stage_us(Stage::load).least(), std::back_inserter(us),
-                           std::plus<>());
-    return us;
-}
-
 /// What double precision rounds is no error.
 double beyond_rounding(double error)
 {
@@ -347,7 +337,7 @@ private:
         replay.run(context_.options.passes_or(4, 2));
         std::vector<SurfaceAnswer> answers;
         std::ranges::transform(replay.answers(), std::back_inserter(answers), answer_of);
-        ErrorTimeFigures figures{setting.name, spread_of(whole_us(replay)),
+        ErrorTimeFigures figures{setting.name, spread_of(replay.sum_us(CacheState::warm).least()),
                                  static_cast<double>(run.rig.pool_bytes), truth.errors_of(answers)};
         CaseRows rows = rows_of(part, "Tactus", setting.name, replay.hash() + figures.errors.hash);
         add_figures(rows, figures);

@@ -28,7 +28,7 @@ std::vector<Case> frame_cases()
         frame("bunny-0.1", When::always, {kBunny, 0.1, 64, 2 * kMiB, 1.0, 4.0, 12.0}),
         frame("bunny-2", When::always, {kBunny, 2.0, 64, 2 * kMiB, 4.0, 23.0, 25.0}),
         frame("1.1M-0.5", When::always,
-              {kFineBunny, 0.5, 64, 4 * kMiB, 9.0, 28.0, 45.0, 120.0, 145e3, 200e3}),
+              {kFineBunny, 0.5, 64, 4 * kMiB, 9.0, 28.0, 45.0, 120.0, 145e3, 200e3, 125e3}),
         frame("1.1M-2", When::always, {kFineBunny, 2.0, 128, 4 * kMiB, 25.0, 90.0, 125.0}),
         frame("4.3M-0.5", When::full_only,
               {kFineIgea, 0.5, 128, 8 * kMiB, 30.0, 80.0, 90.0, 250.0}),

@@ -39,6 +39,7 @@ struct Suite
 [[nodiscard]] Suite stream_suite();
 [[nodiscard]] Suite table1_suite();
 [[nodiscard]] Suite table2_suite();
+[[nodiscard]] Suite worst_suite();
 
 /// In the order in which they are told.
 [[nodiscard]] std::vector<Suite> all_suites();

@@ -158,6 +158,25 @@ class Kept(unittest.TestCase):
         run.write_text(json.dumps(results(ROWS[2:3])))
         self.assertEqual(self.sut("counts.py", kept, bench), 1)  # A count less is another, too.
 
+    def test_no_frame_costs_more_than_the_worst_that_is_kept(self):
+        kept, run, bench = (self.root / name for name in ("worst.json", "run.json", "bench"))
+        worst = [row("worst", "box", "most of a frame", 10_000, setting=rate)
+                 for rate in ("sunk, 1 kHz", "sunk, 4 kHz")]
+        kept.write_text(json.dumps(results([*worst, row("worst", "box", "longest frame", 9)])))
+        bench.write_text('#!/bin/sh\n[ "$1 $4 $6" = "worst --json --instructions" ] && '
+                         f'cp "{run}" "$5"\n')
+        (self.root / "valgrind").touch()
+        for path in (bench, self.root / "valgrind"):
+            path.chmod(0o755)
+        for most, code in ((10_000, 0), (10_200, 0), (10_201, 1), (100, 0)):
+            run.write_text(json.dumps(results([worst[0], worst[1] | {"value": most},
+                                               row("worst", "box", "longest frame", 10)])))
+            with self.subTest(most=most):
+                self.assertIn(self.sut("counts.py", kept, bench, "--instructions"), (code, 77),
+                              self.said)
+        run.write_text(json.dumps(results(worst[:1])))
+        self.assertIn(self.sut("counts.py", kept, bench, "--instructions"), (1, 77), self.said)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -194,6 +194,14 @@ class Text(House):
         self.source('rt_core/base/good.hpp', '// ' + 'é' * 97)  # 100 columns, 197 bytes
         self.accept('line_length')
 
+    def test_a_frame_of_401_lines_with_its_header_is_refused_and_one_of_400_is_not(self):
+        for lines in (200, 201):
+            self.source('rt_core/frame/frame.hpp', *['//'] * 197)
+            self.source('rt_core/frame/frame.cpp', *['//'] * (lines - 3))
+            if lines == 200:
+                self.accept('line_length')
+        self.refuse('line_length', 'rt_core/frame/frame.cpp:1: 401 lines with its header')
+
     def test_marks_of_unfinished_work_are_refused(self):
         for mark in ('TO' 'DO', 'FIX' 'ME', 'X' 'XX', 'HA' 'CK'):
             self.source('rt_core/base/good.hpp', f'// {mark}: later.', f'// {mark}S')

@@ -117,9 +117,12 @@ Reading read_model_file(View bytes)
 Reading read_recording(View bytes)
 {
     const auto recording = Recording::parse(bytes, "run.rec");
-    return recording ? Reading{}
-                     : Reading{recording.error().text,
-                               is_clear_refusal(recording.error().text, "run.rec: at byte ")};
+    if (recording)
+    {
+        // One that was cut behind its first frames is read so far, and says so.
+        return {recording.value().missing(), true};
+    }
+    return {recording.error().text, is_clear_refusal(recording.error().text, "run.rec: at byte ")};
 }
 
 std::vector<Bytes> frame_samples()
@@ -226,6 +229,11 @@ Reading told(udp::DatagramFault fault, View /*bytes*/)
     return {std::string(text_of(fault))};
 }
 
+udp::FromDevice decode_from_device(View bytes)
+{
+    return udp::decode_from_device(bytes);
+}
+
 template <auto decode>
 Reading read_datagram(View bytes)
 {
@@ -299,7 +307,7 @@ std::vector<Decoder> all_decoders()
         {"recording",
          [] { return list(test::example_recording(test::make_tiny_model({}))); },
          read_recording,
-         "the file is ", // Cut short, or empty.
+         "the file ", // Is cut short or empty, or was cut behind the first frames.
          "nothing may follow it",
          nullptr,
          {8, 9, 10, 11},
@@ -321,7 +329,7 @@ std::vector<Decoder> all_decoders()
                          bytes_of(of_points(test::example_description())),
                          bytes_of(of_points(test::example_sample())));
          },
-         read_datagram<udp::decode_from_device>,
+         read_datagram<decode_from_device>,
          wrong_size,
          wrong_size,
          fuzz::seal_piece,

@@ -37,7 +37,6 @@ void check_object(const SceneObject& object)
 
 void check_mesh(const TriangleMesh& mesh)
 {
-    require(!mesh.faces.empty(), "an accepted mesh has faces");
     for (const auto& [x, y, z] : mesh.positions)
     {
         require(std::isfinite(x) && std::isfinite(y) && std::isfinite(z),
@@ -64,7 +63,9 @@ void check_scene(Scene& scene, const std::string& path)
         const auto mesh = scene.read_mesh(*object.mesh);
         if (mesh)
         {
-            check_mesh(mesh.value());
+            require(!mesh.value().mesh.faces.empty() || !mesh.value().left_out.empty(),
+                    "an accepted mesh has faces, or says why it has none");
+            check_mesh(mesh.value().mesh);
         }
         else
         {

@@ -63,7 +63,11 @@ void parse_index(std::span<const std::byte> file, const ModelHeader& header)
         require(is_lawful_index_page(counts, id, page, entries),
                 "an accepted index page is in its ranges");
         const QuantumBox box = header.index_entry(id).box;
-        static_cast<void>(chunks_meeting(page, box, {{0.0, 0.0, 0.0}, 1e300}));
+        for (std::uint32_t i = 0; i < page.chunks; ++i)
+        {
+            const QuantumBox of_chunk = box_of(page, box, i);
+            require(meets({{0.0, 0.0, 0.0}, 1e300}, of_chunk), "a ball of all meets every box");
+        }
     }
 }
 

@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/base/printable.hpp"
+
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -33,14 +35,7 @@ inline void require(bool holds, const char* law)
 /// Whether a message is one line that a terminal can show, whatever bytes it quotes.
 [[nodiscard]] inline bool is_one_clear_line(std::string_view text)
 {
-    for (const char c : text)
-    {
-        if (c < ' ' || c > '~')
-        {
-            return false;
-        }
-    }
-    return !text.empty();
+    return !text.empty() && printable_line(text) == text;
 }
 
 /// Whether a refusal of a file begins with its name and goes on in one clear line.

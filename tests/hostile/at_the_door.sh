@@ -10,7 +10,8 @@ readonly attack=$4
 readonly port=$((20000 + $$ % 20000))
 
 drive() { # drive [DRIVER]: a driver of its own; its id is in $driving.
-    python3 "${1:-$docs/examples/udp_driver.py}" "$port" 0.02 >driver.log 2>&1 &
+    PYTHONPATH=$docs/examples python3 "${1:-$docs/examples/udp_driver.py}" "$port" 0.02 \
+        >driver.log 2>&1 &
     driving=$!
     started+=("$driving")
 }
@@ -53,7 +54,7 @@ case $attack in
         # too, none is taken; when the liar is gone the true one is, with its own limits. Later a
         # liar that comes in its place ends the run.
         model bumpy-sphere-20000 bumpy.spm
-        sed 's/0\.002, 8, 20000/0.002, 1000, 20000/' "$docs/examples/udp_driver.py" >liar.py
+        sed 's/force_max_n=8,/force_max_n=1000,/' "$docs/examples/udp_driver.py" >liar.py
         cmp -s liar.py "$docs/examples/udp_driver.py" && fail 'the driver tells its force otherwise'
         drive "$PWD/liar.py"
         liar=$driving

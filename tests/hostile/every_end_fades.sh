@@ -20,15 +20,17 @@ import sys
 text = open(sys.argv[1], encoding="utf-8").read()
 for old, new in (
         ("controller.setblocking(False)\n",
-         'controller.setblocking(False)\ntold = open("motors.log", "a", buffering=1)\n'),
-        ("def newest_force(last):\n",
-         "def tell(force, who):\n    print(time.monotonic_ns(), *force[:3], who, file=told)\n\n"
-         "def newest_force(last):\n"),
-        ("(number, given, force, state)\n",
-         '(number, given, force, state)\n                    tell(force, "force")\n'),
-        ("        force, state = [0.0] * 6, 0\n",
-         "        if any(force[:3]):\n            tell([0.0] * 3, 'watchdog')\n"
-         "        force, state = [0.0] * 6, 0\n")):
+         'controller.setblocking(False)\ntold = open("motors.log", "a", buffering=1)\n\n'
+         "def tell(force, who):\n    print(time.monotonic_ns(), *force, who, file=told)\n"),
+        ("            driver.take(controller.recv(512), time.monotonic_ns())\n",
+         "            if driver.take(controller.recv(512), time.monotonic_ns()):\n"
+         '                tell(driver.force.force_n, "force")\n'),
+        ("    if datagram := driver.next(sample, time.monotonic_ns()):\n",
+         "    was_felt = any(driver.force.force_n)\n"
+         "    datagram = driver.next(sample, time.monotonic_ns())\n"
+         "    if was_felt and not any(driver.force.force_n):\n"
+         '        tell(driver.force.force_n, "watchdog")\n'
+         "    if datagram:\n")):
     assert text.count(old) == 1, old
     text = text.replace(old, new)
 print(text, end="")
@@ -47,7 +49,7 @@ esac
 fresh_motors() {
     rm -f motors.log
     [[ "$device" == udp ]] || return 0
-    python3 driver.py "$port" 0.02 >driver.log 2>&1 &
+    PYTHONPATH=$here/../../docs/examples python3 driver.py "$port" 0.02 >driver.log 2>&1 &
     driving=$!
     started+=("$driving")
 }

@@ -290,6 +290,35 @@ TEST(RefineLimits, a_frame_walks_so_often_to_refine_and_no_more_and_says_so)
     }
 }
 
+TEST(RefineLimits, a_query_that_is_cut_knows_no_less_than_the_last_one)
+{
+    const TestModel& model = small_model(0);
+    RigOptions options = with_room_for_all();
+    const double radius_m = 0.02 * model.diagonal_m;
+    options.tools = {{radius_m, 500.0, 8.0, 1.0, Segment{{0, 0, 0}, {0, 0, radius_m}}}};
+    FrameRig rig(model, options);
+    const Vec3 surface_m = to_vec3(model.faces[0][0]);
+    const ModelHeader& header = rig.model().header;
+    const auto& extent = header.fields().extent_quanta;
+    const Vec3 middle_m =
+        0.5 * static_cast<double>(header.quantum_m()) * Vec3(extent[0], extent[1], extent[2]);
+    const Vec3 outward = (surface_m - middle_m).normalized();
+    const Vec3 place_m = surface_m + 2.2 * radius_m * outward;
+    rig.settle(place_m, unlimited(kMaxSplitsPerFrame), 400);
+    const double before_m = rig.step(place_m, unlimited(kMaxSplitsPerFrame)).pairs[0].lower_m;
+    ASSERT_GT(before_m, radius_m);
+
+    Budgets little = unlimited(0);
+    little.nodes = 1;
+    const double moved_m = 0.01 * radius_m;
+    const FrameOutput output = rig.step(Vec3(place_m - moved_m * outward), little);
+    const PairOutput& pair = output.pairs[0];
+    ASSERT_TRUE(has_fault(output.faults, FrameFault::node_budget_spent));
+    EXPECT_FALSE(pair.skipped);
+    EXPECT_GE(pair.lower_m, before_m - 1.01 * moved_m);
+    EXPECT_LE(pair.lower_m, before_m);
+}
+
 /// A tool that has some nine tenths of a surface's room in reach of every object.
 FrameOutput fill_surfaces(FrameRig& rig, const Vec3& place)
 {
@@ -359,38 +388,51 @@ struct MostWork
     }
 };
 
+/// All of the one meets the other, so that any walk of the two could go through all of them. A tool
+/// that is only felt asks for one pair that meets, and for what is about it.
+void refine_equals(const TestModel& model, bool wants_contacts, bool fills)
+{
+    RigOptions options = with_room_for_all();
+    options.pool_bytes = std::size_t{64} << 20U;
+    options.static_when_it_fits = fills;
+    options.tools = {
+        {1e-3 * model.diagonal_m, 500.0, 8.0, 1.0, MeshCore{ModelId{1}}, wants_contacts}};
+    FrameRig rig({&model, &model}, options);
+    const Vec3 place_m(-model.origin_m[0], -model.origin_m[1], -model.origin_m[2]);
+    const Budgets budgets;
+    MostWork most;
+    std::uint32_t splits = 0;
+    for (int still = 0, frame = 0; still < 50; ++frame)
+    {
+        const FrameOutput output = rig.step(place_m, budgets);
+        most.add(output.work);
+        splits += output.work.splits;
+        still = output.work.splits == 0 ? still + 1 : 0;
+        ASSERT_LT(frame, 3'000);
+    }
+    std::printf("%u splits, most nodes %u, triangles %u\n", splits, most.nodes, most.triangles);
+    const PairOutput pair = rig.step(place_m, budgets).pairs[0];
+    EXPECT_EQ(pair.kind, AnswerKind::exact);
+    EXPECT_LT(pair.upper_m, 1e-12);
+    EXPECT_EQ(pair.mesh->is_truncated, wants_contacts);
+    EXPECT_EQ(pair.mesh->meeting.size() == 1, !wants_contacts);
+    const std::uint32_t all = 2 * rig.model().header.counts().records;
+    EXPECT_EQ(splits >= all, wants_contacts || fills);
+    EXPECT_EQ(splits < all / 10, !wants_contacts && !fills);
+    EXPECT_LE(most.nodes, 4 * budgets.nodes);
+    EXPECT_LE(most.triangles, 4 * budgets.triangles);
+}
+
 TEST(RefineLimits, two_equal_meshes_in_one_place_are_refined_by_a_little_work_a_frame)
 {
-    // All of the one meets the other, so that any walk of the two could go through all of them.
     const TestModel& model =
         test_model("bumpy-20k", make_shape(Shape::bumpy_sphere, 20'000).value(), 500);
-    for (const bool fills : {false, true})
+    for (const bool wants_contacts : {false, true})
     {
-        RigOptions options = with_room_for_all();
-        options.pool_bytes = std::size_t{64} << 20U;
-        options.static_when_it_fits = fills;
-        options.tools = {{1e-3 * model.diagonal_m, 500.0, 8.0, 1.0, MeshCore{ModelId{1}}}};
-        FrameRig rig({&model, &model}, options);
-        const Vec3 place_m(-model.origin_m[0], -model.origin_m[1], -model.origin_m[2]);
-        const Budgets budgets;
-        MostWork most;
-        std::uint32_t splits = 0;
-        for (int still = 0, frame = 0; still < 50; ++frame)
+        for (const bool fills : {false, true})
         {
-            const FrameOutput output = rig.step(place_m, budgets);
-            most.add(output.work);
-            splits += output.work.splits;
-            still = output.work.splits == 0 ? still + 1 : 0;
-            ASSERT_LT(frame, 3'000);
+            refine_equals(model, wants_contacts, fills);
         }
-        std::printf("%u splits, most nodes %u, triangles %u\n", splits, most.nodes, most.triangles);
-        const PairOutput pair = rig.step(place_m, budgets).pairs[0];
-        EXPECT_EQ(pair.kind, AnswerKind::exact);
-        EXPECT_LT(pair.upper_m, 1e-12);
-        EXPECT_TRUE(pair.mesh->is_truncated);
-        EXPECT_GE(splits, 2 * rig.model().header.counts().records);
-        EXPECT_LE(most.nodes, 4 * budgets.nodes);
-        EXPECT_LE(most.triangles, 4 * budgets.triangles);
     }
 }
 

@@ -293,7 +293,7 @@ TEST(SceneChanges, tell_how_far_an_object_at_the_tool_went_and_took_it_along)
     EXPECT_EQ(sut.step(0.5 * sut.model.diagonal_m).object_way_m, 0.0);
 }
 
-/// A tool so far beside the object, and what is listed of the two.
+/// A gap between tool and object, and what is listed there.
 struct ListedCase
 {
     double gap_m;
@@ -301,8 +301,8 @@ struct ListedCase
     bool is_in_reach;
 };
 
-/// Of an object at 0.5 m/s, for this tool and for one like it without a force, which touches
-/// nothing.
+/// What is listed when the object may move at 0.5 m/s. A second, equal tool without a force is
+/// never listed.
 void expect_listed(const ToolSpec& tool, std::span<const ListedCase> cases)
 {
     const TestModel& model = small_model(0);
@@ -341,7 +341,7 @@ void expect_listed(const ToolSpec& tool, std::span<const ListedCase> cases)
     }
 }
 
-/// By a tool of 2 mm at 1 m/s: 5 mm off at once, and 30 mm more within 20 ms.
+/// A tool of 2 mm at 1 m/s is near from 5 mm on, and within 20 ms it may come 30 mm nearer.
 TEST(SceneTouches, are_what_a_tool_with_a_force_may_meet_within_20_ms_and_near_ones_say_so)
 {
     constexpr std::array<ListedCase, 5> kCases{{{0.0069, 1, true},
@@ -352,7 +352,7 @@ TEST(SceneTouches, are_what_a_tool_with_a_force_may_meet_within_20_ms_and_near_o
     expect_listed({0.002, 500.0, 8.0, 1.0}, kCases);
 }
 
-/// At 0.1 m/s 12 mm more within 20 ms, but 24 mm make 12 N.
+/// At 0.1 m/s it may come 12 mm nearer within 20 ms. A leap of 24 mm makes 12 N at 500 N/m.
 TEST(SceneTouches, are_also_what_a_leap_that_is_no_jump_may_bring)
 {
     constexpr std::array<ListedCase, 2> kCases{{{0.0309, 1, false}, {0.0311, 0, false}}};
@@ -520,6 +520,30 @@ TEST(SceneCrowd, has_a_pair_of_each_tool_and_object_up_to_the_limit_and_says_wha
     EXPECT_TRUE(has_fault(over.faults, FrameFault::scene_crowded));
     EXPECT_EQ(over.scene.pairs, kMaxNear);
     EXPECT_EQ(over.scene.crowded_tools, 1U);
+}
+
+TEST(SceneCrowd, ends_for_frames_at_rest_with_the_tool_that_was_crowded)
+{
+    const TestModel& model = small_model(0);
+    RigOptions options = with_room_for_all();
+    options.static_when_it_fits = true;
+    options.tools.assign(2, ToolSpec{0.01 * model.diagonal_m});
+    options.objects.assign(kMaxNear + 1, ObjectSpec{ModelId{0}});
+    FrameRig sut(model, options);
+    const Vec3 amid_m = to_vec3(model.faces[0][0]);
+    const std::vector<Vec3> goals_m{amid_m, amid_m + Vec3(10.0 * model.diagonal_m, 0.0, 0.0)};
+    ASSERT_TRUE(has_fault(sut.step(goals_m, Budgets{}).faults, FrameFault::scene_crowded));
+    SceneChange change;
+    change.kind = SceneChangeKind::tool_goes;
+    sut.change(change);
+    std::uint32_t rested = 0;
+    for (int i = 0; i < 1'000 && rested < 2; ++i)
+    {
+        const FrameOutput output = sut.step(goals_m, Budgets{});
+        rested += output.work.skipped.times()[static_cast<std::size_t>(Skip::frames)];
+        EXPECT_FALSE(has_fault(output.faults, FrameFault::scene_crowded)) << "frame " << i;
+    }
+    EXPECT_EQ(rested, 2U);
 }
 
 /// Two objects and room for one pair: the ball may not go where it is not followed, and does not.

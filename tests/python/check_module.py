@@ -2,6 +2,8 @@
 """check_module.py MODULE_FOLDER SPM_BUILD SPM_INSPECT SPM_PUBLISH POSE_LOOP PAGE: the module
 `tactus` against brute force over the whole mesh and against a loop in C++, of a file and of a host,
 and what it refuses. PAGE's programs run, those for a shell first."""
+import ast
+import doctest
 import os
 import re
 import subprocess
@@ -9,6 +11,7 @@ import sys
 import tempfile
 import time
 import tracemalloc
+import warnings
 
 try:
     import numpy as np
@@ -347,6 +350,22 @@ def check_host(path):
 
 
 
+def check_begins_inside(path):
+    """A tool in the tube of the torus is warned of, once; one in its hole isn't, nor one that measures."""
+    def warned(place, **tool):
+        frame = tactus.Frame([tactus.Model(path)], [tactus.Tool(0.001, **tool)], [tactus.Object()])
+        with warnings.catch_warnings(record=True) as seen:
+            warnings.simplefilter("always")
+            for _ in range(2):
+                frame.run([place])
+        return [str(warning.message) for warning in seen]
+
+    words = ["tool 0 begins inside a closed object, which holds it from within"]
+    expect(warned([0.05, 0, 0]) == words, "no warning of a tool inside")
+    expect(warned([0, 0, 0]) == [], "a warning of a tool in the hole")
+    expect(warned([0.05, 0, 0], passes_through=True) == [], "a warning of a tool that passes through")
+
+
 def check_refusals(path):
     model = tactus.Model(path)
     frame = tactus.Frame([model], [tactus.Tool(0.01)], [tactus.Object()])
@@ -369,7 +388,7 @@ def check_refusals(path):
     refuses(ValueError, "object: 1; 0 to 0", lambda: frame.place(1))
     refuses(ValueError, "pose.scale: 0", lambda: frame.place(0, scale=0))
     for name, value, allowed in (("stiffness_n_per_m", -1, "0.001 to 1000000"),
-                                 ("static_friction", np.nan, "0 to 10"),
+                                 ("static_friction", np.nan, "0 to 3"),
                                  ("dynamic_friction", 0.1, "0 to 0"),
                                  ("damping_n_s_per_m", 21, "0 to 20"),
                                  ("viscosity_n_s_per_m", -1, "0 to 20"),
@@ -384,6 +403,9 @@ def check_refusals(path):
     refuses(ValueError, "shape: 'cone'", lambda: tactus.Tool(0.1, shape="cone"))
     refuses(ValueError, "tools[0].radius_m: -1",
             lambda: tactus.Frame([tactus.Model(path)], [tactus.Tool(-1)], [tactus.Object()]))
+    refuses(ValueError, "tools[0].radius_m: 2; 1e-06 to 1 is allowed",  # As hrtc --tool.
+            lambda: tactus.Frame([tactus.Model(path)], [tactus.Tool(2)], [tactus.Object()]))
+    tactus.Frame([tactus.Model(path)], [tactus.Tool(2, passes_through=True)], [tactus.Object()])
     refuses(ValueError, "tools[0].smooth_m: 1; 0.0001 to 0.1",
             lambda: tactus.Frame([tactus.Model(path)], [tactus.Tool(1, smooth_m=1)],
                                  [tactus.Object()]))
@@ -407,6 +429,51 @@ def check_refusals(path):
     expect(np.array_equal(frame.run(one).lower_m, before), "a refusal changed the frame")
     del frame  # The model is free again.
     tactus.Frame([model], [tactus.Tool(0.01)], [tactus.Object()])
+
+
+def arguments_of(function):
+    """(name, default) of each argument in the stub, those without a default with None."""
+    plain = function.args.args
+    defaults = [None] * (len(plain) - len(function.args.defaults)) + function.args.defaults
+    both = [*zip(plain, defaults), *zip(function.args.kwonlyargs, function.args.kw_defaults)]
+    return [(argument.arg, None if default is None else ast.literal_eval(default))
+            for argument, default in both]
+
+
+def arguments_in(signature):
+    """The same of the line that the module says of itself."""
+    found = []
+    for name, default in re.findall(r"(\w+): [^=,()]*(?:\[[^=]*\])?(?: = ([^,)]+))?[,)]", signature):
+        found.append((name, None if default == "" else ast.literal_eval(default)))
+    return found
+
+
+def check_documentation(scratch):
+    """The examples of the docstrings run; the stub has what the module has, with its arguments."""
+    os.chdir(scratch)
+    result = doctest.testmod(tactus, extraglobs={"tactus": tactus})
+    expect(result.failed == 0 and result.attempted >= 12, f"docstrings: {result}")
+    with open(os.path.join(folder, "tactus.pyi"), encoding="utf-8") as file:
+        stub = ast.parse(file.read())
+    classes = {each.name: each for each in stub.body if isinstance(each, ast.ClassDef)}
+    names = {each.target.id for each in stub.body if isinstance(each, ast.AnnAssign)} | set(classes)
+    shown = {name for name in dir(tactus) if not name.startswith("_")} | {"__version__"}
+    expect(names - {"FrameState"} == shown, f"the stub's names differ: {names ^ shown}")
+    fields = {each.target.id for each in classes["FrameState"].body}
+    frame = tactus.Frame([tactus.Model("torus.spm")], [tactus.Tool(0.01)], [tactus.Object()])
+    expect(fields == set(frame.state()), "the stub's FrameState differs")
+    for name, told in classes.items():
+        if name in ("Error", "FrameState"):
+            continue
+        kind = getattr(tactus, name)
+        methods = {each.name: each for each in told.body}
+        has = {each for each in vars(kind) if not each.startswith("_")}
+        expect(set(methods) - {"__init__"} == has, f"{name} differs: {set(methods) ^ has}")
+        for method, node in methods.items():
+            if not isinstance(vars(kind)[method], property):
+                signature = getattr(kind, method).__doc__.splitlines()[0]
+                expect(arguments_of(node) == arguments_in(signature),
+                       f"{name}.{method}: {arguments_of(node)} is not {signature}")
 
 
 def check_page(scratch):
@@ -448,7 +515,9 @@ def main():
         check_feel(path)
         check_carried(path, corners)
         check_host(path)
+        check_begins_inside(path)
         check_refusals(path)
+        check_documentation(scratch)
         check_page(scratch)
     sys.exit(1 if faults else 0)
 

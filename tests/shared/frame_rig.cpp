@@ -148,7 +148,7 @@ FrameOutput FrameRig::step(const std::vector<Vec3>& goals_m, const Budgets& budg
 FrameOutput FrameRig::step(std::span<const ToolState> tools, const Budgets& budgets)
 {
     deliver();
-    return run(tools, budgets, {});
+    return step_without_delivery(tools, budgets, {});
 }
 
 FrameOutput FrameRig::step_without_delivery(const std::vector<Vec3>& goals_m,
@@ -159,7 +159,7 @@ FrameOutput FrameRig::step_without_delivery(const std::vector<Vec3>& goals_m,
     {
         tools_[i].position_m = goals_m[i];
     }
-    return run(tools_, budgets, mark);
+    return step_without_delivery(tools_, budgets, mark);
 }
 
 ObjectPose FrameRig::source_pose(const ObjectPose& pose, ModelId model) const
@@ -191,7 +191,8 @@ void FrameRig::change(SceneChange change)
     changes_.push_back(change);
 }
 
-FrameOutput FrameRig::run(std::span<const ToolState> tools, const Budgets& budgets, StageMark mark)
+FrameOutput FrameRig::step_without_delivery(std::span<const ToolState> tools,
+                                            const Budgets& budgets, StageMark mark)
 {
     const FrameInput given = input(tools, budgets);
     const FrameOutput output = frame_->run(given, mark);

@@ -71,6 +71,8 @@ public:
     /// The same, without letting the transport side work first.
     FrameOutput step_without_delivery(const std::vector<Vec3>& goals_m, const Budgets& budgets,
                                       StageMark mark);
+    FrameOutput step_without_delivery(std::span<const ToolState> tools, const Budgets& budgets,
+                                      StageMark mark);
     /// Lets the transport side work without a frame.
     void deliver();
     /// Steps with a still tool until the models are resident as far as the ball needs, at most
@@ -91,6 +93,7 @@ public:
     [[nodiscard]] Courier& courier() { return *courier_; }
     [[nodiscard]] LoopbackLink& link(ModelId id = ModelId{0}) { return *lines_[id.value].link; }
     /// The recording of all frames so far; once, at the end, and only with RigOptions::record.
+    [[nodiscard]] RigRecorder& recorder() { return *recorder_; }
     [[nodiscard]] std::vector<std::byte> finish_recording() { return recorder_->finish(); }
 
 private:
@@ -107,7 +110,6 @@ private:
     [[nodiscard]] ObjectPose source_pose(const ObjectPose& pose, ModelId model) const;
     void make_courier();
     [[nodiscard]] std::uint32_t wishes_under_way() const;
-    FrameOutput run(std::span<const ToolState> tools, const Budgets& budgets, StageMark mark);
     void validate();
 
     std::vector<Line> lines_; ///< One a model.

@@ -47,7 +47,7 @@ Verdict broken_budget(const FrameOutput& output, const Budgets& budgets)
     const WorkCounters& work = output.work;
     constexpr std::uint32_t kOfMesh = 4 * kMeshRefineFactor + kMeshBudgetFactor + 1;
     const std::uint32_t walks = 2 * kFrameWalks + (output.pairs[0].mesh != nullptr ? kOfMesh : 0);
-    const std::array<Count, 9> counts{{
+    const std::array<Count, 10> counts{{
         {"splits", work.splits, budgets.splits},
         {"merges", work.merges, budgets.merges},
         {"scanned", work.scanned, budgets.scanned},
@@ -57,6 +57,7 @@ Verdict broken_budget(const FrameOutput& output, const Budgets& budgets)
         {"pages adopted", work.pages_adopted, budgets.pages},
         {"requests", work.requests, budgets.requests + budgets.regions}, // And index pages.
         {"regions searched", work.regions_searched, budgets.regions},
+        {"work", work.budget.used(), WorkBudget::most_of(budgets.work)},
     }};
     for (const Count& count : counts)
     {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <stdexcept>
 
 namespace tactus::test
@@ -13,68 +12,28 @@ namespace tactus::test
 namespace
 {
 
-/// A zone in quanta, and how it meets boxes.
-struct BallInQuanta
-{
-    QuantumBall ball;
-
-    [[nodiscard]] bool meets(const QuantumBox& box) const
-    {
-        double distance_sq = 0.0;
-        for (std::size_t axis = 0; axis < 3; ++axis)
-        {
-            const double nearest = std::clamp(ball.center[axis], static_cast<double>(box.low[axis]),
-                                              static_cast<double>(box.high[axis]));
-            distance_sq += (ball.center[axis] - nearest) * (ball.center[axis] - nearest);
-        }
-        return distance_sq <= ball.radius * ball.radius;
-    }
-
-    [[nodiscard]] std::uint64_t chunks_of(const IndexPage& page, const QuantumBox& page_box) const
-    {
-        return chunks_meeting(page, page_box, ball);
-    }
-};
-
 struct BoxInQuanta
 {
     std::array<double, 3> low{};
     std::array<double, 3> high{};
-
-    [[nodiscard]] bool meets(const QuantumBox& box) const
-    {
-        bool overlaps = true;
-        for (std::size_t axis = 0; axis < 3; ++axis)
-        {
-            overlaps = overlaps && low[axis] <= static_cast<double>(box.high[axis]) &&
-                       high[axis] >= static_cast<double>(box.low[axis]);
-        }
-        return overlaps;
-    }
-
-    [[nodiscard]] std::uint64_t chunks_of(const IndexPage& page, const QuantumBox& page_box) const
-    {
-        std::uint64_t chunks = 0;
-        for (std::uint32_t i = 0; i < page.chunks; ++i)
-        {
-            QuantumBox box;
-            for (std::size_t axis = 0; axis < 3; ++axis)
-            {
-                const auto step =
-                    static_cast<std::int32_t>(index_step(page_box.low[axis], page_box.high[axis]));
-                box.low[axis] = page_box.low[axis] + step * page.low[axis][i];
-                box.high[axis] = page_box.low[axis] + step * page.high[axis][i];
-            }
-            chunks |= meets(box) ? std::uint64_t{1} << i : 0U;
-        }
-        return chunks;
-    }
 };
 
-BallInQuanta in_quanta(const BallZone& zone, double per_metre)
+/// The same as for the ball in spm/index_page.hpp.
+bool meets(const BoxInQuanta& zone, const QuantumBox& box)
+{
+    bool overlaps = true;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        overlaps = overlaps && zone.low[axis] <= static_cast<double>(box.high[axis]) &&
+                   zone.high[axis] >= static_cast<double>(box.low[axis]);
+    }
+    return overlaps;
+}
+
+QuantumBall in_quanta(const BallZone& zone, double per_metre)
 {
     const Vec3 center = zone.center_m * per_metre;
-    return {{{center.x(), center.y(), center.z()}, zone.radius_m * per_metre}};
+    return {{center.x(), center.y(), center.z()}, zone.radius_m * per_metre};
 }
 
 BoxInQuanta in_quanta(const BoxZone& zone, double per_metre)
@@ -92,15 +51,17 @@ InfluenceIndex::Named find_named(const ModelHeader& header, const std::vector<In
     for (std::uint32_t page = 0; page < pages.size(); ++page)
     {
         const QuantumBox box = header.index_entry({page}).box;
-        if (!zone.meets(box))
+        if (!meets(zone, box))
         {
             continue;
         }
         named.pages.push_back({page});
-        for (std::uint64_t left = zone.chunks_of(pages[page], box); left != 0; left &= left - 1)
+        for (std::uint32_t i = 0; i < pages[page].chunks; ++i)
         {
-            const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
-            named.chunks.push_back({(page << kChunksPerIndexPageLog2) + i});
+            if (meets(zone, box_of(pages[page], box, i)))
+            {
+                named.chunks.push_back({(page << kChunksPerIndexPageLog2) + i});
+            }
         }
     }
     return named;

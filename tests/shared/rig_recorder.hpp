@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace tactus::test
@@ -26,6 +27,7 @@ public:
     /// used any more once the recorder is gone.
     void follow(Courier& courier);
 
+    void add_name(const RecordedName& what, std::string_view name) { writer_.add_name(what, name); }
     void add(const FrameInput& input, const FrameOutput& output);
     /// The whole recording; nothing may be added afterwards.
     [[nodiscard]] std::vector<std::byte> finish();

@@ -23,6 +23,14 @@ Budgets with_splits(std::uint32_t splits)
     return budgets;
 }
 
+/// A third of what a frame at 4 kHz may do.
+Budgets with_little_work()
+{
+    Budgets budgets;
+    budgets.work = Budgets::work_of(125'000, 1) / 3;
+    return budgets;
+}
+
 LoopbackFaults lossy_link()
 {
     LoopbackFaults faults;
@@ -95,7 +103,8 @@ std::vector<Hardship> hardships(const TestModel& model)
             {"lossy-link", usual, with_link(lossy_link())},
             {"late-link", usual, with_link(late_link())},
             {"in-the-tool", usual, with_pools(kAmple, 12), 2.0},
-            {"static", usual, kept_whole()}};
+            {"static", usual, kept_whole()},
+            {"little-work", with_little_work(), with_pools(kAmple)}};
 }
 
 Hardship hardship_named(const TestModel& model, std::string_view name)

@@ -20,8 +20,8 @@ namespace tactus::test
 namespace
 {
 
-constexpr std::array<const char*, 6> kHardships{"usual",       "K-1",        "starved",
-                                                "small-pools", "lossy-link", "static"};
+constexpr std::array<const char*, 7> kHardships{"usual",      "K-1",    "starved",    "small-pools",
+                                                "lossy-link", "static", "little-work"};
 constexpr std::array<double, 3> kScales{0.4, 2.0, 8.0};
 constexpr std::array<double, 3> kSkins_diag{0.002, 0.0, 0.01}; ///< Of the tool.
 
@@ -91,7 +91,7 @@ TEST_P(KnownMeshTools, agree_with_all_faces_of_both_whatever_runs_out)
         GTEST_SKIP() << "TACTUS_MESHES is not set";
     }
     const FaceTree tree(object->faces);
-    for (std::size_t i = 0; i < kHardships.size() - 1; ++i)
+    for (const std::size_t i : {0U, 1U, 2U, 3U, 4U, 6U}) // Not the static one.
     {
         const std::uint64_t seed = seed_of(20'261'480 + i);
         const MeshFigures sut =

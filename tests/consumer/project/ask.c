@@ -186,6 +186,25 @@ static void press_one_end(void)
     tactus_frame_end(p.frame);
 }
 
+/* A hand in the tube of the ring would be held there; one in its hole would not, nor one that
+ * passes through. */
+static void ask_inside(void)
+{
+    tactus_tool hand;
+    tactus_tool_default(&hand);
+    hand.radius_m = 0.001;
+    for (int i = 0; i < 3; ++i)
+    {
+        uint8_t inside = 9;
+        hand.passes_through = i == 2;
+        probe p;
+        begin(&p, &hand, i == 1 ? 0.0 : 0.028, 0.0);
+        done(tactus_frame_begins_inside(p.frame, p.place_m, &inside, &error), "inside");
+        need(inside == (i == 0), "another side of the ring");
+        tactus_frame_end(p.frame);
+    }
+}
+
 /* The largest step of the force of a hand 3 mm deep, under which the ring goes up and down by 2 mm
  * every four frames; of a ring that is believed to move at that speed at most. */
 static double shake(double speed_m_per_s)
@@ -229,13 +248,13 @@ static void ask_for_what_is_refused(probe* p, const char* file, tactus_model* mo
     tactus_model* other = NULL;
     tactus_frame* second = NULL;
     refused(tactus_model_open(TACTUS_ABI + 1, file, &other, &error), TACTUS_BAD_VERSION,
-            "made for ABI version 3; this library has 2");
+            "made for ABI version 4; this library has 3");
     tactus_tool tool = p->tool;
     tactus_setup bad_setup = setup;
     bad_setup.tools = &tool;
     bad_setup.abi = TACTUS_ABI + 1;
     refused(tactus_frame_make(&bad_setup, memory, BYTES, &second, &error), TACTUS_BAD_VERSION,
-            "made for ABI version 3");
+            "made for ABI version 4");
     bad_setup.abi = TACTUS_ABI;
     tool.size -= 8;
     refused(tactus_frame_make(&bad_setup, memory, BYTES, &second, &error), TACTUS_BAD_VERSION,
@@ -275,7 +294,7 @@ static void ask_for_what_is_refused(probe* p, const char* file, tactus_model* mo
     tactus_material_default(&rough);
     rough.static_friction = 11.0;
     bad(tactus_frame_feel(p->frame, 0, &rough, &error),
-        "material.static_friction: 11; 0 to 10 is allowed");
+        "material.static_friction: 11; 0 to 3 is allowed");
     rough.static_friction = 0.5;
     bad(tactus_frame_feel(p->frame, 1, &rough, &error), "object: 1; 0 to 0 is allowed");
     rough.size -= 8;
@@ -346,6 +365,7 @@ int main(int argc, char** argv)
     ask_from_afar(ball, 0);
     setup.loads_whole = 1;
     press_one_end();
+    ask_inside();
     /* 500 N/m: half a metre a second changes the force by 0.25 N a frame. */
     need(shake(0.5) < 0.33, "a step of the force");
     need(shake(1e6) > 1.5, "no step though all is believed");

@@ -41,13 +41,41 @@ awk -v sampled="$(figure hausdorff_diag_sampled <built.json)" \
 # A size that is hardly meant is noted, with the unit that would mend it; one that was given is not.
 printf 'v 0 0 0\nv 300 0 0\nv 0 400 0\nf 1 2 3\n' >large.obj
 "$build" large.obj -o large.spm >large.txt 2>notes.txt
-grep -qx 'note: the model is 500 m across; is the mesh in mm? Then give --unit mm' notes.txt \
+grep -q '^note: the model is 500 m across; .* --unit mm (0.5 m) or cm (5 m), --scale' notes.txt \
     || fail "$(cat notes.txt)"
 "$build" large.obj -o large.spm --unit MM >large.txt 2>notes.txt
 grep -q '^diagonal 0.5 m, a unit of the mesh is 0.001 m' large.txt || fail "$(cat large.txt)"
 "$build" large.obj -o large.spm --fit-diag 20 >large.txt 2>>notes.txt
 grep -q '^diagonal 20 m, a unit of the mesh is 0.04 m' large.txt || fail "$(cat large.txt)"
 [[ ! -s notes.txt ]] || fail "$(cat notes.txt)"
+# expect_placed LOW HIGH, of each axis, ARGUMENT...: where spm_inspect sees large.obj's model.
+expect_placed() {
+    "$build" large.obj -o placed.spm "${@:7}" >/dev/null 2>notes.txt || fail "$(cat notes.txt)"
+    "$inspect" placed.spm | awk -v expected="${*:1:6}" '
+        /^bounds/ { found = found " " $3 " " $5 }
+        END { split(expected, e); n = split(found, f)
+              for (i = 1; i <= 6; ++i) if ((f[i] - e[i]) ^ 2 > 1e-9) exit 1
+              exit n != 6 }' || fail "${*:7}: $("$inspect" placed.spm | grep '^bounds')"
+}
+printf 'v 1000 7000 2\nv 1300 7000 2\nv 1000 7400 8\nf 1 2 3\n' >large.obj
+expect_placed 1 1.3 7 7.4 0.002 0.008 --scale 1e-3
+expect_placed 1 1.3 -0.008 -0.002 7 7.4 --scale 1e-3 --up y
+expect_placed -0.15 0.15 -0.003 0.003 -0.2 0.2 --unit mm --up y --center
+expect_placed -0.15 0.15 -0.2 0.2 -0.003 0.003 --fit-diag 0.500036 --center
+expect_placed -0.15 0.15 -0.2 0.2 -0.003 0.003 --unit mm --center
+grep -qx 'note: moved by -1.15, -7.2, -0.005 m to the origin' notes.txt || fail "$(cat notes.txt)"
+"$build" large.obj -o far.spm --fit-diag 0.2 >/dev/null 2>notes.txt
+grep -q '^note: the model stands [0-9.]* m from its origin, .* --center puts it there' notes.txt \
+    || fail "$(cat notes.txt)"
+# What needs more memory than is allowed is refused before the work, with the least that works.
+"$build" --shape sphere --faces 100000 -o refused.spm --memory-mib 30 2>said.txt && fail '30 MiB'
+least=$(sed -n 's/.* faces needs \([0-9]*\) MiB; --memory-mib allows 30$/\1/p' said.txt)
+"$build" --shape sphere --faces 100000 -o refused.spm --memory-mib "$((least - 1))" 2>said.txt \
+    && fail "$((least - 1)) MiB"
+[[ ! -e refused.spm ]] || fail 'a refused model is there'
+"$build" --shape sphere --faces 100000 -o allowed.spm --memory-mib "$least" --json >allowed.json \
+    2>said.txt || fail "$(cat said.txt)"
+(($(figure peak_bytes <allowed.json) <= least << 20)) || fail "it took $(cat allowed.json)"
 [[ $(figure file_bytes <built.json) == $(stat -c %s torus.spm) ]] || fail 'file_bytes'
 # Through a file: grep -q would end the pipe, and so the program, too early.
 "$inspect" torus.spm --regions >text.txt
@@ -128,6 +156,18 @@ extract few.ply --region sphere:0.05,0,0,0.02 --faces 1
 cmp ball.ply few.ply || fail 'a ball and too few faces'
 extract close.ply --region box:0,-1,-1,1,1,1 --error 5e-4
 ((has > some && has < faces)) || fail "a box and an error: $has faces"
+
+# A mesh through a pipe gives the same model, and points come through one, too.
+"$build" some.ply -o named.spm >/dev/null 2>&1
+"$build" - --format ply -o piped.spm <some.ply >/dev/null 2>&1 || fail 'standard input'
+cmp named.spm piped.spm || fail 'standard input gives another model'
+"$build" <(cat some.ply) --format ply -o piped.spm >/dev/null 2>&1 || fail 'a pipe'
+cmp named.spm piped.spm || fail 'a pipe gives another model'
+"$build" <(cat some.ply) -o piped.spm 2>said.txt && fail 'a pipe without --format'
+grep -q 'with --format a pipe is read' said.txt || fail "a pipe without --format: $(cat said.txt)"
+printf '0 0 0\n' >point.txt
+"$inspect" named.spm --distances point.txt >said.txt || fail '--distances'
+"$inspect" named.spm --distances - <point.txt | cmp - said.txt || fail '--distances -'
 
 # The same input gives the same file, whatever the threads; an old file is replaced.
 printf 'old' >one.spm

@@ -96,6 +96,9 @@ wait_until() {
 
 # lines TEXT FILE: how many lines hold it.
 lines() { grep -csF -- "$1" "$2" || true; }
+# lines_of_host MODEL FILE: how many lines tell of the model's host; on a slow machine or a bad
+# network others name pieces that don't come.
+lines_of_host() { grep -sF -- "model '$1'" "$2" | grep -vcF ': chunk ' || true; }
 has_lines() { (($(lines "$1" "$2") >= $3)); }
 
 # wait_for_line FILE TEXT [COUNT]: so many lines at least, or one, hold the text.

@@ -6,7 +6,7 @@ readonly page
 source "$(dirname "$0")/common.sh"
 source "$(dirname "$0")/run_page.sh"
 
-run_page "$page" 5
+run_page "$page" 6
 check_contact run.json force.contact_share 0.5
 check run.json frames == 5000 force.max_n '>' 0.5 models.0.pieces_refused == 0
 grep -qi '<!doctype html>' run.html || fault 'no page for people'

@@ -28,8 +28,8 @@ refuse 2 'no?where.spm: cannot be opened' --transport file --model $'no\nwhere.s
 refuse 2 'missing.gltf: no such file' missing.gltf
 refuse 2 'missing.rec: cannot be opened' good.spm --device replay:missing.rec
 refuse 2 'missing.so' good.spm --device plugin:./missing.so
-refuse 2 "--motion: 'cow' is no model that is touched; there are: good" good.spm --motion tap:cow
-refuse 2 '--pool-mib: 0.25 MiB is too small for 1 models; 0.37 MiB would do for a start' good.spm \
+refuse 2 "--motion: no object is called 'cow'; there are good" good.spm --motion tap:cow
+refuse 2 '--pool-mib: 0.25 MiB is too small for 1 model; 0.37 MiB would do for a start' good.spm \
     --pool-mib 0.25
 
 # What nothing needs of the most memory isn't taken, nor locked.
@@ -62,7 +62,7 @@ damaged() { # damaged CODE ARGUMENT...: ends with that code and names the damage
         --report out/report.json "${@:2}" >hrtc.log 2>&1 || code=$?
     ((code == $1)) || { cat hrtc.log; fault "a damaged chunk ended the run with $code"; }
     check out/report.json frames == 3000 models.0.pieces_refused == 1
-    grep -q '^verdict .*1 damaged pieces of chunk' hrtc.log || fault 'the verdict does not tell'
+    grep -q '^verdict .*1 damaged piece of chunk' hrtc.log || fault 'the verdict does not tell'
     [[ $(grep -c '^hrtc: chunk.spm: .*damaged' hrtc.log) == 1 ]] || fault 'it is not told once'
 }
 damaged 0

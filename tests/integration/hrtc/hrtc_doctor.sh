@@ -51,7 +51,7 @@ wanted=advice
 
 # Who is heard on a domain, and what is published there; by nobody at first.
 domain_says() { # domain_says PATTERN: of the check, which is the 18th.
-    "$hrtc" doctor --all --domain "$domain" --wait 1 >domain.txt || true
+    "$hrtc" doctor --domain "$domain" --wait 1 >domain.txt || true
     grep -A 3 -E "^(good|advice) +dds-domain" domain.txt | tr -s ' \n' ' ' | grep -q "$1"
 }
 domain_says "^advice dds-domain nobody is heard on domain $domain within 1 s" \

@@ -79,7 +79,7 @@ check_clean report.json
 expect_found 2 "--scene: 'kitchen' is not shown on domain $domain (scenes there: workshop)" \
     --scene kitchen
 expect_found 2 '--objects: 2; 4 are there from the start' --scene workshop --objects 2
-expect 3 "--scene: name 'a/b.gltf' is not 1 to 63 characters" "$hrtc" \
+expect 3 "--scene: name 'a/b.gltf' is not 1 to 63 bytes" "$hrtc" \
     --transport dds --scene a/b.gltf
 stop_publisher
 expect 3 "--scene: 'a b' is not" "$publish" --domain "$domain" --scene 'a b' ball.spm

@@ -47,9 +47,9 @@ check report.json frames '>' 1500 answers.stale '>' 300 models.0.pose.old_frames
 check_clean report.json
 stop_publisher
 
-# From files nothing of this exists.
+# From files no pose comes, but a viewer of the domain sees the run.
 contact=0 run_hrtc --transport file --model bumpy.spm --duration 0.5
-check report.json models.0.pose.followed == 0 telemetry.sent == 0
+check report.json models.0.pose.followed == 0 telemetry.sent '>' 0
 
 # An object that goes far at once while it is touched: the force fades and comes back by the ramp.
 printf '0 bumpy 0 0 0 0 0 0 1\n0.5 bumpy 0.04 0 0 0 0 0 1\n1 bumpy 0 0 0 0 0 0 1\n' >jump.txt
@@ -62,14 +62,14 @@ check report.json safety.begun.jump '>=' 1 models.0.pose.step_max_m '>' 0.039
 check_clean report.json
 stop_publisher
 
-# Half a metre from where it was looked for at the start, told in lines a second apart: the hand
-# comes after, and the object glides.
+# Half a metre from where its file has it, told in lines a second apart: hand and object begin
+# there, the object glides, and the hand comes after.
 printf '%s\n' '0 bumpy 0.5 0 0 0 0 0 1' '1 bumpy 0.5 0.03 0 0 0 0.1 0.995' \
     '2 bumpy 0.5 0 0 0 0 0 1' >far.txt
 start_publisher bumpy.spm --poses far.txt --poses-loop --poses-rate 100
 contact=0.3 run_hrtc --model bumpy --duration 4
 check report.json models.0.pose.accepted '>' 100 models.0.pose.moves '>' 100 \
-    models.0.pose.step_max_m '>' 0.49 safety.begun.jump '<=' 1
+    models.0.pose.step_max_m '<' 0.005 safety.begun.jump == 0
 check_contact report.json force.contact_share 0.3
 check_clean report.json
 stop_publisher

@@ -100,6 +100,18 @@ code=0
 ((code == 1)) || fault "the export of a replay that differs ended with $code"
 [[ -z $(ls -A folder) ]] || fault "an export was left behind: $(ls -A folder)"
 
+# Cut while it was copied: what is whole is replayed, exported and played by a device.
+head -c $(($(stat -c %s run.rec) - 100)) run.rec >cut.rec
+"$hrtc" --replay cut.rec --export cut.csv >said.txt 2>&1 || fault "a cut recording: $(<said.txt)"
+grep -q 'cut.rec: [0-9]* frames agree .*; the file was cut: behind frame ' said.txt \
+    || fault "a cut recording is not said to be one: $(<said.txt)"
+frames=$(grep -o '[0-9]* frames agree' said.txt)
+(($(wc -l <cut.csv) == ${frames%% *} + 1)) || fault 'not every whole frame was exported'
+"$hrtc" --allow-no-rt --virtual-time --transport file --model bumpy.spm --duration 0.5 \
+    --device replay:cut.rec >said.txt 2>&1 || fault "a cut recording as a device: $(<said.txt)"
+grep -q 'cut.rec: the file was cut: behind frame ' said.txt \
+    || fault "a device's recording is not said to be cut: $(<said.txt)"
+
 # One bit of one input.
 for frame in 0 1234; do
     "$alter" run.rec altered.rec "$frame"
@@ -107,11 +119,9 @@ for frame in 0 1234; do
 done
 
 # What is no recording, or not a whole one. The line names file, byte and what is allowed.
-bytes=$(stat -c %s run.rec)
 : >empty.rec
 head -c 5 run.rec >five.rec
 head -c 4000 run.rec >start.rec
-head -c $((bytes - 1)) run.rec >cut.rec
 { cat run.rec; printf x; } >long.rec
 cp run.rec bent.rec
 printf '\xff\xfe' | dd of=bent.rec bs=1 seek=3000 conv=notrunc status=none # In the first model.
@@ -123,8 +133,7 @@ refuse_file folder 'is not a file but a directory'
 refuse_file empty.rec 'at byte 0: the file is empty'
 refuse_file bumpy.spm 'at byte 0: is not a Tactus recording'
 refuse_file five.rec 'at byte 0: the file is cut short: 12 bytes are needed here and 5 are left'
-refuse_file start.rec 'at byte *: the file is cut short: '
-refuse_file cut.rec 'at byte *: the file is cut short: 36 bytes are needed here and 35 are left'
+refuse_file start.rec 'at byte *: the file is cut short: no frame is whole'
 refuse_file long.rec 'at byte *: the end section is followed by 1 bytes; nothing may follow it'
 refuse_file bent.rec 'at byte *: section of kind 2 and * bytes is damaged: its checksum'
 refuse_file newer.rec 'at byte 8: format version 255 is unknown; this program reads 12'

@@ -20,7 +20,7 @@ check_loss() {
     grep -q '^verdict .*the host went away' hrtc.log || fault 'the verdict does not tell'
     [[ $(lines "host of model 'bumpy' is gone; going on with what is resident" hrtc.log) == 1 ]] \
         || fault 'not one line that the host is gone'
-    [[ $(lines "model 'bumpy'" hrtc.log) == "$1" ]] || fault "not $1 lines about the host"
+    (($(lines_of_host bumpy hrtc.log) == $1)) || fault "not $1 lines about the host"
     check report.json wire.host_lost == 1 force.max_n '>' 0 safety.begun.host == 1
     check_clean report.json
 }

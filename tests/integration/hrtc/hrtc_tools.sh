@@ -66,6 +66,9 @@ for file in flat.off line.off; do
     touch_file 1 "hull:$file,0.001"
 done
 
+expect 2 "--guide: 'gripper:0': the device sim makes no force at a gripper" \
+    "$hrtc" --allow-no-rt ball.spm --guide gripper:0
+
 # How hands move tools that turn; these have a mass that the hand doesn't feel, and a
 # spring to the middle of the ball pulls at them, by its most.
 for motion in turn edge; do
@@ -79,8 +82,15 @@ done
 # A peg goes into its hole, and a button parts it from the hand that draws back.
 "$build" --shape socket --faces 500 -o socket.spm >build.log 2>&1
 seconds=8 touch 1 --virtual-time --model socket.spm --tool capsule:0.0099,0.03 \
-    --material 500,0.3,0.2 --motion peg --clutch 0
+    --material 500,0.3,0.2 --motion peg --clutch 0 --guide gripper:0.01,100,0.5 --record peg.rec
 check report.json safety.begun.clutch '>=' 1
+# Its gripper, 20 mm open, is closed with half a newton, which is less than its spring would make.
+"$hrtc" --replay peg.rec --export peg.csv >replay.log || fault "no export: $(cat replay.log)"
+python3 - <<'PYTHON' || fault 'the gripper is not held'
+import csv
+sent = [float(line["tool0.sent_gripper_n"] or 0) for line in csv.DictReader(open("peg.csv"))]
+assert min(sent) == -0.5 and max(sent) == 0 and sent.count(-0.5) > 4000, (min(sent), max(sent))
+PYTHON
 grep -q 'force off for: .*clutch' hrtc.log || fault 'nobody tells of the clutch'
 
 # The probe streams from the same host.

@@ -5,6 +5,7 @@
 # not heard. What docs/udp-device.md shows of it is run as it stands there.
 docs=$(cd "$(dirname "$0")/../../../docs" && pwd)
 readonly docs
+readonly in_c=$4
 source "$(dirname "$0")/common.sh"
 source "$(dirname "$0")/run_page.sh"
 
@@ -70,7 +71,19 @@ for text in ' ' 12 "$(printf '%063x' 7)" "$(printf '%065x' 7)" "$(printf '%063xg
 done
 expect 3 'there is no udp device' "${run[@]}" --device-key device.key
 
-cp "$docs/examples/udp_driver.py" .
+# The driver in C.
+"$in_c" "$port" 0.02 &
+driving=$!
+started+=("$driving")
+run_hrtc --transport file --model bumpy.spm --device "udp:$port" --device-frame 0,0,0.06 \
+    --duration 5
+grep -q '^tool .* on c, 0.2 m round (0, 0, 0.06)' hrtc.log \
+    || fault "another device: $(cat hrtc.log)"
+check report.json tools.0.contact_share '>' 0.05 tools.0.force_max_n '>' 0.2 \
+    tools.0.traffic.refused.content == 0 tools.0.traffic.refused.checksum == 0
+stop KILL "$driving"
+
+cp "$docs/examples/tactus_driver.py" "$docs/examples/udp_driver.py" .
 sed "s/48500/$((port + 1))/; s/--duration 8/--duration 5/" "$docs/udp-device.md" >page.md
 run_page page.md 1
 check driven.json frames == 5000 force.max_n '>' 0.8 force.max_n '<' 3 \

@@ -36,7 +36,7 @@ echo "the host has $first_kib, later $last_kib KiB"
 controller=$steady
 mv steady.log hrtc.log
 stop_hrtc
-[[ $(lines "model 'large'" hrtc.log) == 0 ]] || fault 'it was told of a host that went'
+(($(lines_of_host large hrtc.log) == 0)) || fault 'it was told of a host that went'
 check steady.json frames '>' 1000 wire.host_lost == 0 safety.begun.host == 0 \
     answers.exact+answers.decided '>' '0.9*frames'
 check_wire_run steady.json

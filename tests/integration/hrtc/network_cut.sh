@@ -29,7 +29,7 @@ cut_in_mid_run() {
     # A hand that has sunk in too deep comes out first.
     wait_until 'force after the cut' is_felt_after "$(wc -l <publish.log)"
     stop_hrtc
-    [[ $(lines "model '$model'" hrtc.log) == 2 ]] || fault 'not two lines about the host'
+    (($(lines_of_host "$model" hrtc.log) == 2)) || fault 'not two lines about the host'
     pieces=$(sent_pieces) # Of the time after the cut.
     cat publish.log
     [[ $(lines ' subscribed' publish.log) == 2 && $(lines ' left (' publish.log) == 2 ]] \

@@ -27,7 +27,7 @@ start_publisher other.spm --name large
 wait_for_line hrtc.log "model 'large' is now published with another hash"
 stop_hrtc
 cat publish.log
-[[ $(lines "model 'large'" hrtc.log) == 5 && $(lines 'is gone' hrtc.log) == 2 \
+[[ $(lines_of_host large hrtc.log) == 5 && $(lines 'is gone' hrtc.log) == 2 \
     && $(lines 'served again' hrtc.log) == 1 && $(lines 'another hash' hrtc.log) == 1 ]] \
     || fault 'not a line for each host that goes, two for the one that is back, one for the other'
 [[ $(lines ' subscribed' publish.log) == 0 ]] || fault 'the other file was asked for'

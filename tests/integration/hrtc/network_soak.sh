@@ -83,8 +83,7 @@ for ((cycle = 1; cycle <= cycles; ++cycle)); do
 done
 
 stop_hrtc
-# A piece that stays away for a while may be named, too.
-(($(grep "model 'large'" hrtc.log | grep -vc ': chunk ') == 5 * cycles)) \
+(($(lines_of_host large hrtc.log) == 5 * cycles)) \
     || fault 'not two lines for each loss, and one for each host that is followed'
 check report.json models.0.host_connected == 1 models.0.static == 0 safety.begun.host '>' 0
 check_wire_run report.json

@@ -30,7 +30,7 @@ mv publish.log second.log
 wait_for_line hrtc.log "warning: model 'ball' is offered by a second server, spm_publish"
 wait_for_more_frames 500 first.log
 stop_hrtc
-[[ $(lines "model 'ball'" hrtc.log) == 1 ]] || fault 'not one line about the second host'
+(($(lines_of_host ball hrtc.log) == 1)) || fault 'not one line about the second host'
 [[ $(subscriptions second.log) == 0 ]] || fault 'the second host was asked'
 check_touch first.spm
 "$judge_recording" run.rec second.spm >judged.json 2>/dev/null || fail 'it does not replay'

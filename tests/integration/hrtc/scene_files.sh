@@ -33,6 +33,13 @@ grep -qx 'made/scene.gltf: 3 objects of 2 models' built.txt || fault 'the last l
 [[ $(ls -A made) == $'scene.gltf\ntetra-mirrored.spm\ntetra.spm' ]] || fault "made: $(ls -A made)"
 "$inspect" made/tetra-mirrored.spm >inspected.txt || fault 'the mirrored model is not sound'
 
+# A node of lines is left out by name, and costs nothing else.
+sed 's/, "extras": {"tactus": {"touch": false}}//' scene.gltf >lines.gltf
+"$build" lines.gltf -o with_lines >/dev/null 2>said.txt || fault "a node of lines: $(cat said.txt)"
+grep -qx "note: node 'lines' (nodes\[4\]) left out: no surface: 1 primitive of LINES" said.txt \
+    || fault "lines are not named: $(cat said.txt)"
+cmp with_lines/scene.gltf made/scene.gltf || fault 'a node of lines changes the scene'
+
 # Again, of the same: the same bytes. Of another: what is no longer shown stays as a file.
 cp made/scene.gltf first.gltf
 "$build" scene.gltf -o made/ --json >built.json || fail 'spm_build refuses the folder'
@@ -46,14 +53,37 @@ check report.json frames == 1000 scene.objects == 3 force.max_n '>' 0
 contact=0 run_hrtc --transport file --scene made/scene.gltf --duration 1
 check report.json frames == 1000 scene.objects == 3 models == 2 force.max_n '>' 0
 
+# One object feels otherwise, or all do; a hand goes to an object by its own name. The recording
+# knows all names.
+told() { # told RECORDING EXPECTED: names, models' names, stiffnesses.
+    local told
+    "$hrtc" --replay "$1" --export told.jsonl >/dev/null || fault "$1 can't be exported"
+    told=$(head -n 1 told.jsonl | python3 -c 'import json, sys
+setup = json.load(sys.stdin)["setup"]
+print(*(each["name"] for each in setup["models"]),
+      *(f"""{each["name"]}:{each["stiffness_n_per_m"] or 0:g}""" for each in setup["objects"]))')
+    [[ $told == "$2" ]] || fault "$1 tells: $told"
+}
+contact=0 run_hrtc made/scene.gltf --duration 1 --material 300 --material cup:700,0.6,0.4 \
+    --motion approach:cup-2 --record named.rec
+told named.rec 'tetra tetra-mirrored cup:700 cup-2:300 jar:300'
+grep -q '^touches     cup (tetra): 0.1 x 0.1 x 0.1 m, round' hrtc.log || fault "$(cat hrtc.log)"
+
 # Served: each model, and where its first object stands.
 start_publisher made/scene.gltf
 grep -q "^serving 'tetra-mirrored' " publish.log || fault 'a model is not served'
 grep -qx "showing 3 objects as scene 'scene'" publish.log || fault 'not all objects are shown'
 contact=0 run_hrtc --model tetra --duration 2
+grep -q '^touches     cup (tetra): 0.1 x 0.1 x 0.1 m, round (0.3, 0.05, 0.05)$' hrtc.log \
+    || fault "it is not described where it stands: $(grep '^touches' hrtc.log)"
 check report.json models.0.pose.followed == 1 models.0.pose.accepted '>=' 1 \
-    models.0.pose.moves == 1 models.0.pose.old_frames '<' 1000 \
-    models.0.pose.step_max_m '>' 0.2 models.0.pose.refused.scale == 0
+    models.0.pose.old_frames '<' 1000 models.0.pose.step_max_m == 0 \
+    models.0.pose.refused.scale == 0
+contact=0 run_hrtc --scene scene --duration 1 --material jar:250 --material late:100 \
+    --record served.rec
+told served.rec 'tetra tetra-mirrored cup:400 cup-2:0 jar:250'
+grep -q "note: --material: no object is called 'late'; there are cup, cup-2, jar; one that" \
+    hrtc.log || fault 'a name that no object has is not told'
 stop_publisher
 
 # Refused, with nothing left behind and nothing changed.
@@ -85,6 +115,9 @@ refuse 2 "--scene: scene.gltf: node 'cup' (nodes\[1\]) names no model" --transpo
     --scene scene.gltf
 refuse 2 '--objects: 2; 3 are there from the start' --transport file --scene made/scene.gltf \
     --objects 2
+refuse 2 "--material: no object is called 'cap'; cup?" made/scene.gltf --material cap:300
+refuse 2 "--motion: no object is called 'pot'; there are cup, cup-2, jar" made/scene.gltf \
+    --motion tap:pot
 mv made/tetra.spm away.spm
 refuse 2 'made/tetra.spm: cannot be opened' --transport file --scene made/scene.gltf
 refuse_serving 2 'made/tetra.spm: cannot be opened' made/scene.gltf

@@ -33,7 +33,7 @@ waits() { # waits CODE ARGUMENT...: a run ends with that code and tells what it 
         models.0.pieces_missing == '1*models.0.pieces_overdue'
     grep -q "^hrtc: model 'damaged': .* doesn't come; the surface there stays coarse" hrtc.log \
         || fault 'the controller does not tell of what it waits for'
-    grep -q "^verdict .*pieces of damaged that didn't come within 1 s" hrtc.log \
+    grep -q "^verdict .*pieces* of damaged that didn't come within 1 s" hrtc.log \
         || fault 'the verdict does not tell'
 }
 waits 0

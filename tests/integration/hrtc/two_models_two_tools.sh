@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # two_models_two_tools.sh: every pair of a tool and a model is answered, and reported. The ring is
-# put upright through the ball, so that the hand, which feels its way over the ball, meets both.
+# put upright through the ball, so that the hands, which feel their way over the ball, meet both.
 source "$(dirname "$0")/common.sh"
 
 model bumpy-sphere-20000 first.spm
 model torus-10000 second.spm
 start_publisher first.spm second.spm
 [[ $(grep -c '^serving ' publish.log) == 2 ]] || fault "not two models: $(cat publish.log)"
-run_hrtc --model first --model second --place 0,0,0 --place 0.02,0,0,0,90,0,0.7 \
+run_hrtc --model first --model second --place 0,0,0 --place 0.035,0,0,0,90,0,0.7 \
     --tool sphere:0.002 --tool sphere:0.004 --duration 3 --pool-mib 4
 check report.json frames == 3000 models == 2 tools == 2 pairs == 4 \
     tools.0.radius_m == 0.002 tools.1.radius_m == 0.004 pools.total_bytes '<=' 4194304 \
@@ -16,10 +16,8 @@ check report.json frames == 3000 models == 2 tools == 2 pairs == 4 \
 for i in 0 1 2 3; do
     pair=pairs.$i.answers
     check report.json $pair.bracket '<' '0.01*frames' $pair.stale == 0 \
-        $pair.exact+$pair.decided+$pair.bracket+$pair.stale '<=' '1*frames'
+        $pair.exact '>' 0 $pair.exact+$pair.decided+$pair.bracket+$pair.stale '<=' '1*frames'
 done
-check report.json pairs.0.answers.exact '>' 0 pairs.2.answers.exact '>' 0 \
-    pairs.1.answers.exact+pairs.3.answers.exact '>' 0
 for i in 0 1; do
     check report.json models.$i.pieces_refused == 0 models.$i.bytes_received '>' 0 \
         tools.$i.force_max_n '>' 0

@@ -51,7 +51,7 @@ refuse 3 "spm_publish: --domain: '233' is not a whole number in 0 .. 232; see --
     "$publish" ball.spm --domain 233
 refuse 3 'spm_publish: --domain: is given twice; see --help' \
     "$publish" ball.spm --domain 1 --domain 2
-refuse 3 "spm_publish: --name 'a?b' is not 1 to 63 characters of A-Z a-z 0-9 . _ -" \
+refuse 3 "spm_publish: --name 'a?b' is not 1 to 63 bytes of letters, digits, . _ -" \
     "$publish" ball.spm --name $'a\nb'
 refuse 3 'spm_view: --domain excludes --replay; see --help' "$view" --replay a.rec --domain 3
 refuse 3 'spm_view: --replay: 3 recordings, two at most are compared' \

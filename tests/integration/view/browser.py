@@ -227,6 +227,20 @@ def fits(browser, what):
                what)
 
 
+# What is wider than its box, or beyond the page's edge: then some of it can't be read.
+CUT_OFF = """return [...document.querySelectorAll(
+    "button, dt, dd, td, th, h2, label, p, .names, .marks, #words, #waits, #film-notes")]
+  .filter((one) => one.offsetParent !== null && (one.scrollWidth > one.clientWidth + 1 &&
+    getComputedStyle(one).display !== "inline" && one.clientWidth > 0 ||
+    one.getBoundingClientRect().right > innerWidth + 1))
+  .map((one) => `${one.tagName} '${one.textContent.slice(0, 40)}'`)"""
+
+
+def nothing_cut_off(browser, what):
+    cut = browser.run(CUT_OFF)
+    expect(not cut, f"{what}: cut off are {cut[:4]}")
+
+
 def drawn(browser):
     """Two pictures of the surface more: the first one may have been begun before."""
     pictures = "return Number(document.getElementById('canvas').dataset.pictures)"
@@ -260,6 +274,7 @@ def look(browser, url, serve):
     for width in (400, 900, 2560):
         browser.resize(width, 1000)
         fits(browser, f"the page within {width} pixels")
+        nothing_cut_off(browser, f"the page {width} pixels wide")
         browser.picture(f"wide-{width}")
         browser.click("theme")
         browser.picture(f"dark-{width}")
@@ -299,8 +314,10 @@ def reported(browser):
     expect(0 < ranges()[0][0] < ranges()[0][1], f"dragged over, charts show {ranges()}")
     browser.run("charts[1].resetZoom()")
     eventually(lambda: ranges() == [None] * 6, "an end of the zoom")
-    browser.resize(400, 1000)
-    fits(browser, "the report within 400 pixels")
+    for width in (2560, 900, 400):
+        browser.resize(width, 1000)
+        fits(browser, f"the report within {width} pixels")
+        nothing_cut_off(browser, f"the report {width} pixels wide")
     browser.picture("report-narrow")
     expect(not browser.complaints(), f"the browser complains: {sorted(browser.complaints())[:3]}")
 
@@ -340,7 +357,7 @@ def boxes(browser):
 def played(browser, url):
     """Two recordings, of which the second one ends early and lifts its tool before."""
     def frame():
-        found = re.search(r"frame ([\d,]+) of 500", browser.text("place"))
+        found = re.search(r"frame ([\d,]+) of 0 to 499", browser.text("place"))
         return int(found[1].replace(",", "")) if found else -1
     browser.resize(1440, 900)
     browser.open(url, lambda: "the length" in browser.text("film-notes"), "what differs")

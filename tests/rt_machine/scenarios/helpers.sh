@@ -41,8 +41,9 @@ take_model() { # take_model FACES: one of those of the image, as /var/lib/tactus
 # a second. hand.log has a line with the time, in s since the boot, whenever a force comes or goes.
 make_hand() { # make_hand DRIVER: as hand.py
     sed -e 's/^    hand = .*/    hand = [0.055 + 0.012 * math.cos(6.28 * now), 0.0, 0.0]/' \
-        -e 's/\[0.0, 0.0, height_m\]/[0.08, 0.0, 0.0]/' -e 's/^heard = /was = False\n&/' \
-        -e '/^    for i in range(3):/{' -e 'i\    is_felt = state == 1 and any(force[:3])' \
+        -e 's/\[0.0, 0.0, height_m\]/[0.08, 0.0, 0.0]/' -e 's/^began = /was = False\n&/' \
+        -e '/^    for i in range(3):/{' \
+        -e 'i\    is_felt = force.state == 1 and any(force.force_n)' \
         -e 'i\    if is_felt != was:' -e 'i\        was = is_felt' \
         -e 'i\        print("%.3f %s" % (now, "on" if was else "off"), flush=True)' -e '}' \
         "$1" >hand.py
@@ -51,7 +52,7 @@ make_hand() { # make_hand DRIVER: as hand.py
 }
 start_hand() {
     make_hand /usr/share/doc/tactus/docs/examples/udp_driver.py
-    python3 hand.py 48500 >hand.log &
+    PYTHONPATH=/usr/share/doc/tactus/docs/examples python3 hand.py 48500 >hand.log &
     hand=$! # Process of it.
 }
 feels() { [[ "$(tail -n 1 hand.log)" == *" on" ]]; }

@@ -15,6 +15,7 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
+#include <unistd.h>
 #include <vector>
 
 namespace tactus::test
@@ -85,6 +86,58 @@ TEST(AtomicFile, leaves_the_old_file_alone_until_commit_and_keeps_the_umask)
     };
     ASSERT_EQ(::stat(path.c_str(), &status), 0);
     EXPECT_EQ(status.st_mode & 0777U, 0640U);
+}
+
+TEST(AtomicFile, replaces_what_a_link_leads_to_and_leaves_the_link)
+{
+    const TemporaryFolder directory("atomic-file");
+    std::filesystem::create_directory(directory.path() / "store");
+    const auto real = directory.path() / "store" / "v1.bin";
+    std::ofstream(real) << "old";
+    const auto link = directory.path() / "current.bin";
+    std::filesystem::create_symlink(std::filesystem::path("store") / "v1.bin", link);
+    auto sut = AtomicFile::create(link);
+    ASSERT_TRUE(sut) << sut.error().text;
+    ASSERT_TRUE(sut.value().write(bytes_of("new")));
+    EXPECT_EQ(content_of(real), "old");
+    ASSERT_TRUE(sut.value().commit());
+    EXPECT_TRUE(std::filesystem::is_symlink(link));
+    EXPECT_EQ(content_of(real), "new");
+    // One that leads nowhere is replaced by a file.
+    const auto dangling = directory.path() / "dangling.bin";
+    std::filesystem::create_symlink("nowhere", dangling);
+    auto other = AtomicFile::create(dangling);
+    ASSERT_TRUE(other) << other.error().text;
+    ASSERT_TRUE(other.value().commit());
+    EXPECT_FALSE(std::filesystem::is_symlink(dangling));
+}
+
+TEST(AtomicFile, does_not_follow_another_users_link_in_a_folder_where_all_may_write)
+{
+    if (::geteuid() != 0)
+    {
+        GTEST_SKIP() << "only root can give a link to another user";
+    }
+    constexpr uid_t kNobody = 65'534;
+    const TemporaryFolder directory("atomic-file");
+    const auto real = directory.path() / "real.bin";
+    for (const bool is_open : {true, false})
+    {
+        std::ofstream(real) << "old";
+        const auto folder = directory.path() / (is_open ? "open" : "closed");
+        std::filesystem::create_directory(folder);
+        ASSERT_EQ(::chmod(folder.c_str(), is_open ? 01777 : 0755), 0);
+        const auto link = folder / "link.bin";
+        std::filesystem::create_symlink(real, link);
+        ASSERT_EQ(::lchown(link.c_str(), kNobody, kNobody), 0);
+        auto sut = AtomicFile::create(link);
+        ASSERT_TRUE(sut) << sut.error().text;
+        ASSERT_TRUE(sut.value().write(bytes_of("new")));
+        ASSERT_TRUE(sut.value().commit());
+        EXPECT_EQ(content_of(real), is_open ? "old" : "new");
+        EXPECT_EQ(content_of(link), "new");
+        EXPECT_EQ(std::filesystem::is_symlink(link), !is_open);
+    }
 }
 
 TEST(AtomicFile, moves_its_partial_file_along)

@@ -12,7 +12,7 @@ namespace tactus
 namespace
 {
 
-TEST(Printable, keeps_printable_ascii_and_shows_every_other_byte_as_a_question_mark)
+TEST(Printable, keeps_letters_and_shows_what_is_none_or_steers_as_a_question_mark)
 {
     for (int code = 0; code < 256; ++code)
     {
@@ -22,6 +22,7 @@ TEST(Printable, keeps_printable_ascii_and_shows_every_other_byte_as_a_question_m
         EXPECT_EQ(printable(std::string(1, c)), std::string(1, stays ? c : '?')) << code;
     }
     EXPECT_EQ(printable("a\x1b[2J\nb\xff"), "a?[2J?b?");
+    EXPECT_EQ(printable("W\u00FCrfel\u202E"), "W\u00FCrfel?");
     EXPECT_EQ(printable(""), "");
 }
 
@@ -30,6 +31,8 @@ TEST(Printable, cuts_a_word_that_is_too_long_and_says_so)
     EXPECT_EQ(printable("abcd", 4), "abcd");
     EXPECT_EQ(printable("abcde", 4), "abcd...");
     EXPECT_EQ(printable("abcde\n", 4), "abcd...");
+    EXPECT_EQ(printable("abc\u00FC", 4), "abc...");
+    EXPECT_EQ(printable("ab\u00FC", 4), "ab\u00FC");
     const std::string name(63, 'a');
     EXPECT_EQ(printable(name), name);
     EXPECT_EQ(printable(name + "b"), name + "...");

@@ -55,6 +55,17 @@ TEST(DoctorReport, holds_every_finding)
     EXPECT_TRUE(make_report(findings, std::nullopt)["cpu"].is_null());
 }
 
+TEST(DoctorReport, shows_what_was_asked_for_even_when_it_is_good)
+{
+    std::vector<Finding> findings{{"a", Verdict::good, "all is well", "It matters.", {}},
+                                  {"b", Verdict::good, "x is heard", "It is found.", {}}};
+    findings[1].is_asked_for = true;
+    EXPECT_EQ(make_text(findings, false), "0 critical, 0 unknown, 0 advice, 2 good\n\n"
+                                          "good      b                  x is heard\n"
+                                          "                             It is found.\n\n"
+                                          "good                         a\n");
+}
+
 TEST(DoctorReport, shows_the_worst_first_and_what_is_good_when_asked)
 {
     const std::string bad = "1 critical, 1 unknown, 1 advice, 1 good\n\n"

@@ -165,22 +165,95 @@ TEST(PlacedCore, measures_as_the_oracle_does_and_bounds_from_below)
         const auto truth = static_cast<double>(true_distance(core, place, triangle));
 
         const ClosestPoints closest = sut.closest(triangle);
-        const double lower = sut.lower_bound(triangle);
+        const CoreBounds bounds = sut.bounds(triangle);
 
         // The oracle of a box turns the triangle in double, as good as to 1e-15 of its place.
         const double slack = closest.distance_error + 4e-14;
         ASSERT_NEAR(closest.distance, truth, slack) << "core " << core.index();
-        ASSERT_LE(lower, truth + 2e-14);
+        ASSERT_LE(bounds.lower, truth + 2e-14);
+        ASSERT_GE(bounds.upper, truth - 2e-14);
+        ASSERT_TRUE(closest.meet || !bounds.meet);
         ASSERT_GE(closest.distance + slack, (triangle[0] - sut.center()).norm() - sut.radius() -
                                                 (triangle[1] - triangle[0]).norm() -
                                                 (triangle[2] - triangle[0]).norm());
         ASSERT_NEAR((closest.on_triangle - closest.on_shape).norm(), closest.distance,
                     closest.distance_error + 1e-13);
         touching += closest.meet ? 1 : 0;
-        loosest = std::max(loosest, truth - lower);
+        loosest = std::max(loosest, truth - bounds.lower);
     }
     EXPECT_GT(touching, 100);
     EXPECT_LT(loosest, 5.0) << "a bound that bounds nothing";
+}
+
+TEST(PlacedCore, bounds_triangles_that_share_corners_and_proves_planes_between)
+{
+    Random random(304);
+    int met = 0;
+    int separated = 0;
+    for (int round = 0; round < 5'000; ++round)
+    {
+        const OwnedCore owned = random_core(random);
+        const Similarity place = random_place(random);
+        const PlacedCore sut(owned.core, place);
+        const Vec3 at = random.in_cube(2.0);
+        const double size = random.one_in(4) ? 1e-2 : 1.0;
+        std::array<std::array<float, CornersAtCore::kCorners>, 3> corners{};
+        for (std::size_t i = 0; i < CornersAtCore::kCorners; ++i)
+        {
+            const Vec3 corner = at + random.in_cube(size);
+            for (std::size_t axis = 0; axis < 3; ++axis)
+            {
+                corners[axis][i] = static_cast<float>(corner[static_cast<Eigen::Index>(axis)]);
+            }
+        }
+        CornersAtCore seen;
+        sut.see(corners, seen);
+        for (std::uint8_t i = 0; i + 2U < CornersAtCore::kCorners; i += 3)
+        {
+            Triangle triangle;
+            for (std::size_t k = 0; k < 3; ++k)
+            {
+                triangle[k] =
+                    to_vec3(Vec3f{corners[0][i + k], corners[1][i + k], corners[2][i + k]});
+            }
+            const ClosestPoints closest = sut.closest(triangle);
+            const double limit = random.between(0.0, 1.0);
+            const CoreBounds bounds = sut.bounds(
+                seen, {i, static_cast<std::uint8_t>(i + 1), static_cast<std::uint8_t>(i + 2)},
+                limit);
+            const CoreSeparation plane = sut.separation(triangle);
+
+            const double slack = closest.distance_error + 1e-14;
+            ASSERT_LE(bounds.lower, closest.distance + slack);
+            ASSERT_GE(bounds.upper, closest.distance - slack);
+            ASSERT_TRUE(!bounds.meet || closest.distance <= slack);
+            if (bounds.lower <= limit && !sut.is_convex_body())
+            {
+                // As much as both together tell.
+                const CoreBounds own = sut.bounds(triangle);
+                ASSERT_NEAR(bounds.lower, own.lower, 1e-13);
+                ASSERT_NEAR(bounds.upper, own.upper, 1e-13);
+            }
+            ASSERT_LE(plane.distance, closest.distance + slack);
+            if (plane.distance > 0.0)
+            {
+                ++separated;
+                double highest = -std::numeric_limits<double>::infinity();
+                for (const Vec3& corner : triangle)
+                {
+                    highest = std::max(highest, plane.normal.dot(corner));
+                }
+                for (const Vec3& point : points_of(owned.core, random))
+                {
+                    ASSERT_GE(plane.normal.dot(placed(place, point)) - highest,
+                              plane.distance - 1e-13);
+                }
+            }
+            met += bounds.meet ? 1 : 0;
+        }
+    }
+    EXPECT_GT(met, 100);
+    EXPECT_GT(separated, 1'000);
 }
 
 TEST(PlacedCore, is_held_by_its_ball_and_by_its_cover)

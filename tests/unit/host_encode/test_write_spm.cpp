@@ -9,6 +9,8 @@
 
 #include <fstream>
 #include <iterator>
+#include <numeric>
+#include <string>
 
 namespace tactus
 {
@@ -84,17 +86,34 @@ TEST(WriteSpm, a_mesh_that_is_all_base_has_no_chunks)
 
 TEST(WriteSpm, refuses_a_base_that_is_larger_than_allowed)
 {
-    PreparedMesh prepared = make_golden_mesh();
-    const Simplification none = collapse_plainly(prepared.mesh, prepared.mesh.faces.size());
-    ASSERT_EQ(none.base_faces.size(), 512U);
+    const PreparedMesh prepared = prepare_mesh(make_shape(Shape::torus, 4'000).value(), {}).value();
+    const std::size_t faces = prepared.mesh.faces.size();
+    ASSERT_GT(faces, kGrownBaseFaces);
+    Simplification none;
+    none.base_faces.resize(faces);
+    std::iota(none.base_faces.begin(), none.base_faces.end(), 0U);
+    none.base_corners = prepared.mesh.faces;
+    none.base_error.resize(faces);
+    none.is_closed = true;
     const test::TemporaryFolder folder;
     EncodeOptions options;
     const auto refused = write_spm(folder.path() / "a.spm", prepared, none, options);
     ASSERT_FALSE(refused);
-    EXPECT_NE(refused.error().text.find("--base-faces 512"), std::string::npos)
+    EXPECT_NE(refused.error().text.find("--base-faces " + std::to_string(faces)), std::string::npos)
         << refused.error().text;
     EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
-    options.base_faces = 512;
+    options.base_faces = static_cast<std::uint32_t>(faces);
+    EXPECT_TRUE(write_spm(folder.path() / "a.spm", prepared, none, options));
+}
+
+TEST(WriteSpm, lets_a_base_grow_by_itself_up_to_a_quarter_of_the_default_pools)
+{
+    const PreparedMesh prepared = make_golden_mesh();
+    const Simplification none = collapse_plainly(prepared.mesh, prepared.mesh.faces.size());
+    ASSERT_EQ(none.base_faces.size(), 512U);
+    const test::TemporaryFolder folder;
+    EncodeOptions options;
+    options.base_faces = 1;
     EXPECT_TRUE(write_spm(folder.path() / "a.spm", prepared, none, options));
 }
 

@@ -182,7 +182,7 @@ TEST(ReadPly, cuts_polygons_into_triangles_and_drops_lines)
     const auto sut = read_bytes("a.ply", text);
     ASSERT_TRUE(sut) << sut.error().text;
     EXPECT_EQ(sut.value().mesh.faces,
-              (std::vector<Face>{{3, 0, 2}, {2, 1, 3}, {1, 2, 3}, {2, 0, 3}}));
+              (std::vector<Face>{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}));
     EXPECT_EQ(sut.value().notes,
               std::vector<std::string>{"1 polygon with fewer than 3 corners dropped"});
 }
@@ -198,7 +198,7 @@ TEST(ReadText, refuses_what_is_broken)
         std::string words{};
     };
     std::vector<Case> cases{
-        {"a.obj", kObjSquare + "f 1 2\n", "line 5"},
+        {"a.obj", kObjSquare + "f 1 2\n", "holds no faces"},
         {"a.obj", "v 1 2\nv 1 2 3\nf 1 1 1\n", "line 1"},
         {"a.obj", kObjSquare + "f 1 2 x\n", "'x'"},
         {"a.off", "4OFF\n" + off},

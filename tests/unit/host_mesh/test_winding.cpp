@@ -40,6 +40,36 @@ TriangleMesh cube(double half, const Point& middle, bool is_turned = false)
                {middle[0] + half, middle[1] + half, middle[2] + half}, is_turned);
 }
 
+/// A U of 6 by 6 by 4 cm with a wall of 2 cm, open towards +y: a ray along x from between its arms
+/// goes through one of them.
+TriangleMesh bracket()
+{
+    constexpr std::array<std::array<double, 2>, 8> kOutline{
+        {{0, 0}, {6, 0}, {6, 6}, {4, 6}, {4, 2}, {2, 2}, {2, 6}, {0, 6}}};
+    constexpr std::array<Face, 6> kCap{
+        {{7, 0, 5}, {7, 5, 6}, {0, 1, 4}, {0, 4, 5}, {1, 2, 3}, {1, 3, 4}}};
+    TriangleMesh mesh;
+    for (const double z : {-0.02, 0.02})
+    {
+        for (const auto& [x, y] : kOutline)
+        {
+            mesh.positions.push_back({0.01 * x, 0.01 * y, z});
+        }
+    }
+    for (const auto& [a, b, c] : kCap)
+    {
+        mesh.faces.push_back({a, c, b});
+        mesh.faces.push_back({a + 8, b + 8, c + 8});
+    }
+    for (std::uint32_t i = 0; i < 8; ++i)
+    {
+        const std::uint32_t next = (i + 1) % 8;
+        mesh.faces.push_back({i, next, next + 8});
+        mesh.faces.push_back({i, next + 8, i + 8});
+    }
+    return mesh;
+}
+
 TriangleMesh joined(std::initializer_list<TriangleMesh> parts)
 {
     TriangleMesh all;
@@ -164,6 +194,16 @@ std::vector<WindingCase> winding_cases()
          0,
          {{in_both, 2}, {kFar, 0}}},
         {"a_body_twice", joined({whole, whole}), 0, 0, {{kMiddle, 1}}},
+        {"a_body_between_the_arms_of_another",
+         joined({bracket(), turned(cube(0.005, {0.03, 0.04, 0.001}))}),
+         1,
+         0,
+         {{{0.0301, 0.0402, 0.0003}, 1}, {{0.01, 0.03, 0.001}, 1}, {{0.022, 0.05, 0.001}, 0}}},
+        {"a_void_in_an_arm",
+         joined({bracket(), cube(0.005, {0.01, 0.04, 0.001})}),
+         0,
+         1,
+         {{{0.0101, 0.0402, 0.0003}, 0}, {{0.05, 0.03, 0.001}, 1}}},
         {"an_open_piece", turned(open), 0, 0, {}},
         {"a_void_of_an_open_piece", joined({open, turned(core)}), 0, 0, {}},
         {"bodies_that_share_an_edge",

@@ -125,7 +125,7 @@ inline TriangleMesh first_mesh(Result<Scene, Refusal> scene)
         ADD_FAILURE() << mesh.error().text;
         return {};
     }
-    return std::move(mesh).value();
+    return std::move(mesh.value().mesh);
 }
 
 } // namespace tactus::test

@@ -79,8 +79,10 @@ TEST(GltfRefusals, name_what_is_wrong_with_a_scene)
         {"asset.version is '1.0'; only glTF 2 is read", R"("/asset/version": "1.0")"},
         {"asset.minVersion is '2.1'; only 2.0",
          R"("/asset": {"version": "2.2", "minVersion": "2.1"})"},
-        {"extensionsRequired[0] is 'KHR_no?idea', which is not supported",
+        {"extensionsRequired[0] is 'KHR_no?idea', which is not supported: it is not known here",
          R"("/extensionsRequired": ["KHR_no\nidea"])"},
+        {"extensionsRequired[0] is 'MPEG_accessor_timed', which is not supported: it adds meshes",
+         R"("/extensionsRequired": ["MPEG_accessor_timed"])"},
         {"must be an object", R"("": [])"},
         {"nodes must be an array", R"("/nodes": {})"},
         {"has no scene", R"("/scenes": null)"},
@@ -134,25 +136,25 @@ TEST(GltfRefusals, name_what_is_wrong_with_a_scene)
          R"("ours/material": {"texture_height": 0.001, "texture_length": 0.001})"},
         {"nodes[0].extras.tactus.material must have",
          R"("ours/material": {"static": 0.1, "dynamic": 0.2})"},
-        {mesh + "meshes[0].primitives are none", R"("/meshes/0/primitives": [])"},
-        {mesh + "meshes[0].primitives[0] is made of LINE_STRIP", R"("primitive/mode": 3)"},
         {mesh + "meshes[0].primitives[0].mode names none of the 7 modes", R"("primitive/mode": 7)"},
         {mesh + "meshes[0].primitives[0] has morph targets",
          R"("primitive/targets": [{"POSITION": 0}])"},
+        {mesh + "meshes[0].primitives[0] is compressed with KHR_draco_mesh_compression",
+         R"("/accessors/0/bufferView": null,
+            "primitive/extensions": {"KHR_draco_mesh_compression": {}})"},
+        {mesh + "bufferViews[0] is compressed with KHR_meshopt_compression",
+         R"("/buffers/0/uri": null,
+            "/bufferViews/0/extensions": {"KHR_meshopt_compression": {}})"},
         {mesh + "meshes[0].primitives[0] is compressed with KHR_draco_mesh_compression",
          R"("/extensionsRequired": ["KHR_draco_mesh_compression"],
             "primitive/extensions": {"KHR_draco_mesh_compression": {}})"},
         {mesh + "bufferViews[0] is compressed with EXT_meshopt_compression",
          R"("/extensionsRequired": ["EXT_meshopt_compression"],
             "/bufferViews/0/extensions": {"EXT_meshopt_compression": {}})"},
-        {mesh + "meshes[0].primitives[0].attributes lacks 'POSITION'",
-         R"("primitive/attributes/POSITION": null)"},
         {"meshes[0].primitives[0].indices names none of the 2 accessors",
          R"("primitive/indices": 2)"},
         {mesh + "meshes[0].primitives[0] has 11 corners; triangles have a multiple of 3",
          R"("/accessors/1/count": 11)"},
-        {mesh + "meshes[0].primitives[0] has 2 corners; a triangle has 3",
-         R"("primitive/mode": 5, "/accessors/1/count": 2)"},
         {mesh + "accessors[1] has element 5: 3; there are 3 positions",
          R"("/accessors/0/count": 3)"},
         {mesh + "accessors[1] can't be indices",
@@ -192,7 +194,6 @@ TEST(GltfRefusals, name_what_is_wrong_with_a_scene)
          R"("/buffers/0/uri": "/etc/hosts")"},
         {mesh + "buffers[0].uri is 'http://a/b'; it must name",
          R"("/buffers/0/uri": "http://a/b")"},
-        {mesh + "buffers[0].uri has a URI with a '%'", R"("/buffers/0/uri": "a%2")"},
         {mesh + "buffers[0] has no 'uri', and the file no binary chunk",
          R"("/buffers/0/uri": null)"},
         {mesh + "buffers[0].uri has a data URI that is not base64",
@@ -216,6 +217,21 @@ TEST(GltfRefusals, name_what_is_wrong_with_a_scene)
         const std::string refusal = files.refusal(changed_scene(spoilt.changes).dump());
         EXPECT_NE(refusal.find(spoilt.expected), std::string::npos)
             << refusal << "\nwithout: " << spoilt.expected;
+    }
+}
+
+TEST(GltfRefusals, of_nodes_and_meshes_name_the_ways_out)
+{
+    const SceneFiles files;
+    for (const std::string changes :
+         {R"("node/scale": [1, 0, 1])", R"("node/scale": [1, 2, 1])",
+          R"("node/matrix": [1, 0, 0, 0, 0.6, 0.8, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1])",
+          R"("node/scale": [0.0001, 0.0001, 0.0001])", R"("node/translation": [0, 10001, 0])",
+          R"("node/skin": 0)", R"("primitive/targets": [{"POSITION": 0}])"})
+    {
+        const std::string refusal = files.refusal(changed_scene(changes).dump());
+        EXPECT_NE(refusal.find("in the modeller"), std::string::npos) << refusal;
+        EXPECT_NE(refusal.find("extras.tactus.touch = false"), std::string::npos) << refusal;
     }
 }
 
@@ -244,7 +260,7 @@ TEST(GltfRefusals, a_small_file_never_becomes_many_triangles)
               std::string::npos);
 }
 
-TEST(GltfRefusals, a_glb_cut_anywhere_or_with_a_byte_more_is_refused)
+TEST(GltfRefusals, a_glb_cut_anywhere_is_refused)
 {
     json scene = tetrahedron_scene();
     scene["buffers"][0].erase("uri");
@@ -255,7 +271,6 @@ TEST(GltfRefusals, a_glb_cut_anywhere_or_with_a_byte_more_is_refused)
     {
         ASSERT_NE(files.refusal(whole.substr(0, length)), "") << length;
     }
-    EXPECT_NE(files.refusal(whole + " "), "");
     for (const std::size_t at : {4U, 8U, 12U, 16U}) // Version, length, chunk's length and type.
     {
         std::string spoilt = whole;

@@ -18,7 +18,7 @@ TEST(MaterialText, is_said_in_order_or_by_name)
     const auto in_order = parse_material("300,0.4,0.3,1");
     const auto by_name = parse_material("damping=1,static=0.4,stiffness=300,dynamic=0.3");
     ASSERT_TRUE(in_order && by_name);
-    for (const Material& sut : {*in_order, *by_name})
+    for (const Material& sut : {in_order.value(), by_name.value()})
     {
         EXPECT_EQ(sut.stiffness_n_per_m, 300.0);
         EXPECT_EQ(sut.static_friction, 0.4);
@@ -31,20 +31,20 @@ TEST(MaterialText, by_name_leaves_out_what_is_as_usual)
 {
     const auto sut = parse_material("static=0.5");
     ASSERT_TRUE(sut);
-    EXPECT_EQ(sut->stiffness_n_per_m, Material{}.stiffness_n_per_m);
-    EXPECT_EQ(sut->static_friction, 0.5);
-    EXPECT_EQ(sut->dynamic_friction, 0.5) << "the static one's";
-    EXPECT_EQ(sut->damping_n_s_per_m, 0.0);
-    EXPECT_EQ(parse_material("static=0.5,dynamic=0")->dynamic_friction, 0.0);
+    EXPECT_EQ(sut.value().stiffness_n_per_m, Material{}.stiffness_n_per_m);
+    EXPECT_EQ(sut.value().static_friction, 0.5);
+    EXPECT_EQ(sut.value().dynamic_friction, 0.5) << "the static one's";
+    EXPECT_EQ(sut.value().damping_n_s_per_m, 0.0);
+    EXPECT_EQ(parse_material("static=0.5,dynamic=0").value().dynamic_friction, 0.0);
 }
 
 TEST(MaterialText, has_a_name_for_each_value)
 {
     const auto sut = parse_material_keys("viscosity=2,texture_height=1e-4,texture_length=5e-3");
     ASSERT_TRUE(sut);
-    EXPECT_EQ(sut->viscosity_n_s_per_m, 2.0);
-    EXPECT_EQ(sut->texture_height_m, 1e-4);
-    EXPECT_EQ(sut->texture_length_m, 5e-3);
+    EXPECT_EQ(sut.value().viscosity_n_s_per_m, 2.0);
+    EXPECT_EQ(sut.value().texture_height_m, 1e-4);
+    EXPECT_EQ(sut.value().texture_length_m, 5e-3);
     EXPECT_EQ(kMaterialKeys.size() * sizeof(double), sizeof(Material));
     EXPECT_FALSE(parse_material_keys("500,0.1")) << "in order it is said where options are";
 }

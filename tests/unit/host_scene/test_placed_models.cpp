@@ -18,8 +18,10 @@ PlacedModels three_objects()
     scene.objects.push_back({"cup", 0, {}, {}});
     scene.objects.push_back(
         {"cup-2", 0, {{0.0, 0.6, 0.0, 0.8}, {1.0, -2.0, 3e-9}, 2.5}, {.stiffness_n_per_m = 800.0}});
-    scene.objects.push_back(
-        {"jar", 1, {{0.5, 0.5, 0.5, 0.5}, {0.1, 0.2, 0.3}, 1e-3}, {700.0, 0.5, 0.25, 3.0}});
+    scene.objects.push_back({"jar",
+                             1,
+                             {{0.5, 0.5, 0.5, 0.5}, {0.1, 0.2, 0.3}, 1e-3},
+                             {700.0, 0.5, 0.25, 3.0, 1.5, 1e-4, 0.01}});
     return scene;
 }
 
@@ -46,10 +48,7 @@ TEST(PlacedModels, are_read_as_they_were_written)
         {
             EXPECT_NEAR(read.pose.rotation[k], written.pose.rotation[k], 1e-15);
         }
-        EXPECT_EQ(read.material.stiffness_n_per_m, written.material.stiffness_n_per_m);
-        EXPECT_EQ(read.material.static_friction, written.material.static_friction);
-        EXPECT_EQ(read.material.dynamic_friction, written.material.dynamic_friction);
-        EXPECT_EQ(read.material.damping_n_s_per_m, written.material.damping_n_s_per_m);
+        EXPECT_EQ(read.material, written.material) << read.name;
     }
 }
 
@@ -71,9 +70,10 @@ TEST(PlacedModels, need_their_models_named)
     const auto path = files.folder().write("scene.gltf", tetrahedron_scene().dump());
     const auto sut = read_placed_models(path);
     ASSERT_FALSE(sut);
-    EXPECT_EQ(sut.error().text, path.string() + ": node 'thing' (nodes[0]) names no model in "
-                                                "extras.tactus; spm_build makes models of a "
-                                                "scene's meshes");
+    EXPECT_EQ(sut.error().text, path.string() +
+                                    ": node 'thing' (nodes[0]) names no model in "
+                                    "extras.tactus; spm_build " +
+                                    path.string() + " -o FOLDER makes models of a scene's meshes");
 }
 
 } // namespace

@@ -19,7 +19,10 @@ TEST(UniqueNames, plain_names_keep_what_the_wire_takes)
 {
     EXPECT_EQ(plain_name("Arm_2.left-b"), "Arm_2.left-b");
     EXPECT_EQ(plain_name("a b/c\n"), "a_b_c_");
-    EXPECT_EQ(plain_name("\xC3\xA4rm"), "__rm");
+    EXPECT_EQ(plain_name("Kugel \u00E4"), "Kugel_\u00E4");
+    EXPECT_EQ(plain_name("Geh\u00E4use/\u65E5\u672C\u00A0\u202Ex"), "Geh\u00E4use_\u65E5\u672C__x");
+    EXPECT_EQ(plain_name("a\xC3-\xFF"), "a_-_");
+    EXPECT_EQ(plain_name(std::string(62, 'x') + "\u00E4"), std::string(62, 'x'));
     EXPECT_EQ(plain_name(""), "");
     EXPECT_EQ(plain_name(std::string(64, 'x')), std::string(63, 'x'));
 }

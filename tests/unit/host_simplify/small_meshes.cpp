@@ -147,6 +147,77 @@ QuantisedMesh make_grid(unsigned columns, unsigned rows,
     return mesh;
 }
 
+QuantisedMesh make_scan(unsigned columns, unsigned rows,
+                        const std::function<double(double, double)>& height)
+{
+    QuantisedMesh mesh = make_grid(columns, rows, height);
+    std::vector<std::array<std::uint32_t, 3>> kept;
+    for (unsigned f = 0; f < mesh.faces.size(); ++f)
+    {
+        const unsigned row = f / 2 / columns;
+        const unsigned column = f / 2 % columns;
+        if (row % 3 != 1 || column % 3 != 1 || f % 2 != (row / 3 + column / 3) % 2)
+        {
+            kept.push_back(mesh.faces[f]);
+        }
+    }
+    mesh.faces = std::move(kept);
+    return mesh;
+}
+
+QuantisedMesh make_perforated(unsigned holes)
+{
+    const unsigned size = 2 * holes + 1;
+    const auto is_solid = [=](unsigned x, unsigned y)
+    { return x < size && y < size && (x % 2 == 0 || y % 2 == 0); };
+    QuantisedMesh mesh;
+    const double across = 2.0 / size;
+    const auto at = [=](unsigned x, unsigned y, unsigned z)
+    { return (y * (size + 1) + x) * 2 + z; };
+    for (unsigned y = 0; y <= size; ++y)
+    {
+        for (unsigned x = 0; x <= size; ++x)
+        {
+            mesh.positions.push_back(on_grid(across * x - 1, across * y - 1, 0));
+            mesh.positions.push_back(on_grid(across * x - 1, across * y - 1, 0.7 * across));
+        }
+    }
+    const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d)
+    {
+        mesh.faces.push_back({a, b, c});
+        mesh.faces.push_back({a, c, d});
+    };
+    for (unsigned y = 0; y < size; ++y)
+    {
+        for (unsigned x = 0; x < size; ++x)
+        {
+            if (!is_solid(x, y))
+            {
+                continue;
+            }
+            add(at(x, y, 1), at(x + 1, y, 1), at(x + 1, y + 1, 1), at(x, y + 1, 1));
+            add(at(x, y, 0), at(x, y + 1, 0), at(x + 1, y + 1, 0), at(x + 1, y, 0));
+            if (!is_solid(x, y - 1)) // Below the first row numbers begin again at the top.
+            {
+                add(at(x, y, 0), at(x + 1, y, 0), at(x + 1, y, 1), at(x, y, 1));
+            }
+            if (!is_solid(x + 1, y))
+            {
+                add(at(x + 1, y, 0), at(x + 1, y + 1, 0), at(x + 1, y + 1, 1), at(x + 1, y, 1));
+            }
+            if (!is_solid(x, y + 1))
+            {
+                add(at(x + 1, y + 1, 0), at(x, y + 1, 0), at(x, y + 1, 1), at(x + 1, y + 1, 1));
+            }
+            if (!is_solid(x - 1, y))
+            {
+                add(at(x, y + 1, 0), at(x, y, 0), at(x, y, 1), at(x, y + 1, 1));
+            }
+        }
+    }
+    return mesh;
+}
+
 QuantisedMesh make_torus(std::uint32_t faces)
 {
     return on_grid(make_shape(Shape::torus, faces).value(), 0.075);
@@ -238,6 +309,7 @@ const std::vector<NamedMesh>& all_small_meshes()
         {"hills", make_grid(24, 24, hills)},
         {"plate", make_grid(20, 20, [](double, double) { return 0.0; })},
         {"sphere with holes", cut_holes(make_sphere(1'280, 0.02))},
+        {"scan with pinholes", make_scan(24, 24, hills)},
         {"needle sphere", make_needle_sphere(8, 120)},
         {"cone", make_cone(6, 90)},
         {"squeezed sphere", squeeze(make_sphere(1'280, 0))},

@@ -25,6 +25,13 @@ namespace tactus::test
 [[nodiscard]] QuantisedMesh make_grid(unsigned columns, unsigned rows,
                                       const std::function<double(double, double)>& height);
 
+/// Open; the same with a face of every third square of every third row missing.
+[[nodiscard]] QuantisedMesh make_scan(unsigned columns, unsigned rows,
+                                      const std::function<double(double, double)>& height);
+
+/// Closed, genus holes^2: a flat sheet with that many square holes through it.
+[[nodiscard]] QuantisedMesh make_perforated(unsigned holes);
+
 /// Closed, genus 1.
 [[nodiscard]] QuantisedMesh make_torus(std::uint32_t faces);
 

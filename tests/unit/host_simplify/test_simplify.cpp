@@ -5,8 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdlib>
+#include <optional>
 #include <vector>
 
 namespace tactus::test
@@ -74,6 +76,45 @@ TEST(Simplify, keeps_the_genus)
     // No torus has fewer than 14 faces; the degree and star caps may end it earlier.
     EXPECT_GE(sut.base_faces.size(), 14U);
     EXPECT_LE(sut.base_faces.size(), 30U);
+}
+
+TEST(Simplify, closes_holes_that_have_shrunk_to_three_edges)
+{
+    const auto hill = [](double x, double y) { return 0.1 * x * y; };
+    const QuantisedMesh scan = make_scan(90, 90, hill);
+    ASSERT_EQ(scan.faces.size(), 2U * 90 * 90 - 900);
+    // A hole that stays has three edges at least, and so as many faces round it.
+    EXPECT_LE(simplified(scan, 100).base_faces.size(), 100U);
+    EXPECT_EQ(simplified(scan, 1).base_faces.size(), 1U);
+}
+
+TEST(Simplify, keeps_a_large_hole_open_while_small_ones_close)
+{
+    // A window of 10 x 10 squares in the middle of 30 x 30.
+    const auto is_in_window = [](std::uint32_t v)
+    { return v % 31 >= 10 && v % 31 <= 20 && v / 31 >= 10 && v / 31 <= 20; };
+    QuantisedMesh scan = make_scan(30, 30, [](double, double) { return 0.0; });
+    std::erase_if(scan.faces,
+                  [&](const auto& face) { return std::ranges::all_of(face, is_in_window); });
+    QuantisedMesh frame;
+    std::vector<std::optional<std::uint32_t>> number(scan.positions.size());
+    for (auto& face : scan.faces)
+    {
+        for (std::uint32_t& v : face)
+        {
+            if (!number[v])
+            {
+                number[v] = static_cast<std::uint32_t>(frame.positions.size());
+                frame.positions.push_back(scan.positions[v]);
+            }
+            v = *number[v];
+        }
+    }
+    frame.faces = scan.faces;
+    const Simplification sut = simplified(frame, 24);
+    EXPECT_LE(sut.base_faces.size(), 24U);
+    const Vec3 middle(32'768, 32'768, 32'768);
+    EXPECT_GT(brute_distance(middle, faces_of(frame, sut.base_corners)), 5'000.0L);
 }
 
 TEST(Simplify, lets_components_vanish_where_they_can_not_shrink)

@@ -42,6 +42,8 @@ std::vector<Had> record(const std::filesystem::path& path, std::uint32_t frames,
     options.record = true;
     options.tools = {{0.01 * model.diagonal_m, 500.0}};
     tactus::test::FrameRig rig(model, options);
+    rig.recorder().add_name({RecordedName::Kind::model, 0}, "cup");
+    rig.recorder().add_name({RecordedName::Kind::object, 0}, "cup-2");
     std::vector<Had> had;
     for (std::uint32_t frame = 0; frame < frames; ++frame)
     {
@@ -84,6 +86,9 @@ TEST(Film, has_of_each_frame_what_the_frame_had_and_its_faces_without_a_model_fi
     const auto sut = develop(folder.path() / "run.rec", shelf);
     ASSERT_EQ(sut->frames(), kFrames);
     EXPECT_EQ(sut->note(), "");
+    EXPECT_EQ(sut->at(0).told.models[0].name, "cup");
+    ASSERT_EQ(sut->at(0).objects.size(), 1U);
+    EXPECT_EQ(sut->at(0).objects[0].name, "cup-2");
     std::size_t cuts = 0;
     for (const std::uint32_t frame : {159U, 0U, 80U, 81U, 79U, 40U, 120U}) // In any order.
     {
@@ -153,7 +158,7 @@ TEST(Films, tell_where_two_recordings_first_differ_and_how)
     EXPECT_EQ(sut.front("another", 0), nullptr);
 }
 
-TEST(Film, refuses_a_recording_that_is_cut_short_and_ends_when_it_is_told_to)
+TEST(Film, shows_a_recording_that_was_cut_as_far_as_it_goes_and_ends_when_it_is_told_to)
 {
     const tactus::test::TemporaryFolder folder;
     const auto path = folder.path() / "run.rec";
@@ -163,7 +168,13 @@ TEST(Film, refuses_a_recording_that_is_cut_short_and_ends_when_it_is_told_to)
     const auto part = Film::develop(path.string(), 1, shelf, [&] { return ++asked < 7; });
     ASSERT_TRUE(part.has_value());
     EXPECT_EQ(part.value()->frames(), 7U);
+    EXPECT_EQ(part.value()->note(), "");
     std::filesystem::resize_file(path, std::filesystem::file_size(path) - 1);
+    const auto cut = Film::develop(path.string(), 1, shelf, {});
+    ASSERT_TRUE(cut.has_value());
+    EXPECT_EQ(cut.value()->frames(), 20U);
+    EXPECT_NE(cut.value()->note().find("the file was cut: behind frame 19"), std::string::npos);
+    std::filesystem::resize_file(path, 30);
     const auto refused = Film::develop(path.string(), 1, shelf, {});
     ASSERT_FALSE(refused.has_value());
     EXPECT_NE(refused.error().text.find("run.rec"), std::string::npos);

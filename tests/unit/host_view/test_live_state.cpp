@@ -111,7 +111,8 @@ TEST(StateJson, says_what_it_waits_for)
         return nlohmann::json::parse(state_json(*live.newest(), *shelf, chosen, 7))["waits_for"]
             .get<std::string>();
     };
-    EXPECT_EQ(waits(), "a controller on DDS domain 7: start hrtc");
+    EXPECT_EQ(waits(), "a controller on DDS domain 7: 'hrtc --model NAME --domain 7', or "
+                       "'hrtc FILE --domain 7', which without --domain shows itself to no viewer");
     live.publish({told(1, "one")}, {});
     EXPECT_NE(waits().find("--no-front"), std::string::npos);
     EXPECT_NE(waits("01").find("gone"), std::string::npos);
@@ -156,6 +157,10 @@ TEST(ForceWords, name_every_cause_and_what_brings_the_force_back)
     ToolTelemetry tool;
     tool.in_contact = true;
     EXPECT_EQ(force_words({SafetyState::force, ForceOff::none, "", 0.0}, tool, {}), "on");
+    const std::string inside = "the tool began inside a closed object, which holds it from within";
+    const FrontTool began{SafetyState::force, ForceOff::none, "", 0.0, true};
+    EXPECT_EQ(force_words(began, tool, {}), "on: " + inside);
+    EXPECT_EQ(force_words(began, {}, {}), "on: no contact, so none is due; " + inside);
     std::vector<std::string> all;
     for (std::size_t cause = 0; cause < kForceOffs; ++cause)
     {

@@ -394,6 +394,10 @@ Ended run_in_child(Plan plan)
                 plan.bug == Bug::haptic || plan.bug == Bug::haptic_and_fade);
     ended.text = read_to_end(errors.reader());
     ended.text.erase(0, ended.text.find_first_not_of('.'));
+    while (ended.text.starts_with("touch: ")) // What a slow machine has the time to tell before.
+    {
+        ended.text.erase(0, ended.text.find('\n') + 1);
+    }
     read_events(events.reader(), ended, std::nullopt);
     int status = 0;
     TACTUS_ASSERT(waitpid(child, &status, 0) == child);
@@ -449,7 +453,7 @@ TEST(AssertionBrake, a_recorded_frame_that_failed_fails_again_in_its_replay)
     const std::string path = testing::TempDir() + "failed_frame.rec";
     const Ended ended = run_in_child({.bug = Bug::frame, .record_path = path});
     EXPECT_EQ(ended.code, kExitCode);
-    EXPECT_NE(ended.text.find(kFrameLine), std::string::npos) << ended.text;
+    EXPECT_TRUE(ended.text.starts_with(kFrameLine)) << ended.text;
     EXPECT_NE(ended.text.find("\nhrtc: 'hrtc --replay " + path + "' runs it again\n"),
               std::string::npos)
         << ended.text;
@@ -481,7 +485,7 @@ TEST(AssertionBrake, without_a_recording_the_hands_last_frames_are_kept_and_fail
     const std::string folder = kept.path().string();
     const Ended ended = run_in_child({.bug = Bug::frame, .folder = folder});
     EXPECT_EQ(ended.code, kExitCode);
-    EXPECT_NE(ended.text.find(kFrameLine), std::string::npos) << ended.text;
+    EXPECT_TRUE(ended.text.starts_with(kFrameLine)) << ended.text;
     const std::size_t begin = ended.text.find("hrtc-failed-");
     ASSERT_NE(begin, std::string::npos) << ended.text;
     const std::string name = ended.text.substr(begin, ended.text.find('\'', begin) - begin);
@@ -492,7 +496,7 @@ TEST(AssertionBrake, without_a_recording_the_hands_last_frames_are_kept_and_fail
     const Ended again =
         run_in_child({.bug = Bug::frame, .folder = folder, .recording = folder + "/" + name});
     EXPECT_EQ(again.code, kExitCode);
-    EXPECT_NE(again.text.find(kFrameLine), std::string::npos) << again.text;
+    EXPECT_TRUE(again.text.starts_with(kFrameLine)) << again.text;
 }
 
 TEST(AssertionBrake, a_second_bug_ends_the_fade_and_both_are_printed_in_order)

@@ -18,15 +18,15 @@ constexpr DeadlineSetting kSetting{80, milliseconds(1)};
 constexpr SelfCheck kSound{20, 20, 0, true};
 
 /// A run of kCycles of which so many deadlines were missed.
-DeadlinePhase phase_with(std::uint64_t own, std::uint64_t machine, std::uint64_t unexplained)
+DeadlinePhase phase_with(std::uint64_t own, std::uint64_t machine, std::uint64_t stopped)
 {
     DeadlinePhase phase;
     phase.name = "alone";
     phase.report["frames"] = kCycles;
-    phase.report["deadline"] = {{"missed", own + machine + unexplained},
+    phase.report["deadline"] = {{"missed", own + machine + stopped},
                                 {"own_fault", own},
                                 {"machine_late", machine},
-                                {"unexplained", unexplained}};
+                                {"stopped", stopped}};
     for (std::uint64_t i = 0; i < kCycles; ++i)
     {
         phase.wake.record(microseconds(7));
@@ -42,12 +42,11 @@ std::string verdict_on(const SelfCheck& check, const std::vector<DeadlinePhase>&
     return text.substr(text.find("verdict"));
 }
 
-TEST(DeadlineReport, passes_what_the_machine_alone_made_late)
+TEST(DeadlineReport, passes_what_the_machine_or_a_stop_alone_made_late)
 {
     const std::vector phases{phase_with(0, 500, 0), phase_with(0, 9'000, 10)};
     EXPECT_TRUE(is_passed(kSound, phases));
-    EXPECT_EQ(verdict_on(kSound, phases), "verdict     passed: 0 own faults in 20000 cycles; 10 "
-                                          "misses of neither's doing\n");
+    EXPECT_EQ(verdict_on(kSound, phases), "verdict     passed: 0 own faults in 20000 cycles\n");
     EXPECT_TRUE(make_deadline_report(kSound, phases)["passed"].get<bool>());
 }
 
@@ -58,15 +57,9 @@ TEST(DeadlineReport, fails_for_one_own_fault_in_any_run)
           std::vector{phase_with(0, 0, 0), phase_with(1, 0, 0)}})
     {
         EXPECT_FALSE(is_passed(kSound, phases));
-        EXPECT_EQ(verdict_on(kSound, phases), "verdict     failed: 1 own faults in 20000 cycles\n");
+        EXPECT_EQ(verdict_on(kSound, phases), "verdict     failed: 1 own fault in 20000 cycles\n");
         EXPECT_FALSE(make_deadline_report(kSound, phases)["passed"].get<bool>());
     }
-}
-
-TEST(DeadlineReport, fails_for_more_than_a_thousandth_that_nothing_explains)
-{
-    EXPECT_TRUE(is_passed(kSound, std::vector{phase_with(0, 0, 10)}));
-    EXPECT_FALSE(is_passed(kSound, std::vector{phase_with(0, 0, 11)}));
 }
 
 TEST(DeadlineReport, believes_nothing_after_a_self_check_that_failed)

@@ -19,9 +19,9 @@ TEST(DeviceChoice, takes_a_simulated_device_of_each_class)
 {
     const auto force_and_mass_of = [](std::string_view text)
     {
-        const std::optional<DeviceChoice> choice = parse_device(text);
-        EXPECT_TRUE(choice.has_value() && choice->kind == DeviceKind::simulated) << text;
-        return std::pair(choice->limits.force_max_n, choice->limits.mass_kg);
+        const auto choice = parse_device(text);
+        EXPECT_TRUE(choice.has_value() && choice.value().kind == DeviceKind::simulated) << text;
+        return std::pair(choice.value().limits.force_max_n, choice.value().limits.mass_kg);
     };
     EXPECT_EQ(force_and_mass_of("sim"), std::pair(8.0, 0.1));
     EXPECT_EQ(force_and_mass_of("sim:touch"), std::pair(3.3, 0.045));
@@ -31,25 +31,25 @@ TEST(DeviceChoice, takes_a_simulated_device_of_each_class)
 
 TEST(DeviceChoice, takes_places_of_devices_that_are_not_simulated)
 {
-    const std::optional<DeviceChoice> udp = parse_device("udp:192.0.2.1:50000");
+    const auto udp = parse_device("udp:192.0.2.1:50000");
     ASSERT_TRUE(udp.has_value());
-    EXPECT_EQ(udp->kind, DeviceKind::udp);
-    EXPECT_EQ(udp->address, "192.0.2.1");
-    EXPECT_EQ(udp->port, 50'000);
-    const std::optional<DeviceChoice> dhd = parse_device("dhd:63");
+    EXPECT_EQ(udp.value().kind, DeviceKind::udp);
+    EXPECT_EQ(udp.value().address, "192.0.2.1");
+    EXPECT_EQ(udp.value().port, 50'000);
+    const auto dhd = parse_device("dhd:63");
     ASSERT_TRUE(dhd.has_value());
-    EXPECT_EQ(dhd->kind, DeviceKind::dhd);
-    EXPECT_EQ(dhd->index, 63);
-    const std::optional<DeviceChoice> replay = parse_device("replay:a:b.rec");
+    EXPECT_EQ(dhd.value().kind, DeviceKind::dhd);
+    EXPECT_EQ(dhd.value().index, 63);
+    const auto replay = parse_device("replay:a:b.rec");
     ASSERT_TRUE(replay.has_value());
-    EXPECT_EQ(replay->kind, DeviceKind::replay);
-    EXPECT_EQ(replay->recording, "a:b.rec");
-    const std::optional<DeviceChoice> plugin = parse_device("plugin:a/b.so,/dev/x,9600");
+    EXPECT_EQ(replay.value().kind, DeviceKind::replay);
+    EXPECT_EQ(replay.value().recording, "a:b.rec");
+    const auto plugin = parse_device("plugin:a/b.so,/dev/x,9600");
     ASSERT_TRUE(plugin.has_value());
-    EXPECT_EQ(plugin->kind, DeviceKind::plugin);
-    EXPECT_EQ(plugin->library, "a/b.so");
-    EXPECT_EQ(plugin->words, "/dev/x,9600");
-    EXPECT_EQ(parse_device("plugin:b.so")->words, "");
+    EXPECT_EQ(plugin.value().kind, DeviceKind::plugin);
+    EXPECT_EQ(plugin.value().library, "a/b.so");
+    EXPECT_EQ(plugin.value().words, "/dev/x,9600");
+    EXPECT_EQ(parse_device("plugin:b.so").value().words, "");
 }
 
 TEST(DeviceChoice, refuses_what_is_no_device)

@@ -78,12 +78,11 @@ TEST(FileChoice, refuses_a_mixture_unless_it_is_told_where_from)
 {
     EXPECT_EQ(
         take({.files = {"a.spm"}, .models = {"cow"}}).fault,
-        "--model: 'a.spm' is a file and 'cow' a published name; --transport says where all are "
-        "to come from");
-    EXPECT_EQ(
-        take({.models = {"cow"}, .tools = {"sphere:0.01", "mesh:e.spm"}}).fault,
-        "--tool: 'e.spm' is a file and 'cow' a published name; --transport says where all are "
-        "to come from");
+        "--model: 'a.spm' is a file and 'cow' a published name; all come from files ('cow' as "
+        "'cow.spm') or by their names");
+    EXPECT_EQ(take({.models = {"cow"}, .tools = {"sphere:0.01", "mesh:e.spm"}}).fault,
+              "--tool: 'e.spm' is a file and 'cow' a published name; all come from files ('cow' as "
+              "'cow.spm') or by their names");
     const Taken told = take({.models = {"a.spm", "cow"}, .transport = "dds"});
     EXPECT_EQ(told.fault, "");
     EXPECT_EQ(told.transport, "dds");

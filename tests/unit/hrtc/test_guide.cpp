@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,7 @@ Guide guide_of(const std::string& words)
 {
     const auto choice = parse_guide(words);
     EXPECT_TRUE(choice) << words;
-    return Guide(choice.value_or(GuideChoice{}));
+    return Guide(choice ? choice.value() : GuideChoice{});
 }
 
 OwnForce force_at(Guide& guide, const Vec3& place_m, bool valid = true)
@@ -48,6 +49,30 @@ TEST(Guide, pulls_to_a_point_a_line_and_to_the_front_of_a_plane)
     Guide soft = guide_of("point:0,0,0"); // 100 N/m, 1 N at most.
     EXPECT_NEAR(force_at(soft, Vec3(0.0, 0.005, 0.0)).force_n.y(), -0.5, 1e-12);
     EXPECT_NEAR(force_at(soft, Vec3(0.0, 0.0, -9.0)).force_n.z(), 1.0, 1e-12);
+}
+
+TEST(Guide, holds_a_gripper_so_far_open_and_leaves_the_hand_free)
+{
+    Guide guide = guide_of("gripper:0.02,200,3");
+    ToolState tool;
+    tool.valid = true;
+    DeviceSample sample;
+    sample.valid = true;
+    const auto grip_n = [&](std::optional<double> open_m)
+    {
+        sample.gripper_m = open_m;
+        const OwnForce own = guide.next(sample, tool, {});
+        EXPECT_EQ(own.force_n, Vec3(0.0, 0.0, 0.0));
+        return own.gripper_n;
+    };
+    EXPECT_EQ(grip_n({}), 0.0); // It has said nothing yet.
+    EXPECT_NEAR(grip_n(0.03), -2.0, 1e-12);
+    EXPECT_NEAR(grip_n(0.01), 2.0, 1e-12);
+    EXPECT_EQ(grip_n(0.5), -3.0);
+    EXPECT_EQ(grip_n({}), -3.0);
+    EXPECT_EQ(grip_n(std::numeric_limits<double>::quiet_NaN()), -3.0);
+    sample.valid = false;
+    EXPECT_EQ(grip_n(0.02), -3.0);
 }
 
 TEST(Guide, makes_no_energy_on_any_way_that_closes)
@@ -100,17 +125,33 @@ TEST(Guide, stays_as_it_was_while_the_device_says_no_place)
 
 TEST(Guide, refuses_other_words)
 {
-    for (const std::string words :
-         {"", "none", "point", "point:", "point:1,2", "point:1,2,3,4,5,6", "point:1,2,3,0.5",
-          "point:1,2,3,3001", "point:1,2,3,100,0", "point:1,2,3,100,101", "point:1,2,1001",
-          "line:1,2,3", "line:1,2,3,0,0,0", "line:0,0,0,nan,0,1", "plane:0,0,0,0,0,1,100,1,1",
-          "plane:0,0,0,0,0,inf", "cone:0,0,0", "point:1,2,3 "})
+    for (const std::string words : {"",
+                                    "none",
+                                    "point",
+                                    "point:",
+                                    "point:1,2",
+                                    "point:1,2,3,4,5,6",
+                                    "point:1,2,3,0.5",
+                                    "point:1,2,3,3001",
+                                    "point:1,2,3,100,0",
+                                    "point:1,2,3,100,101",
+                                    "point:1,2,1001",
+                                    "line:1,2,3",
+                                    "line:1,2,3,0,0,0",
+                                    "line:0,0,0,nan,0,1",
+                                    "plane:0,0,0,0,0,1,100,1,1",
+                                    "plane:0,0,0,0,0,inf",
+                                    "cone:0,0,0",
+                                    "gripper:",
+                                    "gripper:-0.1",
+                                    "gripper:1,2,3,4",
+                                    "point:1,2,3 "})
     {
         EXPECT_FALSE(parse_guide(words)) << words;
     }
     const auto thin = parse_guide("line:0,0,0,1e-300,0,0");
     ASSERT_TRUE(thin);
-    EXPECT_LT((thin->direction - Vec3(1.0, 0.0, 0.0)).norm(), 1e-15);
+    EXPECT_LT((thin.value().direction - Vec3(1.0, 0.0, 0.0)).norm(), 1e-15);
 }
 
 } // namespace tactus::hrtc

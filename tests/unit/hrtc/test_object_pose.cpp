@@ -51,13 +51,13 @@ TEST(ObjectPose, from_a_host_is_where_place_would_put_the_object)
     const tactus::test::TestModel& model = tactus::test::small_model(0);
     const tactus::test::FrameRig rig(model, tactus::test::with_room_for_all());
     const ModelHeader& header = rig.frame().model({0}).header;
-    const std::optional<Similarity> placement = parse_placement("0.1,-0.2,0.3,0,0,90,2");
+    const auto placement = parse_placement("0.1,-0.2,0.3,0,0,90,2");
     ASSERT_TRUE(placement);
     Pose pose;
     pose.translation_m = {0.1, -0.2, 0.3};
     pose.rotation = {0.0, 0.0, std::sqrt(0.5), std::sqrt(0.5)};
     pose.scale = 2.0;
-    const ObjectPose placed = object_pose(*placement, header);
+    const ObjectPose placed = object_pose(placement.value(), header);
     const ObjectPose moved = object_pose(to_similarity(pose), header);
     EXPECT_LT((placed.rotation - moved.rotation).cwiseAbs().maxCoeff(), 1e-15);
     EXPECT_LT((placed.translation_m - moved.translation_m).norm(), 1e-15);

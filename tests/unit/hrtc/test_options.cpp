@@ -92,7 +92,7 @@ TEST_F(HrtcOptions, of_a_file_are_refused_with_their_place_in_it)
         {"no-static = \"maybe\"",
          "bad.toml:1: --no-static: a value isn't what it takes; see --help"},
         {"# Mine.\nmodel = [",
-         "bad.toml:2: --model: name '...' is not 1 to 63 characters of A-Z a-z 0-9 . _ -"},
+         "bad.toml:2: --model: name '...' is not 1 to 63 bytes of letters, digits, . _ -"},
         {"model = \"ball.spm\"\ndevice = \"dhd:99\"",
          "bad.toml:2: --device: '...' is not dhd, or dhd:INDEX with 0 to 63"},
     };
@@ -102,6 +102,29 @@ TEST_F(HrtcOptions, of_a_file_are_refused_with_their_place_in_it)
         SCOPED_TRACE(text);
         EXPECT_EQ(refusal_of(parse, words_of("hrtc --config bad.toml")), "hrtc: " + said + "\n");
     }
+}
+
+TEST_F(HrtcOptions, of_a_run_from_files_with_a_domain_show_it_to_viewers_but_not_in_virtual_time)
+{
+    folder_.write("ball.spm", "");
+    const auto is_watched = [](const std::string& line)
+    {
+        std::vector<std::string> words = words_of(line);
+        std::vector<char*> arguments;
+        for (std::string& word : words)
+        {
+            arguments.push_back(word.data());
+        }
+        const auto parsed = parse_options(static_cast<int>(arguments.size()), arguments.data(), {});
+        return std::get<Options>(parsed).is_watched;
+    };
+    EXPECT_FALSE(is_watched("hrtc ball.spm"));
+    EXPECT_TRUE(is_watched("hrtc ball.spm --domain 0"));
+    EXPECT_TRUE(is_watched("hrtc --model ball"));
+    testing::internal::CaptureStderr();
+    EXPECT_FALSE(is_watched("hrtc ball.spm --domain 3 --virtual-time"));
+    EXPECT_EQ(testing::internal::GetCapturedStderr(),
+              "note: --domain has no use in virtual time\n");
 }
 
 TEST_F(HrtcOptions, come_to_a_file_that_reads_as_they_do)

@@ -107,10 +107,14 @@ TEST_F(RecordedMotion, refuses_what_is_no_recording_with_its_name)
 {
     std::vector<std::byte> bytes = recording_of(5);
     bytes.pop_back();
+    const auto cut = read_recorded_motion(write(bytes), 0);
+    ASSERT_TRUE(cut) << cut.error().text;
+    EXPECT_EQ(cut.value().readings.size(), 5U) << "all that is whole";
+    bytes.resize(30);
     const std::string path = write(bytes);
-    const auto cut = read_recorded_motion(path, 0);
-    ASSERT_FALSE(cut);
-    EXPECT_EQ(cut.error().text.rfind(path, 0), 0U) << cut.error().text;
+    const auto refused = read_recorded_motion(path, 0);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().text.rfind(path, 0), 0U) << refused.error().text;
     EXPECT_FALSE(read_recorded_motion(path + ".missing", 0));
 }
 

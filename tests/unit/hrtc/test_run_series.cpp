@@ -87,6 +87,22 @@ TEST(RunSeries, each_point_is_the_worst_of_its_frames)
     }
 }
 
+TEST(ToolPath, has_of_neighbouring_frames_the_place_with_the_most_force)
+{
+    ToolPath path;
+    for (int i = 0; i < 5'000; ++i)
+    {
+        path.add({{static_cast<float>(i), 0.0F, 0.0F}, i % 4 == 2 ? 1.0F : 0.25F});
+    }
+    ASSERT_EQ(path.stride(), 4U);
+    const std::vector<PathPoint> points = path.points();
+    ASSERT_EQ(points.size(), 1'250U);
+    for (std::size_t i = 0; i < points.size(); ++i)
+    {
+        EXPECT_EQ(points[i], (PathPoint{{static_cast<float>(4 * i + 2), 0.0F, 0.0F}, 1.0F})) << i;
+    }
+}
+
 } // namespace
 
 } // namespace tactus::hrtc::test

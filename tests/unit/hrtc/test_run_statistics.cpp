@@ -85,6 +85,36 @@ TEST(RunStatistics, counts_a_frame_as_over_budget_from_one_beyond_what_it_may_do
     EXPECT_EQ(run.sut.frames, 5U);
 }
 
+/// With more work than any frame before, a long frame is our own fault; with as much as in a quick
+/// one, the machine's.
+TEST(RunStatistics, compares_long_frames_with_quick_ones_by_their_work)
+{
+    for (const std::uint32_t done : {3'000U, 3'001U})
+    {
+        StatisticsRig run;
+        run.frame([](FrameOutput& output, CycleMeasures&) { output.work.budget.spend(3'000); });
+        run.frame(
+            [done](FrameOutput& output, CycleMeasures& measures)
+            {
+                output.work.budget.spend(done);
+                measures.cpu = kPeriod;
+            });
+        EXPECT_EQ(run.sut.deadlines.own_faults, done == 3'000 ? 0U : 1U);
+    }
+}
+
+TEST(RunStatistics, takes_no_damping_in_free_air_for_a_force_of_what_is_touched)
+{
+    StatisticsRig run;
+    run.touch(false, 2.0, ForceOff::stall);
+    run.touch(false, 0.0);
+    run.touch(true, 0.5);
+    run.touch(false, 2.0, ForceOff::velocity);
+    run.touch(true, 0.25);
+    EXPECT_EQ(run.sut.tools[0].max_n, 0.5);
+    EXPECT_EQ(run.sut.tools[0].max_step_n, 0.5);
+}
+
 TEST(RunStatistics, tells_contact_from_force_and_leaves_out_the_end_of_the_run)
 {
     StatisticsRig run;

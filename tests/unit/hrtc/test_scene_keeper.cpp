@@ -8,6 +8,7 @@
 #include "transport/dds/dds_host.hpp"
 #include "transport/store/store_link.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -75,6 +76,7 @@ protected:
         Options options;
         options.models = {"m0", "m1"};
         options.models.resize(models);
+        options.scene_materials = materials;
         options.objects_max = room;
         options.pool_mib = 8.0;
         ShownScene scene;
@@ -92,7 +94,7 @@ protected:
         }
         else
         {
-            options.objects = {{0, {}, {}}};
+            options.objects.resize(1);
         }
         std::vector<ServedModel> served;
         for (std::size_t i = 0; i < models; ++i)
@@ -107,7 +109,10 @@ protected:
         pin(scene, models);
         keeper.emplace(authorities, std::move(reader_), *controller_, std::move(scene),
                        lines.log());
-        keeper->connect(*door_, now_);
+        keeper->connect(
+            *door_, now_,
+            [this](std::uint32_t number, std::uint32_t generation, const std::string& name)
+            { names.push_back(fmt::format("{} {} {}", number, generation, name)); });
     }
     /// The host's word counts for the scene, or for each model.
     void pin(const ShownScene& scene, std::size_t models)
@@ -177,6 +182,8 @@ protected:
     std::vector<dds::Authority> authorities;
     std::optional<SceneKeeper> keeper;
     std::map<SceneChangeKind, int> changes; ///< As the frame would get them.
+    SceneMaterials materials;               ///< Before start().
+    std::vector<std::string> names;         ///< Number, generation and name of what came.
 
 private:
     std::map<SceneChangeKind, SceneChange> last_;
@@ -269,6 +276,27 @@ TEST_F(FollowedScene, feels_no_more_than_the_device_allows_and_tells_it_once)
     EXPECT_EQ(keeper->news().limited, 3U);
     const std::string text = lines.text();
     EXPECT_EQ(text.find("object 'cup' is limited"), text.rfind("object 'cup' is limited"));
+}
+
+TEST_F(FollowedScene, feels_as_the_controller_was_told_whatever_the_host_says)
+{
+    ASSERT_EQ(materials.take(std::vector<std::string>{"cup:250,0.5"}), "");
+    const std::uint32_t cup = show(*host, "cup", 0.0);
+    const std::uint32_t pot = show(*host, "pot", 1.0);
+    ASSERT_NO_FATAL_FAILURE(start(true, 4));
+    const Material honey{300.0, 0.4, 0.2, 0.5, 2.5};
+    ASSERT_TRUE(host->objects().feel(cup, honey));
+    ASSERT_TRUE(host->objects().feel(pot, honey));
+    ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_feels] == 1; }));
+    EXPECT_EQ(last_feel().object.material, honey);
+    EXPECT_EQ(last_feel().number, 1U);
+    host->objects().remove(cup);
+    ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_goes] == 1; }));
+    show(*host, "cup", 2.0);
+    ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_comes] == 1; }));
+    EXPECT_EQ(last_come().object.material, (Material{250.0, 0.5, 0.5}));
+    EXPECT_EQ(keeper->news().feels, 1U);
+    EXPECT_EQ(names, (std::vector<std::string>{"0 1 cup"})); // Of what came later.
 }
 
 TEST_F(FollowedScene, leaves_out_what_has_no_room_until_there_is_some)

@@ -29,7 +29,7 @@ CycleMeasures measures_of(std::optional<InjectedFault> fault)
     }
     switch (*fault)
     {
-    case InjectedFault::overrun:
+    case InjectedFault::overwork:
         measures.cpu = kPeriod * 2;
         break;
     case InjectedFault::page_fault:
@@ -57,9 +57,9 @@ SelfCheck check_with(std::uint64_t changed, Change change)
         {
             change(measures);
         }
-        account.add(frame, measures, false);
+        account.add(frame, measures, 0, false);
     }
-    return judge_injections(account);
+    return judge_injections(account, FaultInjector(kPeriod));
 }
 
 void hide(CycleMeasures& measures)
@@ -96,17 +96,18 @@ TEST(InjectedFaults, are_seen_by_what_the_loop_counts_with)
         []
         {
             allocation_counter::mark_this_thread(true);
-            const auto usage_of = [](InjectedFault fault)
+            const FaultInjector injector(kPeriod);
+            const auto usage_of = [&injector](InjectedFault fault)
             {
                 const ThreadUsage before = read_thread_usage();
-                inject(fault, kPeriod);
+                injector.inject(fault);
                 return read_thread_usage() - before;
             };
-            EXPECT_GT(usage_of(InjectedFault::overrun).cpu_time, kPeriod);
+            EXPECT_GT(usage_of(InjectedFault::overwork).cpu_time, kPeriod);
             EXPECT_GE(usage_of(InjectedFault::page_fault).minor_faults, 1);
             EXPECT_GE(usage_of(InjectedFault::sleep).voluntary_switches, 1);
             const std::uint64_t before = allocation_counter::of_this_thread().allocations;
-            inject(InjectedFault::allocation, kPeriod);
+            injector.inject(InjectedFault::allocation);
             EXPECT_EQ(allocation_counter::of_this_thread().allocations - before,
                       allocation_counter::available() ? 1U : 0U);
         });
@@ -145,7 +146,7 @@ TEST(SelfCheck, fails_when_any_injected_fault_went_unseen_or_was_taken_for_anoth
 TEST(SelfCheck, fails_when_nothing_was_noted)
 {
     DeadlineAccount nothing(kPeriod);
-    const SelfCheck check = judge_injections(nothing);
+    const SelfCheck check = judge_injections(nothing, FaultInjector(kPeriod));
     EXPECT_FALSE(check.is_passed());
     EXPECT_EQ(check.flagged, 0U);
 }
@@ -162,7 +163,7 @@ TEST(SelfCheck, fails_when_a_clean_frame_was_flagged)
 TEST(SelfCheck, does_not_mind_a_frame_that_was_long_once)
 {
     const SelfCheck check =
-        check_with(7, [](CycleMeasures& m) { m = measures_of(InjectedFault::overrun); });
+        check_with(7, [](CycleMeasures& m) { m = measures_of(InjectedFault::overwork); });
     EXPECT_TRUE(check.is_passed()) << self_check_line(check);
 }
 

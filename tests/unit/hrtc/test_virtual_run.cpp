@@ -134,7 +134,7 @@ public:
         : frames_(model(), small_pools_and_a_bad_link())
         , late_wakes_(late_wakes(seed))
         , timer_(clock_, late_wakes_)
-        , governor_(microseconds(100), most(), 2, 1)
+        , governor_(microseconds(100), WorkBudget::kLeast, most().work)
         , statistics_(1, 1, 1, kPeriod)
     {
         make_device();
@@ -199,7 +199,7 @@ public:
                                            s.cache_misses,
                                            s.evictions,
                                            s.deadlines.missed,
-                                           s.budgets_at_floor,
+                                           s.work_at_floor,
                                            s.tools.front().frozen_frames,
                                            s.models.front().state_hash,
                                            timer_.counts().missed_periods,
@@ -209,7 +209,8 @@ public:
             digest.add(number);
         }
         std::ranges::for_each(s.faults, [&](std::uint64_t frames) { digest.add(frames); });
-        std::ranges::for_each(s.budgets, [&](const BudgetRange& range) { digest.add(range.sum); });
+        digest.add(s.work_allowed.sum);
+        digest.add(s.work_done.sum);
         digest.add(s.tools.front().max_n);
         digest.add(s.tools.front().max_step_n);
         digest.add(s.answers.width_max_m);
@@ -226,7 +227,12 @@ private:
             "virtual-run", make_shape(Shape::bumpy_sphere, 20'000).value());
         return made;
     }
-    static Budgets most() { return {}; }
+    static Budgets most()
+    {
+        Budgets budgets;
+        budgets.work = 100'000;
+        return budgets;
+    }
 
     [[nodiscard]] const BusyDevice& device() const
     {

@@ -171,6 +171,32 @@ TEST(UdpDatagram, says_what_is_wrong)
     EXPECT_EQ(refusal_of(noisy), DatagramFault::checksum);
 }
 
+TEST(UdpDatagram, names_the_value_for_which_it_is_refused)
+{
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const Bytes sample = to_bytes(encode(test::example_sample()));
+    const Bytes described = to_bytes(encode(test::example_description()));
+    const auto wrong_in = [](const Bytes& bytes)
+    {
+        const char* wrong = nullptr;
+        static_cast<void>(decode_from_device(bytes, &wrong));
+        return std::string(wrong != nullptr ? wrong : "");
+    };
+    EXPECT_EQ(wrong_in(sample), "");
+    EXPECT_EQ(wrong_in(described), "");
+    EXPECT_EQ(wrong_in(with(sample, 32, nan)), "position");
+    EXPECT_EQ(wrong_in(with(sample, 56, nan)), "velocity");
+    EXPECT_EQ(wrong_in(with(sample, 80, std::int64_t{-1})), "time");
+    EXPECT_EQ(wrong_in(with(sample, 88, 0.600'01)),
+              "rotation, whose length is not within 1e-6 of 1");
+    EXPECT_EQ(wrong_in(with(sample, 120, nan)), "angular velocity");
+    EXPECT_EQ(wrong_in(with(sample, 144, nan)), "gripper");
+    EXPECT_EQ(wrong_in(with(sample, 172, std::uint32_t{64 | 1})), "flags");
+    EXPECT_EQ(wrong_in(with(sample, 24, std::uint64_t{0})), "address");
+    EXPECT_EQ(wrong_in(with(described, 60, 'x')), "name");
+    EXPECT_EQ(wrong_in(with(described, 64, nan)).rfind("device: mass_kg", 0), 0U);
+}
+
 TEST(UdpDatagram, is_refused_for_values_out_of_range)
 {
     const double nan = std::numeric_limits<double>::quiet_NaN();

@@ -151,7 +151,7 @@ TEST_F(UdpDeviceTest, says_that_nobody_came_and_what_was_refused)
     options.wait = milliseconds(50);
     const auto rubbish = UdpDevice::create(std::move(socket), options);
     ASSERT_FALSE(rubbish);
-    EXPECT_NE(rubbish.error().text.find("within 50 ms (1 datagrams refused, the last: wrong "
+    EXPECT_NE(rubbish.error().text.find("within 50 ms (1 datagram refused, the last: wrong "
                                         "magic)"),
               std::string::npos)
         << rubbish.error().text;

@@ -20,7 +20,7 @@ struct ExampleFrame
     std::array<ToolState, 1> tools{ToolState{Vec3(0.5, -0.25, 2.0), 77, 3, true}};
     std::array<DeviceRecord, 1> devices{};
     std::array<SceneChange, 3> changes{};
-    Budgets budgets{11, 12, 13, 14, 15, 16, 17, 18, 19};
+    Budgets budgets{11, 12, 13, 14, 15, 16, 17, 18, 19, 20};
     std::array<DoorEvent, 2> events{
         DoorEvent{{ContentKind::chunk, 1}, 2, 5, 0xF0F0, DoorEventKind::arrival},
         DoorEvent{{ContentKind::chunk, 1}, 2, 6, 0xFFF0, DoorEventKind::link_update}};

@@ -54,7 +54,7 @@ TEST(FrameCoding, writes_the_bytes_that_the_format_page_lists)
     put_pose();
     expected.put(std::uint8_t{5}).put(1U).put(7U);
     put_material();
-    for (std::uint32_t budget = 11; budget <= 19; ++budget)
+    for (std::uint32_t budget = 11; budget <= 20; ++budget)
     {
         expected.put(budget);
     }

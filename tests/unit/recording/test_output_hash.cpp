@@ -101,6 +101,7 @@ std::vector<Part> parts()
           work(&WorkCounters::evictions),
           work(&WorkCounters::cache_hits),
           work(&WorkCounters::cache_misses),
+          [](O& o) { o.work.budget.spend(1); },
           [](O& o) { o.scene.objects = 1; },
           [](O& o) { o.scene.pairs = 1; },
           [](O& o) { o.scene.crowded_tools = 1; },
@@ -135,8 +136,8 @@ TEST(OutputHash, sees_every_field_in_its_part_and_tells_them_apart)
 TEST(OutputHash, is_what_the_format_page_says)
 {
     std::uint64_t state = 0;
-    // 14 counters, five of the scene, refusals, the shortcuts' and the faults, all zero.
-    for (std::size_t value = 0; value < 20 + kChangeRefusals + kSkips; ++value)
+    // 15 counters, five of the scene, refusals, the shortcuts' and the faults, all zero.
+    for (std::size_t value = 0; value < 21 + kChangeRefusals + kSkips; ++value)
     {
         state += 0x9E3779B97F4A7C15U;
         state = (state ^ (state >> 30)) * 0xBF58476D1CE4E5B9U;

@@ -137,6 +137,41 @@ TEST(RecordingFile, gives_back_what_was_written)
     EXPECT_TRUE(sut.value().piece(0, {ContentKind::chunk, 0}).empty());
 }
 
+/// With one name more than the example has.
+std::vector<std::byte> with_name(const RecordedName& what, const std::string& name)
+{
+    RecordedSetup setup = example_setup(model());
+    setup.names[{RecordedName::Kind::model, 0}] = "cup";
+    RecordingWriter writer(setup);
+    FrameEncoder encoder;
+    ExampleFrame frame;
+    frame.door.events = {};
+    writer.add_frame(frame.code(encoder));
+    writer.add_name(what, name);
+    writer.finish(kNoFrame);
+    return writer.take_bytes();
+}
+
+TEST(RecordingFile, keeps_the_names_of_models_and_of_objects_that_come_later)
+{
+    using Kind = RecordedName::Kind;
+    const auto sut = Recording::parse(with_name({Kind::object, 4, 2}, "K\u00FCche"), "run.rec");
+    ASSERT_TRUE(sut) << sut.error().text;
+    const RecordedSetup& setup = sut.value().setup();
+    EXPECT_EQ(setup.name_of({Kind::model, 0}), "cup");
+    EXPECT_EQ(setup.name_of({Kind::object, 4, 2}), "K\u00FCche");
+    EXPECT_EQ(setup.name_of({Kind::object, 4, 1}), "");
+    expect_refusal(with_name({Kind::model, 0}, "pot"), "has two names");
+    for (const RecordedName& none :
+         {RecordedName{Kind::model, 1}, RecordedName{Kind::object, 5},
+          RecordedName{Kind::model, 0, 1}, RecordedName{static_cast<Kind>(2), 0}})
+    {
+        expect_refusal(with_name(none, "x"), "a name is of no model or object of the recording");
+    }
+    expect_refusal(with_name({Kind::object, 0}, "a\x1B[31m"),
+                   "a name is not of at most 63 bytes, of characters that can be seen");
+}
+
 TEST(RecordingFile, begins_with_its_magic_and_version)
 {
     const std::vector<std::byte> bytes = example();
@@ -203,8 +238,8 @@ TEST(RecordingFile, is_refused_when_it_is_of_another_kind_or_version)
     bytes[3] = std::byte{'X'};
     expect_refusal(bytes, "is not a Tactus recording");
     bytes = example();
-    bytes[kRecordingPrologueBytes] = std::byte{6};
-    expect_refusal(bytes, "section kind 6 is unknown; 1 to 5 are allowed");
+    bytes[kRecordingPrologueBytes] = std::byte{7};
+    expect_refusal(bytes, "section kind 7 is unknown; 1 to 6 are allowed");
     expect_refusal({}, "at byte 0: the file is empty");
 }
 
@@ -329,6 +364,86 @@ TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
     expect_refusal(with_bytes(kEnd, 0, {2}), "the end states 2 frames and 1 pieces, but 3 and 1");
     expect_refusal(with_section(kEnd, [](auto& payload) { payload.push_back({}); }),
                    "the end section has another size than its content");
+}
+
+/// A recording of several sections of frames, and where its end section begins.
+std::pair<std::vector<std::byte>, std::size_t> long_recording()
+{
+    RecordingWriter writer(example_setup(model()));
+    FrameEncoder encoder;
+    ExampleFrame frame;
+    frame.door.events = {};
+    for (int i = 0; i < 1'000; ++i)
+    {
+        writer.add_frame(frame.code(encoder));
+    }
+    writer.finish(kNoFrame);
+    std::vector<std::byte> bytes = writer.take_bytes();
+    const std::size_t end = sections_of(bytes).back();
+    return {std::move(bytes), end};
+}
+
+TEST(RecordingFile, that_was_cut_has_the_frames_up_to_its_last_whole_section)
+{
+    const auto [bytes, end] = long_recording();
+    const std::vector<std::size_t> starts = sections_of(bytes);
+    ASSERT_GE(starts.size(), 5U) << "two sections of frames at least";
+    const std::uint64_t all = Recording::parse(bytes, "run.rec").value().frame_count();
+    std::uint64_t before = 0;
+    for (std::size_t section = 3; section < starts.size(); ++section)
+    {
+        const std::size_t next = section + 1 < starts.size() ? starts[section + 1] : bytes.size();
+        for (const std::size_t length :
+             {starts[section], starts[section] + 1, starts[section] + 11, starts[section] + 12,
+              starts[section] + 13, (starts[section] + next) / 2, next - 1})
+        {
+            const auto sut = Recording::parse(std::span(bytes).first(length), "run.rec");
+            ASSERT_TRUE(sut) << length << ": " << sut.error().text;
+            EXPECT_EQ(sut.value().cut_at(), starts[section]);
+            EXPECT_NE(sut.value().missing().find("the file was cut: behind frame "),
+                      std::string::npos);
+            EXPECT_TRUE(sut.value().frame_count() > before || length > starts[section]);
+            before = sut.value().frame_count();
+            FrameDecoder decoder(sut.value().shape());
+            std::uint64_t decoded = 0;
+            for (ByteReader reader(sut.value().frames()); !reader.at_end(); ++decoded)
+            {
+                ASSERT_EQ(decoder.decode(reader), nullptr);
+            }
+            EXPECT_EQ(decoded, sut.value().frame_count());
+        }
+    }
+    EXPECT_EQ(before, all);
+    EXPECT_FALSE(Recording::parse(bytes, "run.rec").value().cut_at());
+    EXPECT_EQ(Recording::parse(bytes, "run.rec").value().missing(), "");
+    for (std::size_t section = 0; section < 3; ++section)
+    {
+        expect_refusal(std::span(bytes).first(starts[section]),
+                       "the file is cut short: no frame is whole");
+    }
+}
+
+TEST(RecordingFile, whose_end_a_file_system_lost_is_cut_where_the_zeros_begin)
+{
+    const auto [bytes, end] = long_recording();
+    const std::vector<std::size_t> starts = sections_of(bytes);
+    const std::size_t last = starts[starts.size() - 2];
+    for (const std::size_t whole : {last, last + 4, last + 12, last + 700})
+    {
+        std::vector<std::byte> lost = bytes;
+        std::fill(lost.begin() + static_cast<std::ptrdiff_t>(whole), lost.end(), std::byte{0});
+        const auto sut = Recording::parse(lost, "run.rec");
+        ASSERT_TRUE(sut) << sut.error().text;
+        EXPECT_EQ(sut.value().cut_at(), last);
+    }
+    std::vector<std::byte> damaged = bytes;
+    damaged[last + 100] ^= std::byte{1};
+    expect_refusal(damaged, "is damaged: its checksum does not fit");
+    damaged.resize(end); // Cut, too: what is whole before is not what it says.
+    expect_refusal(damaged, "is damaged: its checksum does not fit");
+    damaged = bytes;
+    damaged[starts[3] + 7] = std::byte{0x7F}; // A length that no section has.
+    expect_refusal(damaged, "section of kind 4 says that it has 21");
 }
 
 TEST(ToolCoreCoding, refuses_what_is_of_no_kind_or_out_of_range)

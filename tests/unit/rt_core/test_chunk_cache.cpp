@@ -50,7 +50,7 @@ public:
         slots_ = PageSlots::take(arena_, header.counts(), pages, index_pages);
         pool_.emplace(arena_, pages, index_pages, models);
         table_.emplace(pool_->pages, 0, slots_);
-        sut.emplace(*pool_, ChunkCache::Kept{}, header, slots_, *table_);
+        sut.emplace(*pool_, ChunkCache::Kept{}, header, slots_, *table_, best_kernels());
         for (std::uint32_t slot = 0; slot < pages; ++slot)
         {
             free_pages_.push_back(slot);
@@ -146,7 +146,7 @@ public:
     {
         Neighbour(CacheRig& rig, std::uint32_t owner, std::uint32_t kept)
             : table(rig.pool_->pages, owner, rig.slots_)
-            , cache(*rig.pool_, {kept, 0}, parsed(rig.bytes_), rig.slots_, table)
+            , cache(*rig.pool_, {kept, 0}, parsed(rig.bytes_), rig.slots_, table, best_kernels())
         {
         }
         PageTable table;
@@ -540,6 +540,7 @@ TEST(ChunkCache, has_no_more_wishes_under_way_than_the_transport_side_remembers)
     for (std::uint32_t page = 0; page < kPages; ++page)
     {
         rig.deliver_index_page(page);
+        rig.ask({}); // It was not asked for: it is to be here before it is missed.
     }
     const RankedRegion everything = ball(0, kPages * CacheRig::kPageDistance);
     const auto ask_for_long = [&]

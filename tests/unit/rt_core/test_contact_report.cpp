@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "rt_core/query/contact_report.hpp"
+#include "rt_core/query/contact_set.hpp"
 #include "rt_core/query/convex_contact.hpp"
 #include "rt_core/query/core_query.hpp"
 #include "tests/shared/owned_surface.hpp"
@@ -327,6 +328,87 @@ TEST(ContactReport, contacts_are_the_faces_within_the_radius_nearest_first)
         }
     }
     EXPECT_GT(most, kMaxContacts);
+}
+
+/// ContactEnds' directions, of unit length.
+std::vector<Vec3> end_directions()
+{
+    std::vector<Vec3> directions;
+    for (int i = 0; i < 27; ++i)
+    {
+        const Vec3 way(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+        if (way.norm() > 0.0)
+        {
+            directions.emplace_back(way.normalized());
+        }
+    }
+    return directions;
+}
+
+TEST(ContactReport, touches_are_what_measuring_every_face_finds)
+{
+    constexpr double kReach = 0.5;
+    Random random(85);
+    const Mesh mesh = torus(24, 16);
+    Placed sut(mesh, random);
+    const std::vector<Vec3> directions = end_directions();
+    std::size_t most = 0;
+    for (int query = 0; query < 300; ++query)
+    {
+        const ToolCore core = query % 3 == 0   ? ToolCore(Hull::create(kWedge).value())
+                              : query % 3 == 1 ? ToolCore(Segment{{-0.3, 0, 0}, {0.3, 0.1, 0}})
+                                               : ToolCore(Box{{0.2, 0.1, 0.05}});
+        const PlacedCore placed(core, {Mat3::Identity(), random.in_cube(1.5), 1.0});
+        static_cast<void>(sut.report(placed, 0.0, false, kReach));
+
+        TouchReport touches;
+        report_touches(placed, kReach, *sut.rig.sut, *sut.surface, touches);
+
+        std::vector<std::pair<double, std::uint32_t>> expected;
+        std::vector<double> reaches(directions.size(), -kInfinity);
+        for (std::uint32_t i = 0; i < mesh.size(); ++i)
+        {
+            const ClosestPoints closest = placed.closest(to_triangle(mesh[i]));
+            if (closest.distance > kReach)
+            {
+                continue;
+            }
+            expected.emplace_back(closest.distance, i);
+            for (std::size_t k = 0; k < directions.size(); ++k)
+            {
+                reaches[k] = std::max(reaches[k], directions[k].dot(closest.on_triangle) -
+                                                      kEndPerDistance * closest.distance);
+            }
+        }
+        if (expected.size() > kEnoughMeetingFaces)
+        {
+            continue; // It may have met so many that the rest was left out.
+        }
+        std::sort(expected.begin(), expected.end());
+        most = std::max(most, expected.size());
+        ASSERT_EQ(touches.is_truncated, expected.size() > kMaxContacts);
+        ASSERT_EQ(touches.nearest.size(), std::min<std::size_t>(expected.size(), kMaxContacts));
+        ASSERT_EQ(touches.ends.is_empty, expected.empty());
+        double least_slab = kInfinity;
+        for (const ContactSlab& slab : touches.slabs)
+        {
+            least_slab = std::min(least_slab, slab.distance_m);
+        }
+        for (std::size_t i = 0; i < touches.nearest.size(); ++i)
+        {
+            ASSERT_EQ(touches.nearest[i].distance_m, expected[i].first);
+            ASSERT_EQ(touches.nearest[i].face.value, expected[i].second);
+        }
+        for (std::size_t k = 0; k < directions.size() && !expected.empty(); ++k)
+        {
+            ASSERT_NEAR(touches.ends.reaches_m[k], reaches[k], 1e-11);
+        }
+        if (!expected.empty())
+        {
+            ASSERT_NEAR(least_slab, expected[0].first, 1e-11);
+        }
+    }
+    EXPECT_GT(most, 3 * kMaxContacts);
 }
 
 TEST(ContactReport, does_not_depend_on_the_order_of_the_tree)

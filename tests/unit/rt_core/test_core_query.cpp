@@ -150,6 +150,15 @@ TEST(CoreQuery, brackets_the_distance_and_finds_what_measuring_every_face_finds)
             {
                 ASSERT_EQ(listed, truth.in_reach);
             }
+            // What is coarse counts as far away as measuring says, and no nearer.
+            if (truth.coarse_lower > 0.0)
+            {
+                ASSERT_GE(answer.certified_radius_m, std::min(reach, truth.coarse_lower) - 1e-12);
+            }
+            if (truth.nearest_distance + 1e-12 < std::min(reach, truth.coarse_lower))
+            {
+                ASSERT_EQ(answer.kind, AnswerKind::exact);
+            }
             exact += answer.kind == AnswerKind::exact ? 1 : 0;
             decided += answer.kind == AnswerKind::decided ? 1 : 0;
             if (answer.kind == AnswerKind::exact)
@@ -213,6 +222,55 @@ TEST(CoreQuery, a_spent_budget_leaves_the_bracket_true)
         }
     }
     EXPECT_GT(spent, 200);
+}
+
+TEST(CoreQuery, ends_where_as_many_faces_as_are_enough_meet_the_core)
+{
+    Random random(65);
+    int ended = 0;
+    for (int round = 0; round < 40; ++round)
+    {
+        TreeRig rig({200, 400, 400});
+        fill_scattered(rig, random, 200, round % 2 == 0);
+        for (int query = 0; query < 30; ++query)
+        {
+            const PlacedCore core = random_core(random);
+            QueryMemory all_memory;
+            const CoreAnswer all = ask(*rig.sut, core, 0.2, all_memory);
+            QueryMemory memory{random.below(400)};
+            CoreAnswer sut;
+            sut.budget = {1'000'000, 1'000'000};
+
+            gather_surface(*rig.sut, core, 0.2, memory, sut.budget, *sut.surface, ProofShare::most,
+                           1);
+
+            const auto meets = [&](FaceId id)
+            {
+                const auto faces = rig.present();
+                const auto face = std::ranges::find(faces, id, &ChangedFace::face);
+                return face != faces.end() && core.closest(to_triangle(face->corners_m)).meet;
+            };
+            const auto listed = faces_of(*rig.sut, *all.surface);
+            const bool is_met =
+                std::ranges::any_of(listed, [&](std::uint32_t id) { return meets(FaceId{id}); });
+            ASSERT_EQ(meets(sut.answer().nearest_face), is_met);
+            if (is_met)
+            {
+                ++ended;
+                ASSERT_EQ(sut.answer().kind, AnswerKind::exact);
+                ASSERT_EQ(sut.answer().lower_m, 0.0);
+                ASSERT_LT(sut.answer().upper_m, 1e-13);
+                ASSERT_LT(sut.answer().certified_radius_m, 0.0);
+                ASSERT_LE(sut.budget.triangles_tested, all.budget.triangles_tested + 16);
+            }
+            else
+            {
+                ASSERT_EQ(sut.answer().kind, all.answer().kind);
+                ASSERT_EQ(faces_of(*rig.sut, *sut.surface), listed);
+            }
+        }
+    }
+    EXPECT_GT(ended, 100);
 }
 
 TEST(CoreQuery, a_point_gets_the_answer_of_a_point)

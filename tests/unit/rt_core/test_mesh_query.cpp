@@ -5,6 +5,7 @@
 #include "rt_core/math/infinity.hpp"
 #include "rt_core/query/mesh_query.hpp"
 #include "rt_core/query/near_faces.hpp"
+#include "tests/unit/rt_core/mesh_support.hpp"
 #include "tests/unit/rt_core/support.hpp"
 #include "tests/unit/rt_core/tree_support.hpp"
 
@@ -22,28 +23,6 @@ namespace tactus::test
 
 namespace
 {
-
-constexpr WalkBudget kAmple{10'000'000, 100'000'000};
-
-MeshPlacement random_placement(Random& random)
-{
-    const Vec3 axis = (random.in_cube(1.0) + Vec3(2, 0, 0)).normalized();
-    const Mat3 rotation = Eigen::AngleAxisd(random.between(-4.0, 4.0), axis).toRotationMatrix();
-    return {{rotation, random.in_cube(0.6), random.between(0.5, 2.0)}, random.in_cube(0.5)};
-}
-
-/// Faces of a style, of which a third are coarse unless `exact_only`.
-void fill(TreeRig& rig, Random& random, std::uint32_t count, bool exact_only)
-{
-    const FaceStyle& style = face_styles()[random.below(5)];
-    for (std::uint32_t prim = 0; prim < count; ++prim)
-    {
-        ChangedFace face = random_face(random, style, prim, 3 * prim + 1);
-        face.error = exact_only ? 0 : face.error;
-        rig.put(face);
-    }
-    rig.sut->refit();
-}
 
 /// A tool and an object of so many faces, or of as many as chance has it.
 struct Meshes
@@ -151,22 +130,33 @@ struct Asked
     WalkBudget budget;
 };
 
-Asked ask(const TreeRig& tool, const TreeRig& object, const MeshPlacement& place, double reach,
-          double contact, MeshMemory& memory, const WalkBudget& budget = kAmple,
-          double certified = 0.0, bool wants_pairs = true, ContactEnds* ends = nullptr)
+/// Until `enough` pairs are found to meet.
+Asked ask_for(std::uint32_t enough, const TreeRig& tool, const TreeRig& object,
+              const MeshPlacement& place, double reach, double contact, MeshMemory& memory,
+              const WalkBudget& budget = kAmple, double certified = 0.0,
+              ContactEnds* ends = nullptr)
 {
     Asked asked;
     OtherSurface surface(*object.sut, place, budget);
-    query_meshes({*tool.sut, *object.sut, place, reach, contact, ends, certified, wants_pairs},
-                 surface, memory, asked.answer, asked.report, asked.contacts);
+    query_meshes({*tool.sut, *object.sut, place, reach, contact, ends, certified, enough}, surface,
+                 memory, asked.answer, asked.report, asked.contacts);
     asked.budget = surface.budget();
     return asked;
+}
+
+Asked ask(const TreeRig& tool, const TreeRig& object, const MeshPlacement& place, double reach,
+          double contact, MeshMemory& memory, const WalkBudget& budget = kAmple,
+          double certified = 0.0, ContactEnds* ends = nullptr)
+{
+    return ask_for(kAllMeetingFaces, tool, object, place, reach, contact, memory, budget, certified,
+                   ends);
 }
 
 Asked ask_without_pairs(const TreeRig& tool, const TreeRig& object, const MeshPlacement& place,
                         double reach, double contact, MeshMemory& memory)
 {
-    return ask(tool, object, place, reach, contact, memory, kAmple, 0.0, false);
+    return ask_for(contact >= 0.0 ? kEnoughMeetingFaces : 1, tool, object, place, reach, contact,
+                   memory);
 }
 
 /// Up to `enough` pairs that meet.
@@ -189,6 +179,17 @@ Asked ask_nearest(const TreeRig& tool, const TreeRig& object, const MeshPlacemen
                        asked.report);
     asked.budget = surface.budget();
     return asked;
+}
+
+bool same_contacts(const ContactReport& a, const ContactReport& b)
+{
+    return a.is_complete == b.is_complete &&
+           std::ranges::equal(a.contacts, b.contacts,
+                              [](const Contact& one, const Contact& other)
+                              {
+                                  return std::tie(one.distance_m, one.face, one.tool_face) ==
+                                         std::tie(other.distance_m, other.face, other.tool_face);
+                              });
 }
 
 template <typename Faces>
@@ -350,6 +351,63 @@ TEST(NearFaces, are_left_where_a_budget_ends_the_search_or_a_face_may_be_anywher
     EXPECT_GT(cut_short, 5);
 }
 
+/// The least of all coarse faces.
+double least_gap(const TreeRig& tool, const TreeRig& object, const MeshPlacement& place)
+{
+    const auto faces = object.present();
+    double least = kInfinity;
+    for (const ChangedFace& own : tool.present())
+    {
+        least = own.error == 0 ? least : std::min(least, gap_of(own, faces, place));
+    }
+    return std::max(least, 0.0);
+}
+
+TEST(NearFaces, of_a_search_that_was_cut_are_left_to_those_that_go_on_with_it)
+{
+    Random random(91);
+    std::uint32_t finished_later = 0;
+    std::uint32_t changed = 0;
+    for (int round = 0; round < 60; ++round)
+    {
+        auto [tool, object] = Meshes(random, false, round % 3 == 0, false);
+        MeshPlacement place = lifted_placement(random, 1.5);
+        const double bound = random.between(0.2, 0.8);
+        const double step = random.one_in(2) ? 0.0 : random.between(0.0, 0.004);
+        UnfinishedSearch unfinished;
+        double moved = 0.0;
+        std::uint32_t parts = 0;
+        do
+        {
+            const WalkBudget budget{2 + random.below(12U), 200};
+            OtherSurface other(*object.sut, place, budget);
+            NearFaces sut(*tool.sut, other);
+            sut.find(bound, NearFaces::kAll, &unfinished);
+            expect_nothing_missed(sut, tool, object, place, bound);
+            if (unfinished.left.empty())
+            {
+                const double told = std::clamp(sut.rest_m(), 0.0, bound);
+                ASSERT_GE(told,
+                          std::min(least_gap(tool, object, place), bound) - 2.0 * moved - 0.02);
+                finished_later += parts > 0 ? 1U : 0U;
+            }
+            place.place.translation_m += step * random.in_cube(1.0).normalized();
+            unfinished.moved_m += step / place.place.scale;
+            moved += step / place.place.scale;
+            ++parts;
+            if (parts == 3 && round % 4 == 0 && !unfinished.left.empty())
+            {
+                fill(object, random, 3, round % 8 == 0);
+                moved = 0.0; // It begins again.
+                ++changed;
+            }
+        } while (!unfinished.left.empty() && parts < 200);
+        ASSERT_LT(parts, 200U) << round;
+    }
+    EXPECT_GT(finished_later, 20U);
+    EXPECT_GT(changed, 3U);
+}
+
 TEST(NearFaces, are_left_where_there_are_more_blocks_of_them_than_kMaxNearBlocks)
 {
     Random random(86);
@@ -364,6 +422,36 @@ TEST(NearFaces, are_left_where_there_are_more_blocks_of_them_than_kMaxNearBlocks
     EXPECT_EQ(sut.blocks().size(), kMaxNearBlocks);
     EXPECT_LE(sut.rest_m(), 9.0);
     expect_nothing_missed(sut, tool, object, MeshPlacement{}, 9.0);
+}
+
+TEST(NearFaces, are_no_longer_looked_for_once_enough_were_found)
+{
+    Random random(87);
+    std::uint32_t ended = 0;
+    for (int round = 0; round < 60; ++round)
+    {
+        const auto [tool, object] = Meshes(random, false, round % 3 == 0, false);
+        const MeshPlacement place = lifted_placement(random, 0.5);
+        const double bound = random.between(0.0, 0.5);
+        OtherSurface all_of_other(*object.sut, place, kAmple);
+        NearFaces all(*tool.sut, all_of_other);
+        all.find(bound);
+        OtherSurface other(*object.sut, place, kAmple);
+        NearFaces sut(*tool.sut, other);
+        const std::uint32_t enough = 1 + random.below(20);
+        sut.find(bound, enough);
+        std::uint32_t found = 0;
+        for (const NearFaces::Block& block : sut.blocks())
+        {
+            found += count_lanes(block.lanes);
+        }
+        const bool has_ended = sut.rest_m() < kInfinity;
+        ASSERT_TRUE(!has_ended || found >= enough) << round;
+        ASSERT_LE(other.budget().nodes_visited, all_of_other.budget().nodes_visited) << round;
+        expect_nothing_missed(sut, tool, object, place, bound);
+        ended += has_ended ? 1 : 0;
+    }
+    EXPECT_GT(ended, 5U);
 }
 
 TEST(OtherSurface, is_no_nearer_than_all_of_its_faces_less_their_errors)
@@ -964,10 +1052,11 @@ TEST(MeshQuery, keeps_the_nearest_contacts_whatever_met_before)
         DistanceAnswer first;
         for (const bool was_crowded : {false, true})
         {
-            MeshMemory memory{{random.below(10), random.below(10)}, was_crowded};
+            MeshMemory memory{{random.below(10), random.below(10)},
+                              was_crowded,
+                              random.between(-0.1, 1.0) * reach}; // Whatever was found before.
             ContactEnds ends;
-            const Asked asked =
-                ask(tool, object, place, reach, reach, memory, kAmple, 0.0, true, &ends);
+            const Asked asked = ask(tool, object, place, reach, reach, memory, kAmple, 0.0, &ends);
 
             ASSERT_EQ(as_set(asked.report.meeting), truth.meeting) << round;
             ASSERT_TRUE(asked.report.is_complete);
@@ -999,7 +1088,7 @@ TEST(MeshQuery, keeps_the_nearest_contacts_whatever_met_before)
     EXPECT_GT(apart, 10);
 }
 
-TEST(MeshQuery, ends_where_enough_meets_for_a_tool_that_is_felt)
+TEST(MeshQuery, ends_where_enough_meets_for_a_tool_that_wants_contacts)
 {
     // A mesh on itself, each face ten times: 2,000 pairs meet.
     TreeRig tool({200, 400, 400});
@@ -1033,6 +1122,147 @@ TEST(MeshQuery, ends_where_enough_meets_for_a_tool_that_is_felt)
         EXPECT_FALSE(asked.contacts.is_complete);
         EXPECT_TRUE(memory.is_crowded);
     }
+}
+
+TEST(MeshQuery, ends_with_one_pair_that_meets_where_contacts_would_tell_nothing)
+{
+    Random random(88);
+    std::uint32_t met = 0;
+    std::uint32_t apart = 0;
+    for (int round = 0; round < 80; ++round)
+    {
+        const Meshes meshes(random, round % 3 != 0, round % 3 != 1);
+        const MeshPlacement place = lifted_placement(random, 1.0);
+        const double reach = random.between(0.0, 0.1);
+        const AllPairs truth(meshes.tool.present(), meshes.object.present(), place, reach);
+        MeshMemory all_memory;
+        const Asked all = ask(meshes.tool, meshes.object, place, reach, reach, all_memory);
+        MeshMemory memory;
+        for (int again = 0; again < 2; ++again)
+        {
+            const Asked sut = ask_for(1, meshes.tool, meshes.object, place, reach, reach, memory);
+
+            ASSERT_EQ(sut.report.intersection, truth.intersection()) << round;
+            ASSERT_EQ(sut.report.meeting.size(), truth.meeting.empty() ? 0U : 1U) << round;
+            if (!truth.meeting.empty())
+            {
+                ASSERT_TRUE(truth.meeting.contains(sut.report.meeting[0]));
+                ASSERT_EQ(sut.answer.kind, AnswerKind::exact);
+                ASSERT_EQ(sut.answer.upper_m, 0.0);
+                ASSERT_FALSE(sut.contacts.is_complete);
+                ++met;
+            }
+            else if (truth.intersection() == Intersection::none)
+            {
+                ASSERT_TRUE(same_contacts(sut.contacts, all.contacts)) << round;
+                ++apart;
+            }
+        }
+    }
+    EXPECT_GT(met, 40U);
+    EXPECT_GT(apart, 10U);
+}
+
+TEST(MeshQuery, asks_for_less_of_a_far_distance_after_it_was_cut_and_for_more_again)
+{
+    constexpr auto kUsual = static_cast<double>(kProofShare);
+    Random random(89);
+    std::uint32_t cut = 0;
+    for (int round = 0; round < 20; ++round)
+    {
+        const Meshes meshes(random, true, false);
+        MeshPlacement place = random_placement(random);
+        place.place.translation_m.y() += random.between(5.0, 20.0);
+        MeshMemory free_memory;
+        const Asked free =
+            ask_for(1, meshes.tool, meshes.object, place, 1e-3, -1.0, free_memory, kAmple);
+        ASSERT_EQ(free.answer.kind, AnswerKind::decided) << round;
+        ASSERT_EQ(free_memory.share, kUsual);
+        WalkBudget half = kAmple;
+        half.nodes = free.budget.nodes_visited / 2;
+
+        MeshMemory memory;
+        double share = kUsual;
+        for (int frame = 0; frame < 8; ++frame)
+        {
+            const Asked sut =
+                ask_for(1, meshes.tool, meshes.object, place, 1e-3, -1.0, memory, half);
+            ASSERT_LE(sut.answer.lower_m, free.answer.upper_m) << round;
+            ASSERT_TRUE(sut.budget.is_spent ? memory.share < 0.1 * kUsual : memory.share >= share)
+                << round;
+            cut += sut.budget.is_spent ? 1U : 0U;
+            share = memory.share;
+        }
+        AnswerKind kind = AnswerKind::bracket;
+        for (int frame = 0; frame < 12; ++frame)
+        {
+            const Asked sut =
+                ask_for(1, meshes.tool, meshes.object, place, 1e-3, -1.0, memory, kAmple);
+            ASSERT_LE(sut.answer.lower_m, free.answer.upper_m) << round;
+            ASSERT_GE(memory.share, share) << round;
+            share = memory.share;
+            kind = sut.answer.kind;
+        }
+        ASSERT_EQ(kind, free.answer.kind) << round;
+        ASSERT_EQ(memory.share, kUsual) << round;
+    }
+    EXPECT_GT(cut, 5U);
+}
+
+TEST(MeshQuery, after_it_was_cut_leaves_coarse_faces_to_what_is_certified)
+{
+    Random random(92);
+    std::uint32_t spared = 0;
+    for (int round = 0; round < 60; ++round)
+    {
+        const auto [tool, object] = Meshes(random, false, false, false);
+        const MeshPlacement place = lifted_placement(random, 1.5);
+        const double reach = random.between(0.05, 0.4);
+        const AllPairs truth(tool.present(), object.present(), place, -1.0);
+        const double certified = random.between(0.0, std::max(truth.coarse_lower, 0.0));
+        MeshMemory free_memory;
+        const Asked free = ask_for(1, tool, object, place, reach, -1.0, free_memory);
+        MeshMemory memory;
+        memory.share = 0.02;
+        const Asked sut = ask_for(1, tool, object, place, reach, -1.0, memory, kAmple, certified);
+        ASSERT_LE(sut.answer.lower_m, truth.lower) << round;
+        if (truth.meeting.empty())
+        {
+            ASSERT_GE(sut.answer.lower_m, std::min({certified, truth.lower, reach}) - 1e-3)
+                << round;
+        }
+        spared += sut.budget.nodes_visited < free.budget.nodes_visited ? 1U : 0U;
+        ASSERT_GT(memory.share, 0.02) << "so that coarse faces are looked at again";
+    }
+    EXPECT_GT(spared, 20U);
+}
+
+TEST(MeshQuery, looks_at_no_coarse_face_where_more_is_certified_than_it_asks_for)
+{
+    Random random(93);
+    std::uint32_t spared = 0;
+    for (int round = 0; round < 40; ++round)
+    {
+        const auto [tool, object] = Meshes(random, false, false, false);
+        const MeshPlacement place = lifted_placement(random, 2.5);
+        const AllPairs truth(tool.present(), object.present(), place, -1.0);
+        if (!(truth.coarse_lower > 0.01) || !truth.meeting.empty())
+        {
+            continue;
+        }
+        // Nearer than any face: what is asked for ends there, however far the nearest is.
+        const double reach = random.between(0.0, 0.9) * truth.coarse_lower;
+        MeshMemory free_memory;
+        free_memory.share = 0.3;
+        MeshMemory memory = free_memory;
+        const Asked free = ask_for(1, tool, object, place, reach, -1.0, free_memory);
+        const Asked sut =
+            ask_for(1, tool, object, place, reach, -1.0, memory, kAmple, truth.coarse_lower);
+        ASSERT_LE(sut.answer.lower_m, truth.lower) << round;
+        ASSERT_GE(sut.answer.lower_m, std::min(truth.lower, reach) - 1e-3) << round;
+        spared += sut.budget.triangles_tested < free.budget.triangles_tested ? 1U : 0U;
+    }
+    EXPECT_GT(spared, 5U);
 }
 
 TEST(MeshQuery, an_empty_tree_is_infinitely_far)

@@ -305,10 +305,10 @@ NearPairs near_pairs(const Kernels& kernels, const BlocksScene& scene, std::uint
 }
 
 std::uint32_t near_rows(const Kernels& kernels, const BlocksScene& scene, const Aabb& box,
-                        std::uint32_t mask, float bound)
+                        std::uint32_t mask, float bound, float& least_gap)
 {
     return kernels.near_rows(scene.placed.rows, ends_of(box).data(), scene.tool_box.center, mask,
-                             bound, 2.0F * scene.placed.off);
+                             bound, 2.0F * scene.placed.off, least_gap);
 }
 
 /// Eight random pairs of faces.
@@ -414,8 +414,10 @@ TEST(PairKernels, give_the_same_bits_in_every_set)
             bits.push_back(bits_of(kernels.highest_along(scene.object.coordinates(),
                                                          mask & 0x7FFFU ? mask & 0x7FFFU : 1U,
                                                          scene.tool_box.center, way.data())));
-            bits.push_back(
-                near_rows(kernels, scene, box_of(scene.object.block, mask | 1U), tool_mask, bound));
+            float least_gap = 0.0F;
+            bits.push_back(near_rows(kernels, scene, box_of(scene.object.block, mask | 1U),
+                                     tool_mask, bound, least_gap));
+            bits.push_back(bits_of(least_gap));
             VertexRows rows;
             bits.push_back(kernels.near_block(scene.object.coordinates(), scene.object.corners(),
                                               scene.tool_box, mask, bound, rows));
@@ -597,8 +599,10 @@ TEST(PairKernels, leave_out_no_pair_of_faces_within_the_bound)
         const float bound = round_up_to_float(std::max(0.0, apart - error));
         const std::uint32_t mask = 1U << lane;
         const Aabb box = box_of(scene.object.block, mask);
-        ASSERT_NE(near_rows(kernels, scene, box, 0xFFFF, bound) >> tool_lane & 1U, 0U);
-        ASSERT_EQ(near_rows(kernels, scene, box, 0, bound), 0U);
+        float least_gap = 0.0F;
+        ASSERT_NE(near_rows(kernels, scene, box, 0xFFFF, bound, least_gap) >> tool_lane & 1U, 0U);
+        ASSERT_LE(static_cast<double>(least_gap), std::max(0.0, apart - error));
+        ASSERT_EQ(near_rows(kernels, scene, box, 0, bound, least_gap), 0U);
         VertexRows rows;
         ASSERT_NE(kernels.near_block(scene.object.coordinates(), scene.object.corners(),
                                      scene.tool_box, 0xFFFF, round_up_to_float(apart), rows) &

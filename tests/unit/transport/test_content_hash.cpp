@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "platform/base/printable.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/model_name.hpp"
 
@@ -32,14 +33,17 @@ TEST(ContentHash, text_is_read_back_and_anything_else_is_refused)
     EXPECT_FALSE(parse_hash("0e5751c026e543b2e8ab2eb06099daag"));
 }
 
-TEST(ModelName, allows_1_to_63_plain_characters)
+TEST(ModelName, allows_1_to_63_bytes_of_letters_and_digits)
 {
     EXPECT_TRUE(is_valid_name("a"));
     EXPECT_TRUE(is_valid_name("Stanford-Bunny_2.1"));
     EXPECT_TRUE(is_valid_name(std::string(63, 'x')));
+    EXPECT_TRUE(is_valid_name("W\u00FCrfel-\u03B1_\u65E5\u672C"));
+    EXPECT_FALSE(is_valid_name(std::string(62, 'x').append("\u00FC")));
     EXPECT_FALSE(is_valid_name(""));
     EXPECT_FALSE(is_valid_name(std::string(64, 'x')));
-    for (const char* name : {"a b", "a/b", "a\nb", "a\x1b[31m", "caf\xc3\xa9", "a@b", "*"})
+    for (const char* name : {"a b", "a/b", "a\nb", "a\x1b[31m", "caf\xc3", "a@b", "*", "a\u00A0b",
+                             "a\u200Bb", "a\u202Eb", "\u00ABa\u00BB"})
     {
         EXPECT_FALSE(is_valid_name(name)) << printable(name);
     }
@@ -68,7 +72,7 @@ TEST(ModelName, a_selector_is_a_name_and_perhaps_a_hash_or_a_server)
     EXPECT_FALSE(parse_selector("bunny@"));
     EXPECT_FALSE(parse_selector("bunny@" + std::string(81, 'a')));
     EXPECT_EQ(parse_selector("b\tnny").error().text,
-              "name 'b?nny' is not 1 to 63 characters of A-Z a-z 0-9 . _ -");
+              "name 'b?nny' is not 1 to 63 bytes of letters, digits, . _ -");
     EXPECT_FALSE(parse_selector("@0e5751c026e543b2e8ab2eb06099daa1"));
 }
 

@@ -31,6 +31,10 @@
 #include <unistd.h>
 #include <vector>
 
+#if defined(__SANITIZE_ADDRESS__)
+#include <sanitizer/lsan_interface.h>
+#endif
+
 namespace tactus::dds
 {
 namespace
@@ -46,6 +50,42 @@ using test::TemporaryFolder;
 using test::TinyModel;
 
 const std::array<ModelSelector, 1> kTiny{ModelSelector{"tiny"}};
+
+/// Where Cyclone DDS 0.10 does not free all it took: a domain that cannot be joined for its ports.
+/// The address sanitizer overlooks what this thread allocates as long as it lives.
+struct CycloneLosesMemory
+{
+#if defined(__SANITIZE_ADDRESS__)
+    const __lsan::ScopedDisabler unseen;
+#endif
+};
+
+/// The devices to which this process' UDP sockets are bound that have an address of every
+/// interface; an empty text stands for one that is bound to none.
+std::vector<std::string> devices_of_open_sockets()
+{
+    std::vector<std::string> devices;
+    for (int descriptor = 0; descriptor < 1'024; ++descriptor)
+    {
+        int kind = 0;
+        socklen_t size = sizeof(kind);
+        sockaddr_in address{};
+        socklen_t address_size = sizeof(address);
+        if (::getsockopt(descriptor, SOL_SOCKET, SO_TYPE, &kind, &size) != 0 ||
+            kind != SOCK_DGRAM ||
+            ::getsockname(descriptor, reinterpret_cast<sockaddr*>(&address), &address_size) != 0 ||
+            address.sin_family != AF_INET || address.sin_addr.s_addr != 0)
+        {
+            continue;
+        }
+        std::array<char, 64> name{};
+        socklen_t name_size = name.size();
+        EXPECT_EQ(::getsockopt(descriptor, SOL_SOCKET, SO_BINDTODEVICE, name.data(), &name_size),
+                  0);
+        devices.emplace_back(name.data());
+    }
+    return devices;
+}
 
 /// A host with a thread of its own, in a DDS domain of its own that meets the client's on the
 /// network: samples take the way over loopback sockets, as between processes.
@@ -493,6 +533,33 @@ TEST_F(Dds, a_model_that_nobody_publishes_is_named_with_what_is_there_and_its_ha
         << pinned;
 }
 
+TEST_F(Dds, where_nothing_is_published_the_likeliest_cause_is_named_first)
+{
+    const auto lonely = client();
+    const std::string uri = std::getenv("CYCLONEDDS_URI"); // The domain is joined by now.
+    ::unsetenv("CYCLONEDDS_URI");
+    const std::string absent = lonely->find({"absent", std::nullopt}, 100ms).error().text;
+    ::setenv("CYCLONEDDS_URI", uri.c_str(), 1);
+    EXPECT_TRUE(absent.starts_with("model 'absent' is not published on domain 3: CYCLONEDDS_URI is "
+                                   "not set, so only this machine is heard"))
+        << absent;
+    EXPECT_NE(absent.find("published there: none)"), std::string::npos) << absent;
+}
+
+TEST(DdsDomains, are_known_by_the_ports_of_their_programs)
+{
+    const std::string sockets =
+        "  sl  local_address rem_address   st tx_queue rx_queue tr tm->when retrnsmt\n"
+        "  10: 0100007F:1CF2 00000000:0000 07 00000000:00000000 00:00000000 00000000\n" // 7410
+        "  11: 0100007F:1DEE 00000000:0000 07 00000000:00000000 00:00000000 00000000\n" // 7662
+        "  12: 0100007F:1E00 00000000:0000 07 00000000:00000000 00:00000000 00000000\n" // 7680
+        "  13: 0100007F:FF95 00000000:0000 07 00000000:00000000 00:00000000 00000000\n" // 65429
+        "  14: 0100007F:0035 00000000:0000 07 00000000:00000000 00:00000000 00000000\n"
+        "  15: garbage\n\n";
+    EXPECT_EQ(domains_in(sockets), (std::set<std::uint32_t>{0, 1, 232}));
+    EXPECT_TRUE(domains_in("").empty());
+}
+
 TEST_F(Dds, waiting_for_a_model_ends_when_the_caller_says_so)
 {
     const auto sut = client();
@@ -601,7 +668,11 @@ TEST_F(Dds, a_domain_whose_ports_others_have_is_refused_with_their_numbers)
         static_cast<void>(
             ::bind(sockets.back(), reinterpret_cast<const sockaddr*>(&address), sizeof(address)));
     }
-    const auto refused = Domain::join(230);
+    const auto refused = []
+    {
+        [[maybe_unused]] const CycloneLosesMemory here;
+        return Domain::join(230);
+    }();
     ASSERT_FALSE(refused);
     EXPECT_NE(refused.error().text.find("UDP ports 64910 to 64929"), std::string::npos)
         << refused.error().text;
@@ -619,6 +690,26 @@ TEST_F(Dds, without_a_configuration_of_the_user_a_process_joins_as_host_and_cont
         ASSERT_TRUE(joined) << joined.error().text;
         domains.push_back(std::move(joined).value());
     }
+}
+
+TEST_F(Dds, without_a_configuration_of_the_user_nothing_from_outside_the_machine_is_taken)
+{
+    ::unsetenv("CYCLONEDDS_URI");
+    const int other = ::socket(AF_INET, SOCK_DGRAM, 0); // Somebody else's, which stays as it is.
+    sockaddr_in everywhere{};
+    everywhere.sin_family = AF_INET;
+    ASSERT_EQ(::bind(other, reinterpret_cast<sockaddr*>(&everywhere), sizeof(everywhere)), 0);
+    const auto before = devices_of_open_sockets();
+    for (const Party party : {Party::host, Party::controller})
+    {
+        const auto sut = Domain::join(party == Party::host ? 228 : 229, party);
+        ASSERT_TRUE(sut) << sut.error().text;
+        const auto open = devices_of_open_sockets();
+        EXPECT_GT(open.size(), before.size());
+        EXPECT_EQ(std::ranges::count(open, "lo") - std::ranges::count(before, "lo"),
+                  std::ssize(open) - std::ssize(before));
+    }
+    ::close(other);
 }
 
 /// The program itself, so that it can be killed as a process.
@@ -762,7 +853,7 @@ TEST_F(Dds, spm_publish_refuses_wrong_files_and_names_with_one_line)
     };
     expect({good, bad}, 2, "bad.spm: is not an SPM model");
     expect({good, good}, 3, "would both be published as 'good'");
-    expect({good, "--name", "a b"}, 3, "--name 'a b' is not 1 to 63 characters");
+    expect({good, "--name", "a b"}, 3, "--name 'a b' is not 1 to 63 bytes");
     expect({good, "--name", "a", "--name", "b"}, 3, "--name is given 2 times for 1 files");
     expect({good, "--domain", "233"}, 3, "--domain");
     expect({folder.path() / "none.spm"}, 2, "none.spm: cannot be opened: No such file");

@@ -149,17 +149,17 @@ Front front_of(const Size& size)
     distinct.fill(front.frame, front.time_ns, front.times, front.slots_left_out,
                   front.regions_left_out);
     front.time_ns = -front.time_ns;
-    auto& [splits, merges, scanned, nodes, triangles, looked_at, requests, regions, planes] =
+    auto& [splits, merges, scanned, nodes, triangles, looked_at, requests, regions, planes, work] =
         front.budgets; // `planes` has no place on the wire.
-    distinct.fill(splits, merges, scanned, nodes, triangles, looked_at, requests, regions);
+    distinct.fill(splits, merges, scanned, nodes, triangles, looked_at, requests, regions, work);
     front.sweep_begin = 40;
     front.sweep_end = 56;
     for (std::uint32_t i = 0; i < size.tools; ++i)
     {
         front.tools.push_back({static_cast<SafetyState>(i % kSafetyStates),
                                static_cast<ForceOff>(1U << (i % kForceOffs)),
-                               std::string(i % (kMaxShapeBytes + 1), 's'),
-                               distinct.next<double>()});
+                               std::string(i % (kMaxShapeBytes + 1), 's'), distinct.next<double>(),
+                               i % 3 == 1});
     }
     for (std::uint32_t i = 0; i < size.models; ++i)
     {

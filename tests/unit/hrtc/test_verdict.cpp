@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/hrtc/verdict.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <string>
+#include <vector>
+
+namespace tactus::hrtc::test
+{
+
+namespace
+{
+
+using Report = nlohmann::ordered_json;
+
+/// What a verdict is made of, of a run in which nothing was wrong.
+Report good_report()
+{
+    return Report::parse(R"({
+        "answers": {"exact": 40, "decided": 60, "bracket": 0, "stale": 0},
+        "budgets": {"frame_us": null, "splits": 64}, "scene": {"limited": 0},
+        "pools": {"total_bytes": 2000000},
+        "wire": {"host_lost": false},
+        "deadline": {"own_fault": 0, "stopped": 0},
+        "realtime": {"allocations": 0, "system_calls_in_frame": 0}, "recording": null,
+        "force": {"contact_share": 0.5, "held_back_share": 0.125},
+        "safety": {"supervisor_brakes": 0,
+                   "begun": {"velocity": 0, "watchdog": 0, "software": 1, "disconnect": 0,
+                             "stall": 0, "frozen": 0}},
+        "faults": {"split_budget_spent": 0, "forest_full": 0, "chunk_late": 0,
+                   "surface_truncated": 0},
+        "models": [{"name": "plate", "pieces_refused": 0, "pieces_overdue": 0,
+                    "pieces_missing": 0}],
+        "tools": [{"begins_inside": null, "softest_wall_n_per_m": null}]})");
+}
+
+/// The verdict without the parts that are ok.
+std::string verdict(const Report& report)
+{
+    std::string text = verdict_text(complaints_of(report));
+    for (const std::string ok : {"mesh and scene: ok | ", "controller: ok | ", " | machine: ok"})
+    {
+        if (const std::size_t at = text.find(ok); at != std::string::npos)
+        {
+            text.erase(at, ok.size());
+        }
+    }
+    return text;
+}
+
+bool fails_when_strict(const Report& report)
+{
+    return has_loss(complaints_of(report));
+}
+
+TEST(Verdict, is_ok_where_the_force_went_off_for_the_end_of_the_run_alone)
+{
+    EXPECT_EQ(verdict_text(complaints_of(good_report())), "ok");
+}
+
+TEST(Verdict, judges_mesh_and_scene_controller_and_machine_apart)
+{
+    Report report = good_report();
+    report["safety"]["begun"]["stall"] = 26;
+    report["safety"]["begun"]["watchdog"] = 1;
+    report["safety"]["supervisor_brakes"] = 2;
+    EXPECT_EQ(verdict_text(complaints_of(report)),
+              "mesh and scene: ok | controller: ok | machine: it woke the loop late, and the force "
+              "faded for a moment 27 times (2 brakes by the supervisor): 'hrtc doctor' says why");
+    EXPECT_TRUE(is_machine_alone(complaints_of(report)));
+    EXPECT_FALSE(fails_when_strict(report));
+    report["deadline"]["own_fault"] = 1; // Then it may have been the loop itself.
+    EXPECT_EQ(verdict(report), "controller: 1 deadline missed by the loop's own fault; force off "
+                               "for: watchdog 1, stall 26; 2 brakes by the supervisor");
+    EXPECT_FALSE(is_machine_alone(complaints_of(report)));
+    report = good_report();
+    report["safety"]["begun"]["watchdog"] = 1; // Of a device that was silent by itself.
+    EXPECT_EQ(verdict(report), "controller: force off for: watchdog 1");
+    report = good_report();
+    report["deadline"]["stopped"] = 1;
+    EXPECT_EQ(verdict(report),
+              "machine: 1 deadline missed while the process was stopped from outside");
+}
+
+TEST(Verdict, names_losses_which_fail_a_strict_run)
+{
+    Report report = good_report();
+    report["wire"]["host_lost"] = true;
+    EXPECT_EQ(verdict(report), "mesh and scene: the host went away");
+    report["models"][0]["pieces_refused"] = 1;
+    report["models"][0]["pieces_overdue"] = 8;
+    report["models"][0]["pieces_missing"] = 5;
+    report["scene"]["limited"] = 2;
+    EXPECT_EQ(
+        verdict(report),
+        "mesh and scene: the host went away; 1 damaged piece of plate; 8 pieces of plate that "
+        "didn't come within 1 s, 5 never; 2 materials were limited");
+    EXPECT_TRUE(fails_when_strict(report));
+    report = good_report();
+    report["safety"]["begun"]["disconnect"] = 4;
+    EXPECT_EQ(verdict(report), "controller: force off for: disconnect 4; devices gone: 4");
+    EXPECT_TRUE(fails_when_strict(report));
+    report = good_report();
+    report["tools"][0]["softest_wall_n_per_m"] = 0.5;
+    EXPECT_EQ(verdict(report), "controller: tool 0: a wall of 0.5 N/m, which no hand feels");
+    EXPECT_TRUE(fails_when_strict(report));
+}
+
+TEST(Verdict, is_never_good_without_one_exact_answer)
+{
+    Report report = good_report();
+    report["answers"]["exact"] = 0;
+    EXPECT_EQ(verdict(report), "ok"); // Nothing came near: decided.
+    report["answers"]["bracket"] = 4'655;
+    EXPECT_EQ(verdict(report), "mesh and scene: no answer was exact, 4655 were brackets");
+    EXPECT_TRUE(fails_when_strict(report));
+    report["answers"]["exact"] = 1;
+    EXPECT_EQ(verdict(report), "ok");
+}
+
+TEST(Verdict, says_why_nothing_was_touched)
+{
+    Report report = good_report();
+    report["force"]["contact_share"] = 0.0;
+    report["force"]["held_back_share"] = 0.0;
+    const std::string nothing = "mesh and scene: nothing was touched: ";
+    EXPECT_EQ(verdict(report),
+              nothing + "a tool came near, and the run ended before it reached the surface");
+    EXPECT_TRUE(fails_when_strict(report));
+    report["force"]["held_back_share"] = 0.1;
+    EXPECT_EQ(verdict(report), nothing + "the tool was held back before the surface");
+    report["safety"]["begun"]["velocity"] = 2;
+    EXPECT_EQ(verdict(report), nothing + "the force was off for velocity | controller: force off "
+                                         "for: velocity 2");
+    report["answers"] = {{"exact", 0}, {"decided", 100}, {"bracket", 0}, {"stale", 0}};
+    report["safety"]["begun"]["velocity"] = 0;
+    EXPECT_EQ(verdict(report), nothing + "no tool came near an object; the lines at the start say "
+                                         "where they are");
+    report["tools"][0]["begins_inside"] = "plate";
+    EXPECT_EQ(verdict(report),
+              "mesh and scene: tool 0 began inside plate, whose surface then holds "
+              "it from within; nothing was touched: the tool began inside");
+}
+
+TEST(Verdict, names_the_limit_that_held_the_tool_back_and_what_helps)
+{
+    Report report = good_report();
+    report["force"]["held_back_share"] = 0.86;
+    EXPECT_EQ(verdict(report), "mesh and scene: held back for 86.0 % of the time: the surface at "
+                               "the tool wasn't known");
+    report["faults"]["chunk_late"] = 7;
+    report["faults"]["forest_full"] = 2'554;
+    EXPECT_EQ(verdict(report),
+              "mesh and scene: held back for 86.0 % of the time: no room for faces (forest_full in "
+              "2554 frames): --pool-mib 8, 4 times as much");
+    EXPECT_TRUE(fails_when_strict(report));
+    report["force"]["held_back_share"] = 0.0;
+    report["safety"]["begun"]["frozen"] = 2;
+    report["faults"]["surface_truncated"] = 2'749;
+    EXPECT_EQ(verdict(report),
+              "mesh and scene: held back for 0.0 % of the time, and the force faded 2 times: more "
+              "triangles are in reach of the tool than a frame looks at (surface_truncated in 2749 "
+              "frames): a smaller --tool, or a model of fewer faces; no memory helps");
+    EXPECT_TRUE(fails_when_strict(report));
+    report["faults"]["split_budget_spent"] = 3'000;
+    EXPECT_NE(verdict(report).find("(split_budget_spent in 3000 frames): --splits 256, the most"),
+              std::string::npos);
+    report["budgets"]["frame_us"] = 200.0;
+    EXPECT_NE(verdict(report).find("): --splits 256, the most"), std::string::npos);
+    report["budgets"]["splits"] = 256;
+    EXPECT_NE(verdict(report).find("): --frame-budget-us above 200"), std::string::npos);
+    report["faults"]["node_budget_spent"] = 4'000;
+    EXPECT_NE(verdict(report).find("(node_budget_spent in 4000 frames): --frame-budget-us above "
+                                   "200, a smaller --tool"),
+              std::string::npos);
+    report["budgets"]["frame_us"] = nullptr; // No limit: only another tool helps.
+    EXPECT_NE(verdict(report).find("(node_budget_spent in 4000 frames): a smaller --tool"),
+              std::string::npos);
+}
+
+} // namespace
+
+} // namespace tactus::hrtc::test

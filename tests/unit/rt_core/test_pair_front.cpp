@@ -1,0 +1,381 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// A front changes how much is looked at, and no answer: beside each query that goes on from the
+/// last one stands the same query from the roots, and all pairs measured one by one.
+
+#include "rt_core/geometry/crossing.hpp"
+#include "rt_core/geometry/triangle_triangle.hpp"
+#include "rt_core/math/infinity.hpp"
+#include "rt_core/query/mesh_query.hpp"
+#include "tests/unit/rt_core/mesh_support.hpp"
+#include "tests/unit/rt_core/support.hpp"
+#include "tests/unit/rt_core/tree_support.hpp"
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <set>
+
+namespace tactus::test
+{
+
+namespace
+{
+
+constexpr std::uint32_t kAllOfThem = std::numeric_limits<std::uint32_t>::max();
+
+/// Some faces go, come or move.
+void change(TreeRig& rig, Random& random, std::uint32_t count, bool exact_only)
+{
+    const FaceStyle& style = face_styles()[random.below(5)];
+    for (std::uint32_t i = 0; i < 3; ++i)
+    {
+        const std::uint32_t prim = random.below(count);
+        if (random.one_in(3) && !rig.face(prim).face.is_none() && rig.present().size() > 1)
+        {
+            rig.remove(prim);
+            continue;
+        }
+        ChangedFace face = random_face(random, style, prim, 3 * prim + 1);
+        face.error = exact_only ? 0 : face.error;
+        rig.put(face);
+    }
+    rig.sut->refit();
+}
+
+struct Answers
+{
+    DistanceAnswer answer;
+    MeshReport report;
+    ContactReport contacts;
+    WalkBudget budget;
+};
+
+enum class Kind : std::uint8_t
+{
+    whole,
+    meeting,
+    first_meeting,
+    nearest,
+};
+
+/// One of a tool's queries of an object, with a memory of its own.
+struct Asker
+{
+    const TreeRig& tool;
+    const TreeRig& object;
+    PairFront* front;
+    MeshMemory memory{};
+
+    [[nodiscard]] Answers ask(Kind kind, const MeshPlacement& place, double reach, double certified,
+                              const WalkBudget& budget = kAmple)
+    {
+        Answers answers;
+        const MeshQuestion question{*tool.sut, *object.sut,      place, reach, 0.5 * reach, nullptr,
+                                    certified, kAllMeetingFaces, front};
+        OtherSurface surface(*object.sut, place, budget);
+        switch (kind)
+        {
+        case Kind::whole:
+            query_meshes(question, surface, memory, answers.answer, answers.report,
+                         answers.contacts);
+            break;
+        case Kind::nearest:
+            find_nearest_faces(question, surface, memory, answers.answer, answers.report);
+            break;
+        case Kind::meeting:
+        case Kind::first_meeting:
+            find_meeting_faces(question, kind == Kind::meeting ? kAllOfThem : 1, surface.budget(),
+                               memory, answers.report);
+            break;
+        }
+        answers.budget = surface.budget();
+        return answers;
+    }
+};
+
+/// What measuring all pairs finds, by kernels that their own tests hold.
+struct Truth
+{
+    double upper{kInfinity};
+    double coarse_lower{kInfinity};
+    std::set<MeetingFaces> meeting;
+
+    Truth(const TreeRig& tool, const TreeRig& object, const MeshPlacement& place)
+    {
+        for (const ChangedFace& own : tool.present())
+        {
+            Triangle first = to_triangle(own.corners_m);
+            for (Vec3& corner : first)
+            {
+                corner = place.to_there(corner);
+            }
+            for (const ChangedFace& face : object.present())
+            {
+                add(own, first, face, place.place.scale);
+            }
+        }
+    }
+
+private:
+    void add(const ChangedFace& own, const Triangle& first, const ChangedFace& face, double scale)
+    {
+        const Triangle second = to_triangle(face.corners_m);
+        const double distance = closest_points(first, second).distance;
+        if (own.error == 0 && face.error == 0)
+        {
+            upper = std::min(upper, distance);
+            if (meet(first, second))
+            {
+                meeting.insert({own.face, face.face});
+            }
+            return;
+        }
+        coarse_lower = std::min(coarse_lower, distance - scale * error_of(own) - error_of(face));
+    }
+    static double error_of(const ChangedFace& face)
+    {
+        return static_cast<double>(error_in_quanta(face.error)) * static_cast<double>(kTreeQuantum);
+    }
+};
+
+/// The same to the last bit, but for which pair of several was the first, and for how wide a
+/// bracket is beyond the reach.
+void expect_same(const Answers& one, const Answers& other, Kind kind)
+{
+    ASSERT_EQ(one.report.intersection, other.report.intersection);
+    ASSERT_EQ(one.report.is_complete, other.report.is_complete);
+    ASSERT_EQ(one.answer.kind, other.answer.kind);
+    if (one.answer.kind == AnswerKind::exact || kind != Kind::whole)
+    {
+        ASSERT_EQ(one.answer.lower_m, other.answer.lower_m);
+        ASSERT_EQ(one.answer.upper_m, other.answer.upper_m);
+    }
+    const bool ends_with_one = kind == Kind::first_meeting || kind == Kind::nearest;
+    if (ends_with_one && one.report.intersection == Intersection::proven)
+    {
+        return;
+    }
+    ASSERT_EQ(std::set<MeetingFaces>(one.report.meeting.begin(), one.report.meeting.end()),
+              std::set<MeetingFaces>(other.report.meeting.begin(), other.report.meeting.end()));
+    ASSERT_EQ(one.answer.nearest_face, other.answer.nearest_face);
+    ASSERT_EQ(one.report.nearest_tool_face, other.report.nearest_tool_face);
+    ASSERT_EQ(one.contacts.is_complete, other.contacts.is_complete);
+    ASSERT_EQ(one.contacts.contacts.size(), other.contacts.contacts.size());
+    for (std::size_t i = 0; i < one.contacts.contacts.size(); ++i)
+    {
+        ASSERT_EQ(one.contacts.contacts[i].face, other.contacts.contacts[i].face);
+        ASSERT_EQ(one.contacts.contacts[i].tool_face, other.contacts.contacts[i].tool_face);
+        ASSERT_EQ(one.contacts.contacts[i].distance_m, other.contacts.contacts[i].distance_m);
+    }
+}
+
+/// A tool's way: it drifts, rests, goes back and forth, and jumps now and then.
+class Motion
+{
+public:
+    explicit Motion(Random& random) : random_(random), place_(random_placement(random)) { turn(); }
+
+    [[nodiscard]] const MeshPlacement& next()
+    {
+        if (random_.one_in(12))
+        {
+            const double scale = place_.place.scale; // A tool keeps it, but for one that doesn't.
+            place_ = random_placement(random_);
+            place_.place.scale = random_.one_in(4) ? place_.place.scale : scale;
+            place_.place.translation_m.y() += random_.between(0.0, 2.0);
+        }
+        else if (random_.one_in(6))
+        {
+            turn();
+        }
+        else if (!random_.one_in(8))
+        {
+            step_ = random_.one_in(5) ? Vec3(-step_) : step_;
+            place_.place.translation_m += step_;
+            place_.place.rotation = spin_ * place_.place.rotation;
+        }
+        return place_;
+    }
+
+private:
+    void turn()
+    {
+        const double pace = std::exp2(random_.between(-14.0, -2.0));
+        step_ = random_.in_cube(pace);
+        spin_ = Eigen::AngleAxisd(random_.between(-pace, pace),
+                                  (random_.in_cube(1.0) + Vec3(2, 0, 0)).normalized())
+                    .toRotationMatrix();
+    }
+
+    Random& random_;
+    MeshPlacement place_;
+    Vec3 step_{0.0, 0.0, 0.0};
+    Mat3 spin_{Mat3::Identity()};
+};
+
+} // namespace
+
+TEST(PairFront, changes_no_answer_however_the_tool_goes_and_the_trees_change)
+{
+    Random random(101);
+    int met = 0;
+    int apart = 0;
+    int coarse = 0;
+    for (int round = 0; round < 15; ++round)
+    {
+        TreeRig tool({80, 200, 200});
+        TreeRig object({120, 300, 300});
+        const bool is_tool_exact = round % 3 != 0;
+        const bool is_object_exact = round % 4 != 0;
+        fill(tool, random, 80, is_tool_exact);
+        fill(object, random, 120, is_object_exact);
+        const auto front = std::make_unique<PairFront>();
+        Asker sut{tool, object, front.get()};
+        Motion motion(random);
+        for (int query = 0; query < 60; ++query)
+        {
+            if (random.one_in(10))
+            {
+                random.one_in(2) ? change(tool, random, 80, is_tool_exact)
+                                 : change(object, random, 120, is_object_exact);
+            }
+            const MeshPlacement& place = motion.next();
+            const Truth truth(tool, object, place);
+            const auto kind = static_cast<Kind>(random.below(4));
+            const double reach = random.between(0.0, 0.3);
+            const double certified = random.one_in(2) && truth.coarse_lower > 0.0
+                                         ? truth.coarse_lower * random.between(0.0, 0.999)
+                                         : 0.0;
+            if (random.one_in(8))
+            {
+                const WalkBudget little{random.below(60), random.below(400)};
+                static_cast<void>(sut.ask(kind, place, reach, certified, little));
+            }
+            Asker from_the_roots{tool, object, nullptr, sut.memory};
+
+            const Answers answers = sut.ask(kind, place, reach, certified);
+
+            ASSERT_NO_FATAL_FAILURE(
+                expect_same(answers, from_the_roots.ask(kind, place, reach, certified), kind))
+                << round << " " << query;
+            const bool is_all = kind == Kind::whole || kind == Kind::meeting;
+            const std::set<MeetingFaces> meeting(answers.report.meeting.begin(),
+                                                 answers.report.meeting.end());
+            if (is_all)
+            {
+                ASSERT_EQ(meeting, truth.meeting) << round << " " << query;
+            }
+            ASSERT_EQ(meeting.empty(), truth.meeting.empty()) << round << " " << query;
+            const bool is_distance = kind == Kind::nearest || kind == Kind::whole;
+            const double lower = std::max(0.0, std::min(truth.upper, truth.coarse_lower));
+            if (is_distance)
+            {
+                ASSERT_LE(answers.answer.lower_m, lower + 1e-13) << round << " " << query;
+                ASSERT_GE(answers.answer.upper_m, lower - 1e-13) << round << " " << query;
+            }
+            if (is_distance && answers.answer.kind == AnswerKind::exact)
+            {
+                ASSERT_NEAR(answers.answer.upper_m, truth.upper, 1e-13 * (1.0 + truth.upper));
+            }
+            met += truth.meeting.empty() ? 0 : 1;
+            apart += truth.meeting.empty() ? 1 : 0;
+            coarse += truth.coarse_lower < kInfinity ? 1 : 0;
+        }
+    }
+    EXPECT_GT(met, 100);
+    EXPECT_GT(apart, 100);
+    EXPECT_GT(coarse, 100);
+}
+
+TEST(PairFront, leaves_little_to_look_at_while_the_tool_goes_slowly_and_nothing_while_it_rests)
+{
+    Random random(102);
+    std::uint64_t with = 0;
+    std::uint64_t without = 0;
+    for (int round = 0; round < 10; ++round)
+    {
+        TreeRig tool({80, 200, 200});
+        TreeRig object({120, 300, 300});
+        fill(tool, random, 80, true);
+        fill(object, random, 120, true);
+        const auto front = std::make_unique<PairFront>();
+        Asker sut{tool, object, front.get()};
+        Asker from_the_roots{tool, object, nullptr};
+        MeshPlacement place = random_placement(random);
+        place.place.translation_m.y() += 0.5;
+        for (int query = 0; query < 30; ++query)
+        {
+            place.place.translation_m.x() += 1e-5;
+            const Answers answers = sut.ask(Kind::meeting, place, 0.0, 0.0);
+            const Answers from_roots = from_the_roots.ask(Kind::meeting, place, 0.0, 0.0);
+            ASSERT_LE(answers.budget.nodes_visited, from_roots.budget.nodes_visited);
+            with += answers.budget.nodes_visited;
+            without += from_roots.budget.nodes_visited;
+        }
+        const Answers moved = sut.ask(Kind::meeting, place, 0.0, 0.0);
+        const Answers rested = sut.ask(Kind::meeting, place, 0.0, 0.0);
+        EXPECT_LE(rested.budget.nodes_visited, moved.budget.nodes_visited);
+    }
+    EXPECT_LT(4 * with, 3 * without); // What meets is looked at each time.
+    EXPECT_GT(without, 1'000U);
+}
+
+TEST(PairFront, knows_nothing_after_a_walk_of_more_than_kRoom_pairs)
+{
+    Random random(103);
+    TreeRig tool({1'500, 800, 800});
+    TreeRig object({1'500, 800, 800});
+    fill(tool, random, 1'500, true);
+    fill(object, random, 1'500, true);
+    const auto front = std::make_unique<PairFront>();
+    Asker sut{tool, object, front.get()};
+    Asker from_the_roots{tool, object, nullptr};
+    const MeshPlacement same;
+
+    const Answers answers = sut.ask(Kind::meeting, same, 0.0, 0.0);
+
+    EXPECT_EQ(front->count, 0U);
+    ASSERT_GT(answers.budget.nodes_visited, PairFront::kRoom);
+    expect_same(answers, from_the_roots.ask(Kind::meeting, same, 0.0, 0.0), Kind::meeting);
+    MeshPlacement away;
+    away.place.translation_m.y() = 3.0;
+    for (std::uint32_t i = 0; i < PairFront::kPause; ++i)
+    {
+        static_cast<void>(sut.ask(Kind::meeting, away, 0.0, 0.0));
+        EXPECT_EQ(front->count, 0U);
+    }
+    static_cast<void>(sut.ask(Kind::meeting, away, 0.0, 0.0));
+    EXPECT_GT(front->count, 0U);
+}
+
+TEST(PairFront, counts_a_motion_at_least_as_long_as_that_of_any_point)
+{
+    Random random(104);
+    for (int round = 0; round < 2'000; ++round)
+    {
+        const MeshPlacement before = random_placement(random);
+        MeshPlacement now = random_placement(random);
+        now.place.scale = random.one_in(2) ? before.place.scale : now.place.scale;
+        if (random.one_in(2))
+        {
+            now.place.rotation =
+                before.place.rotation * Eigen::AngleAxisd(std::exp2(random.between(-30.0, 1.0)),
+                                                          random.in_cube(1.0).normalized())
+                                            .toRotationMatrix();
+        }
+        const Ball ball{random.in_cube(1.0), random.between(0.0, 2.0)};
+        const double motion = motion_between(before, now, ball);
+        for (int point = 0; point < 5; ++point)
+        {
+            const Vec3 at = ball.center + ball.radius * random.in_cube(1.0).normalized();
+            ASSERT_GE(motion + 1e-14, (now.to_there(at) - before.to_there(at)).norm());
+        }
+    }
+}
+
+} // namespace tactus::test
