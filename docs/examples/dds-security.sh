@@ -131,7 +131,7 @@ configure() { # configure ROLE: ROLE.xml, the settings with the role's security.
 <General><Interfaces><NetworkInterface name=\"lo\" multicast=\"false\"/></Interfaces>
 <AllowMulticast>false</AllowMulticast></General>
 <Discovery><ParticipantIndex>$index</ParticipantIndex>
-<MaxAutoParticipantIndex>9</MaxAutoParticipantIndex><LeaseDuration>1 s</LeaseDuration>
+<MaxAutoParticipantIndex>10</MaxAutoParticipantIndex><LeaseDuration>1 s</LeaseDuration>
 <Peers><Peer address=\"127.0.0.1\"/></Peers></Discovery>
 <Internal><MultipleReceiveThreads>false</MultipleReceiveThreads></Internal>
 </Domain></CycloneDDS>"
