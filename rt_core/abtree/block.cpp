@@ -193,6 +193,13 @@ void halve_block(BlockGeometry& block, BlockSide& side, std::uint32_t moved, Blo
     keep_lanes(other, other_side, moved);
 }
 
+std::uint32_t lanes_above(const BlockSide& side, ErrorCode tolerance) noexcept
+{
+    Bytes errors;
+    std::memcpy(&errors, side.errors.data(), sizeof errors);
+    return side.coarse & bits_of_bytes(reinterpret_cast<Bytes>(errors > tolerance));
+}
+
 float largest_error_quanta(const BlockSide& side) noexcept
 {
     ErrorCode largest = 0;

@@ -89,6 +89,10 @@ void halve_block(BlockGeometry& block, BlockSide& side, std::uint32_t moved, Blo
 /// The largest error of the block's faces, in quanta.
 [[nodiscard]] float largest_error_quanta(const BlockSide& side) noexcept TACTUS_NONBLOCKING;
 
+/// The lanes whose error is above `tolerance`: with 0 those of BlockSide::coarse.
+[[nodiscard]] std::uint32_t lanes_above(const BlockSide& side,
+                                        ErrorCode tolerance) noexcept TACTUS_NONBLOCKING;
+
 /// Counts the bits of a block's 16 lanes: std::popcount is a call where the processor may lack the
 /// instruction.
 [[nodiscard]] inline std::uint32_t count_lanes(std::uint32_t bits) noexcept

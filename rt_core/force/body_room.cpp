@@ -46,7 +46,7 @@ BodyRoom::BodyRoom(std::span<const PlacedSurface> surfaces, double clear_m,
 {
     for (const PlacedSurface& placed : surfaces)
     {
-        const bool is_exact = placed.surface->answer.kind == AnswerKind::exact;
+        const bool is_exact = is_known(placed.surface->answer.kind);
         free_m_ = std::min(free_m_, free_of(placed));
         is_clear_ = is_clear_ && placed.lower_m > 0.0;
         is_crossed_ = is_crossed_ || (is_exact && !(placed.lower_m > 0.0));
@@ -57,7 +57,7 @@ BodyRoom::BodyRoom(std::span<const PlacedSurface> surfaces, double clear_m,
 double BodyRoom::free_of(const PlacedSurface& placed) const noexcept
 {
     const double lower_m = placed.lower_m;
-    return placed.surface->answer.kind == AnswerKind::exact
+    return is_known(placed.surface->answer.kind)
                ? tactus::free_of(lower_m, radius_m_)
                : std::min(lower_m - radius_m_, kMostOfDistance * lower_m);
 }
@@ -77,14 +77,15 @@ double BodyRoom::share_of(const BodyWay& way, const PlacedSurface& placed) const
     const double by_length = share_within(way.length_m(), free_of(placed));
     const DistanceAnswer& answer = placed.surface->answer;
     const TouchReport& touches = *placed.touches;
-    if (by_length == 1.0 || answer.kind != AnswerKind::exact)
+    if (by_length == 1.0 || !is_known(answer.kind))
     {
         return by_length;
     }
     const double known_m =
         std::min(touches.covered_m, answer.certified_radius_m * placed.pose->scale);
-    // What the way to the world and back may round is taken off L already.
-    const double off_m = std::max(0.0, answer.lower_m * placed.pose->scale - placed.lower_m);
+    // What the way to the world and back may round is taken off L already, as are errors.
+    const double off_m = std::max(0.0, answer.lower_m * placed.pose->scale - placed.lower_m) +
+                         answer.tolerated_m * placed.pose->scale;
     const double turn_m = way.turn_rad.norm() * way.core_radius_m;
     double share =
         std::min(share_within(turn_m, free_of(placed)),

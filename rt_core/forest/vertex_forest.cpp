@@ -241,6 +241,16 @@ ErrorCode VertexForest::error_of(PrimId prim) const noexcept
                                    : error_in(faces_[prim.value].id, faces_[prim.value].state);
 }
 
+ErrorCode VertexForest::error_before(const VsplitRecord& record) const noexcept
+{
+    ErrorCode largest = 0;
+    for (std::uint32_t i = 0; i < record.fan_size; ++i)
+    {
+        largest = std::max(largest, error_in(record.star[2 + i], record.before[i]));
+    }
+    return largest;
+}
+
 /// As the face's state says it, wherever the face is.
 ErrorCode VertexForest::error_in(FaceId face, FaceState state) const noexcept
 {

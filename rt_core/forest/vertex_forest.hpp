@@ -98,6 +98,9 @@ public:
     /// kNextExact, kNextPending, or the id of the record that splits the face next.
     [[nodiscard]] std::uint32_t next_of(PrimId prim) const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] ErrorCode error_of(PrimId prim) const noexcept TACTUS_NONBLOCKING;
+    /// The largest error of the faces that a merge of the record would leave.
+    [[nodiscard]] ErrorCode
+    error_before(const VsplitRecord& record) const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] Vec3f position_of(VertexId vertex) const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] std::array<Vec3f, 3> corners_of(PrimId prim) const noexcept TACTUS_NONBLOCKING;
 

@@ -2,13 +2,54 @@
 // Copyright the Tactus authors.
 #include "rt_core/frame/frame_parts.hpp"
 
+#include "rt_core/geometry/placed_core.hpp"
+#include "rt_core/math/similarity.hpp"
+
 #include <algorithm>
+#include <numbers>
 
 namespace tactus
 {
 
 namespace
 {
+
+/// Some so many faces under a body are as many as a frame's work suffices for.
+constexpr double kFewFaces = 0.25 * kMaxLocalTriangles;
+
+/// Whether a body that lies on the model lies on more faces than that, as far as they are spread
+/// evenly over the sides of its box. With a tolerance such a model isn't refined as a whole.
+bool is_too_fine(const FrameSetup& setup, ModelId id, const ModelHeader& header) noexcept
+{
+    if (setup.force_tolerance_n == 0.0)
+    {
+        return false;
+    }
+    const auto& extent = header.fields().extent_quanta;
+    const auto quantum_m = static_cast<double>(header.quantum_m());
+    const Vec3 sides_m = quantum_m * Vec3(extent[0], extent[1], extent[2]);
+    const double area_sq_m =
+        2.0 * (sides_m.x() * sides_m.y() + sides_m.y() * sides_m.z() + sides_m.z() * sides_m.x());
+    const double faces = header.counts().base_faces + 2.0 * header.counts().records;
+    double least_scale = 1.0;
+    for (std::size_t i = 0; i < setup.objects.size(); ++i)
+    {
+        const bool shows_it = setup.objects[i].model == id && i < setup.poses.size();
+        least_scale = shows_it ? std::min(least_scale, setup.poses[i].scale) : least_scale;
+    }
+    return std::ranges::any_of(
+        setup.tools,
+        [&](const ToolSpec& tool)
+        {
+            const PlacedCore core(tool.core, Similarity{});
+            if (is_mesh(tool) || tool.passes_through || core.is_point())
+            {
+                return false;
+            }
+            const double radius_m = (core.radius() + tool.radius_m) / least_scale;
+            return faces * radius_m * radius_m * std::numbers::pi > kFewFaces * area_sq_m;
+        });
+}
 
 /// Copies the header, reads the base mesh and lays out one model. False when the base mesh is
 /// damaged. The header must parse.
@@ -34,7 +75,8 @@ namespace
     const Kernels& kernels = setup.kernels != nullptr ? *setup.kernels : best_kernels();
     model.emplace(arena, pools, id, header, slots, source.capacities, kernels);
     model->cache.set_variant(setup.variant);
-    if (setup.static_when_it_fits && !comes_later && model->fits())
+    if (setup.static_when_it_fits && !comes_later && model->fits() &&
+        !is_too_fine(setup, id, header))
     {
         model->residence = Residence::filling;
     }
@@ -44,7 +86,8 @@ namespace
 } // namespace
 
 FrameParts::FrameParts(Arena& arena, const FrameSetup& setup) noexcept
-    : rules{setup.period_ns, setup.pose_age_max_ns, setup.prediction, setup.variant}
+    : rules{setup.period_ns, setup.pose_age_max_ns, setup.prediction, setup.force_tolerance_n,
+            setup.variant}
     , pools(arena, pool_capacities(setup), static_cast<std::uint32_t>(setup.models.size()))
     , models(arena, setup.models.size())
     , objects(arena, capacities_of(setup).objects)

@@ -54,6 +54,10 @@ struct FrameSetup
     /// A model that fits its pools is loaded and refined fully, once (static mode).
     bool static_when_it_fits{false};
     Prediction prediction{Prediction::automatic};
+    /// Coarse faces count as the surface where that changes a force by no more than this, and by no
+    /// more than a quarter of a quantum; and farther where pools or budgets don't suffice for that
+    /// (SurfaceTolerance). 0: only exact faces do. For tools that are no meshes.
+    double force_tolerance_n{0.0};
     FrameVariant variant;            ///< As it is: the frame that ships.
     const Kernels* kernels{nullptr}; ///< Null: best_kernels(). Outlive the frame.
 };

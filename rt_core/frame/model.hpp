@@ -130,6 +130,10 @@ struct Model
     /// How far ahead of a tool chunks have to be asked for at present, in seconds > 0.
     [[nodiscard]] double lead_s(std::int64_t period_ns) const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] bool is_complete() const noexcept { return residence == Residence::complete; }
+    /// Whether it is here as a whole, or on its way to that.
+    [[nodiscard]] bool is_whole() const noexcept { return residence != Residence::partial; }
+    /// From now on it is refined where tools need it, and no finer than they do.
+    void end_whole() noexcept { residence = Residence::partial; }
     /// After a frame in which nobody asked for anything: whether another one like it would change
     /// nothing.
     [[nodiscard]] bool is_at_rest() const noexcept

@@ -64,6 +64,17 @@ void keep_within(double radius_m, const DistanceAnswer& answer, ContactReport& r
                          (answer.certified_radius_m >= radius_m || answer.lower_m > radius_m);
 }
 
+/// Faces count as the surface whose error is at most this share of a quantum, however soft it is;
+constexpr double kToleratedQuanta = 0.25;
+/// and where there is no room for them, this share of the tool's radius: it stays outside.
+constexpr double kMostTolerated = 0.5;
+
+/// What a coarser surface helps against.
+constexpr FrameFault kNoRoom = FrameFault::forest_full | FrameFault::tree_full |
+                               FrameFault::cache_full | FrameFault::refine_heap_full |
+                               FrameFault::held_records_full;
+constexpr FrameFault kNotYet = FrameFault::split_budget_spent | FrameFault::node_budget_spent;
+
 /// What lies ahead is looked for this far beyond, a share of the way: once in some two frames.
 constexpr double kWalkedShare = 0.2;
 
@@ -256,9 +267,65 @@ void Pair::ask(RefineRequests& requests) noexcept
     }
     else
     {
+        fit_tolerance();
         ask_for_balls();
     }
     request(parts_.model, of_object_, requests);
+}
+
+void Pair::fit_tolerance() noexcept
+{
+    room_ = surface_room();
+    tolerance_.fit(tolerance_range(), room_);
+}
+
+bool Pair::needs_coarser_model() const noexcept
+{
+    return is_model_here_ && mesh_ == nullptr && parts_.model.model->is_whole() &&
+           tolerance_.code() > tolerance_range().least;
+}
+
+SurfaceTolerance::Range Pair::tolerance_range() const noexcept
+{
+    const PairRules& rules = *parts_.rules;
+    const double quanta_of_m = 1.0 / static_cast<double>(parts_.model.model->header.quantum_m());
+    if (rules.variant.tolerance_m > 0.0)
+    {
+        const ErrorCode fixed = largest_code_within(rules.variant.tolerance_m * quanta_of_m);
+        return {fixed, fixed};
+    }
+    if (rules.force_tolerance_n == 0.0)
+    {
+        return {};
+    }
+    const double stiffness =
+        std::min(parts_.tool->spec().stiffness_n_per_m, feel_.felt().stiffness_n_per_m);
+    const double unfelt_m = rules.force_tolerance_n / stiffness / parts_.object->pose.scale;
+    const double most_m = kMostTolerated * parts_.tool->radius_m() / parts_.object->pose.scale;
+    const ErrorCode most = largest_code_within(most_m * quanta_of_m);
+    const ErrorCode least = largest_code_within(std::min(kToleratedQuanta, unfelt_m * quanta_of_m));
+    return {std::min(least, most), most};
+}
+
+/// Of the last frame.
+SurfaceTolerance::Room Pair::surface_room() const noexcept
+{
+    const LocalSurface& surface = surface_;
+    const FrameFault late_for = of_object_.closure.late_for;
+    if (surface.truncated || has_fault(late_for, kNoRoom) || was_cut_)
+    {
+        return SurfaceTolerance::Room::short_;
+    }
+    if (has_fault(late_for, kNotYet))
+    {
+        return SurfaceTolerance::Room::late;
+    }
+    const VertexForest& forest = parts_.model.model->forest;
+    const bool has_room =
+        surface.count > 0 && had_work_left_ &&
+        surface.count * SurfaceTolerance::kFinerGrowth < kMaxLocalTriangles &&
+        forest.active_in_pool() * SurfaceTolerance::kFinerGrowth < forest.capacity();
+    return has_room ? SurfaceTolerance::Room::enough : SurfaceTolerance::Room::fitting;
 }
 
 /// What has no ball has nothing to know.
@@ -345,7 +412,7 @@ void Pair::ask(bool is_asked, const Model& model, const RefineQuestion& question
     {
         RefineQuestion asked = question;
         asked.counts_errors = variant.fixed_radius == 0.0;
-        asked.tolerance_m = variant.tolerance_m;
+        asked.tolerance = mesh_ == nullptr ? tolerance_.code() : ErrorCode{0};
         inquiry.questions.push_back(asked);
         return;
     }
@@ -357,6 +424,7 @@ template <std::size_t Capacity>
 void Pair::request(const NamedModel& model, Inquiry<Capacity>& inquiry,
                    RefineRequests& requests) const noexcept
 {
+    inquiry.closure.late_for = FrameFault::none;
     if (!inquiry.questions.empty() || !inquiry.closure.target.is_none())
     {
         requests.push_back({model.id, inquiry.questions.view(), &inquiry.closure, urgency_});
@@ -524,7 +592,10 @@ void Pair::query_core(const Budgets& budgets, WorkCounters& work, FrameFault& fa
         }
         work.skipped.add(Skip::starts, query_memory_.block != kNoNode ? 1 : 0);
         gather_surface(parts_.model.model->tree, outlook_.core(), outlook_.reach_m(), query_memory_,
-                       budget, surface, proof_share(), enough_meeting());
+                       budget, surface, proof_share(), enough_meeting(), tolerance_.code());
+        was_cut_ = budget.is_spent;
+        had_work_left_ = (SurfaceTolerance::kFinerGrowth - 1.0) * work.budget.used() <=
+                         static_cast<double>(work.budget.left());
         work.nodes_visited += budget.nodes_visited;
         work.triangles_tested += budget.triangles_tested;
         faults |= budget.is_spent ? FrameFault::node_budget_spent : FrameFault::none;
@@ -596,7 +667,7 @@ void Pair::query_mesh(WorkCounters& work, FrameFault& faults) noexcept
                                  : tool.wants_contacts ? radius_m
                                                        : -1.0;
         const FrameVariant& variant = parts_.rules->variant;
-        const bool is_proven = variant.fixed_radius == 0.0 && variant.tolerance_m == 0.0;
+        const bool is_proven = variant.fixed_radius == 0.0;
         // What is felt goes nowhere while anything meets: one pair tells that.
         const std::uint32_t enough = tool.wants_pairs      ? kAllMeetingFaces
                                      : tool.wants_contacts ? kEnoughMeetingFaces
@@ -645,7 +716,7 @@ void Pair::rehearse(const SurfaceRoom& room, const Budgets& budgets,
         QueryMemory memory = query_memory_;
         LocalSurface surface = room.surface();
         gather_surface(parts_.model.model->tree, outlook_.core(), outlook_.reach_m(), memory,
-                       budget, surface, proof_share(), enough_meeting());
+                       budget, surface, proof_share(), enough_meeting(), tolerance_.code());
     }
 }
 
@@ -680,6 +751,7 @@ PairOutput Pair::output() const noexcept
             .lower_m = lower_m_,
             .upper_m = upper_m_,
             .certified_radius_m = std::max(0.0, answer.certified_radius_m) * pose.scale,
+            .tolerated_m = answer.tolerated_m * pose.scale,
             .nearest_face = answer.nearest_face,
             .nearest_point_m = to_world(pose, answer.nearest_point_m),
             .skipped = outlook_.is_asleep(),

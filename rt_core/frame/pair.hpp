@@ -13,6 +13,7 @@
 #include "rt_core/query/surface_query.hpp"
 #include "rt_core/records/frame_variant.hpp"
 #include "rt_core/refine/refine_question.hpp"
+#include "rt_core/refine/surface_tolerance.hpp"
 #include "rt_core/scene/object_table.hpp"
 #include "rt_core/scene/outlook.hpp"
 
@@ -29,6 +30,7 @@ struct PairRules
     std::int64_t period_ns{1'000'000};
     std::int64_t pose_age_max_ns{0};
     Prediction prediction{Prediction::automatic};
+    double force_tolerance_n{0.0};
     FrameVariant variant;
     std::int64_t now_ns{0}; ///< This frame's.
     std::uint32_t frame{0};
@@ -135,6 +137,14 @@ public:
     /// be. Certificates of questions that it does not ask are forgotten: a model may coarsen there.
     void ask(RefineRequests& requests) noexcept TACTUS_NONBLOCKING;
 
+    /// After ask(): whether there is too much of the surface in reach, which merges help against;
+    [[nodiscard]] bool is_short() const noexcept
+    {
+        return room_ == SurfaceTolerance::Room::short_ && tolerance_.code() != 0;
+    }
+    /// and whether it is of a model that is, or will be, here as a whole.
+    [[nodiscard]] bool needs_coarser_model() const noexcept TACTUS_NONBLOCKING;
+
     /// The distance, and what the tool's force needs of the surface: triangles are kept where the
     /// room begins. Returns the room that is left.
     [[nodiscard]] SurfaceRoom query(const SurfaceRoom& room, const Budgets& budgets,
@@ -216,6 +226,9 @@ private:
     void look() noexcept;
     void find_urgency() noexcept;
     [[nodiscard]] PairMotion motion() const noexcept;
+    void fit_tolerance() noexcept;
+    [[nodiscard]] SurfaceTolerance::Range tolerance_range() const noexcept;
+    [[nodiscard]] SurfaceTolerance::Room surface_room() const noexcept;
     void ask_for_balls() noexcept;
     void ask_for_distance() noexcept;
     [[nodiscard]] bool tells_distance() const noexcept
@@ -265,7 +278,11 @@ private:
     ObjectPose stood_;         ///< The object's, in the last frame.
     ProxyMemory body_;
     MaterialGlide feel_;
-    bool feels_otherwise_{false};        ///< Than in the last frame.
+    bool feels_otherwise_{false}; ///< Than in the last frame.
+    SurfaceTolerance tolerance_;
+    SurfaceTolerance::Room room_{SurfaceTolerance::Room::fitting}; ///< In the last frame.
+    bool was_cut_{false};                ///< The last query, by its budgets.
+    bool had_work_left_{true};           ///< After it for half as much again as the frame had done.
     bool was_answered_{false};           ///< By the last query, and within its budgets.
     std::uint32_t answered_revision_{0}; ///< Of its models, at that time.
     RegionPredictor predictor_;

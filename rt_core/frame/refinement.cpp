@@ -31,6 +31,11 @@ std::uint32_t Refinement::run(FrameParts& parts, FrameAccount& account) noexcept
     for (Pair* pair : parts.pairs.by_urgency())
     {
         pair->ask(requests_);
+        had_no_room_ = had_no_room_ || pair->is_short();
+        if (pair->needs_coarser_model())
+        {
+            models[pair->parts().model.id].end_whole(); // It asks from the next frame on.
+        }
     }
     std::fill_n(services_.begin(), requests_.size(), Service{});
     group(models);
@@ -52,7 +57,8 @@ std::uint32_t Refinement::run(FrameParts& parts, FrameAccount& account) noexcept
     pace_.count(work.splits - filled);
     for (std::uint32_t i = 0; i < requests_.size(); ++i)
     {
-        faults |= lateness_of(i);
+        requests_[i].closure->late_for = lateness_of(i);
+        faults |= requests_[i].closure->late_for;
     }
     had_no_room_ = (faults & kNoRoom) != FrameFault::none;
     const std::uint32_t refused = refused_class();

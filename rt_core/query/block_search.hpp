@@ -53,17 +53,19 @@ void search_blocks(const AbTree& tree, const Probe& probe, WalkBudget& budget,
 struct Findings
 {
     double exact_lower_m{0.0}; ///< The nearest exact face is at least this far away,
-    double upper_m{0.0};       ///< and some of the surface at most this.
-    double open_m{0.0};        ///< What is not exact or was not come to is at least this far away,
-    double pruned_m{0.0};      ///< what did not matter this,
-    double dropped_m{0.0};     ///< and exact triangles that had no room this.
+    /// what faces within the tolerance stand for this,
+    double tolerated_lower_m{kInfinity};
+    double upper_m{0.0};   ///< and some of the surface at most this.
+    double open_m{0.0};    ///< What is not exact or was not come to is at least this far away,
+    double pruned_m{0.0};  ///< what did not matter this,
+    double dropped_m{0.0}; ///< and exact triangles that had no room this.
 };
 
-/// No face can be nearer than the nearest exact one, if there is one.
+/// No face can be nearer than the nearest one of the surface, if there is one.
 [[nodiscard]] inline bool is_nearest_proven(const Findings& found) noexcept
 {
-    return found.exact_lower_m <= found.open_m && found.exact_lower_m <= found.pruned_m &&
-           found.exact_lower_m < kInfinity;
+    const double lower_m = std::min(found.exact_lower_m, found.tolerated_lower_m);
+    return lower_m <= found.open_m && lower_m <= found.pruned_m && lower_m < kInfinity;
 }
 
 /// The answer within `reach_m`, but for the nearest face and points: theirs is who has them.
@@ -71,13 +73,17 @@ struct Findings
 {
     DistanceAnswer answer;
     answer.upper_m = found.upper_m;
-    answer.lower_m = std::max(0.0, std::min({found.exact_lower_m, found.open_m, found.pruned_m}));
+    answer.lower_m = std::max(0.0, std::min({found.exact_lower_m, found.tolerated_lower_m,
+                                             found.open_m, found.pruned_m}));
     const double open = std::min(found.open_m, found.dropped_m);
     // Less than `open`, where what is not exact may begin.
     answer.certified_radius_m = open > 0.0 ? std::min(reach_m, open * (1.0 - 0x1p-52)) : -1.0;
     const bool is_beyond = answer.lower_m > 0.0 && answer.lower_m == reach_m;
+    const AnswerKind known = found.exact_lower_m <= found.tolerated_lower_m
+                                 ? AnswerKind::exact
+                                 : AnswerKind::within_tolerance;
     answer.kind = answer.lower_m > reach_m   ? AnswerKind::decided
-                  : is_nearest_proven(found) ? AnswerKind::exact
+                  : is_nearest_proven(found) ? known
                   : is_beyond                ? AnswerKind::decided
                                              : AnswerKind::bracket;
     TACTUS_ASSERT(!(answer.lower_m > answer.upper_m)); // U may be no number: then L is 0.

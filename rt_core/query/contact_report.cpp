@@ -54,7 +54,7 @@ public:
     {
         const DistanceAnswer& answer = surface_.answer;
         const std::uint32_t nearest = find(answer.nearest_face);
-        if (answer.kind != AnswerKind::exact || answer.upper_m > answer.certified_radius_m ||
+        if (!is_known(answer.kind) || answer.upper_m > answer.certified_radius_m ||
             nearest == surface_.count)
         {
             return false;

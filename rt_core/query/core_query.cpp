@@ -55,13 +55,15 @@ class CoreSearch
 public:
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): each block fills corners_.
     CoreSearch(const AbTree& tree, const PlacedCore& core, double reach_m, ProofShare share,
-               std::uint32_t enough, WalkBudget& budget, LocalSurface& surface) noexcept
+               std::uint32_t enough, ErrorCode tolerance, WalkBudget& budget,
+               LocalSurface& surface) noexcept
         : tree_(tree)
         , core_(core)
         , quantum_(static_cast<double>(tree.quantum_m()))
         , reach_(reach_m)
         , share_(static_cast<double>(share_of(share)))
         , enough_(enough)
+        , tolerance_(tolerance)
         , budget_(budget)
         , box_(make_kernel_box(core, tree.quantum_m()))
         , triangles_(surface)
@@ -106,8 +108,9 @@ public:
         for (std::uint32_t lanes = block.faces; lanes != 0; lanes &= lanes - 1)
         {
             const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
-            const double error = static_cast<double>(error_in_quanta(side.errors[lane])) * quantum_;
-            test_face({index, lane, (side.coarse >> lane & 1U) != 0, error});
+            const bool is_exact = (side.coarse >> lane & 1U) == 0;
+            const ErrorCode code = is_exact ? ErrorCode{0} : side.errors[lane];
+            test_face({index, lane, code, static_cast<double>(error_in_quanta(code)) * quantum_});
             if (met_ >= enough_)
             {
                 open_ = std::min(open_, 0.0);
@@ -121,13 +124,15 @@ public:
     {
         Findings found;
         found.exact_lower_m = exact_lower_;
+        found.tolerated_lower_m = tolerated_lower_;
         found.upper_m = upper_;
         // No face is nearer than one that meets the core, wherever it is.
         found.open_m = tree_.is_complete() ? std::max(open_, 0.0) : 0.0;
-        found.pruned_m = upper_ > reach_ ? worth_m() : kInfinity;
+        found.pruned_m = limit_ > reach_ ? worth_m() : kInfinity;
         found.dropped_m = triangles_.dropped_m();
         DistanceAnswer answer = answer_from(found, reach_);
         answer.tool_point_m = core_.center();
+        answer.tolerated_m = static_cast<double>(error_in_quanta(largest_tolerated_)) * quantum_;
         if (is_nearest_proven(found))
         {
             answer.tool_point_m = nearest_.on_shape;
@@ -143,9 +148,14 @@ private:
     {
         std::uint32_t block;
         std::uint32_t lane;
-        bool is_coarse;
-        double error_m;
+        ErrorCode error;
+        double error_m; ///< The same.
     };
+
+    [[nodiscard]] bool is_coarse(const Face& face) const noexcept
+    {
+        return face.error > tolerance_;
+    }
 
     /// Of a face: what little work tells, and of a convex body in reach the distance.
     struct Measure
@@ -157,8 +167,8 @@ private:
     /// What is farther changes nothing. Never grows: what was left out stays farther.
     [[nodiscard]] double worth_m() const noexcept
     {
-        return upper_ > reach_ ? std::max(reach_, share_ * upper_)
-                               : std::max(std::min(reach_, triangles_.dropped_m()), upper_);
+        return limit_ > reach_ ? std::max(reach_, share_ * limit_)
+                               : std::max(std::min(reach_, triangles_.dropped_m()), limit_);
     }
 
     /// Along one direction a convex body is so far from the whole block that it does not matter.
@@ -168,7 +178,7 @@ private:
         const double error = static_cast<double>(largest_error_quanta(side)) * quantum_;
         const double worth = worth_m() + error;
         const double apart = separations_->see(block.coordinates, block.vertices, corners_, worth);
-        if (apart > worth && side.coarse != 0)
+        if (apart > worth && lanes_above(side, tolerance_) != 0)
         {
             open_ = std::min(open_, apart - error);
         }
@@ -180,24 +190,25 @@ private:
         const double worth = worth_m();
         const Measure known = measure_within(face, worth + face.error_m);
         double lower = known.bounds.lower - face.error_m;
-        if (face.is_coarse && lower <= worth && lower < open_)
+        const bool is_left = is_coarse(face);
+        if (is_left && lower <= worth && lower < open_)
         {
             // As refinement measures it: what that holds for far enough is not open here.
             const ClosestPoints closest = measure(face, known);
             lower = closest.distance - closest.distance_error - face.error_m;
         }
-        open_ = face.is_coarse ? std::min(open_, lower) : open_;
+        open_ = is_left ? std::min(open_, lower) : open_;
         if (lower > worth)
         {
             return;
         }
-        if (face.is_coarse)
+        if (face.error != 0)
         {
             bound_by_corners(face, known.bounds);
         }
-        else
+        if (!is_left)
         {
-            add_exact(face, known);
+            add_surface(face, known);
         }
     }
 
@@ -254,34 +265,53 @@ private:
         return core_.closest(triangle);
     }
 
-    void add_exact(const Face& face, const Measure& known) noexcept
+    /// A face that is exact or within the tolerance.
+    void add_surface(const Face& face, const Measure& known) noexcept
     {
         const PrimId prim = tree_.side(face.block).prims[face.lane];
         const FaceId id = tree_.face_of(prim);
         const CoreBounds& bounds = known.bounds;
         double lower = std::max(0.0, bounds.lower);
         bool meets = bounds.meet;
-        upper_ = std::min(upper_, bounds.upper);
-        if (may_be_nearest(id, lower) || (lower <= reach_ && bounds.upper > reach_))
+        take_upper(face, bounds.upper);
+        const bool may_be_listed = lower - face.error_m <= reach_;
+        if (may_be_nearest(id, lower) || (may_be_listed && bounds.upper > reach_))
         {
             const ClosestPoints closest = measure(face, known);
             lower = std::max(0.0, closest.distance - closest.distance_error);
             meets = closest.meet;
-            upper_ = std::min(upper_, closest.distance + closest.distance_error);
+            take_upper(face, closest.distance + closest.distance_error);
             keep_if_nearest(closest, id, face.block);
         }
+        lower -= face.error_m; // What it stands for.
         if (lower <= reach_)
         {
-            triangles_.add({prim, block_triangle(tree_.block(face.block), face.lane)}, lower);
+            largest_tolerated_ = std::max(largest_tolerated_, face.error);
+            triangles_.add({prim, block_triangle(tree_.block(face.block), face.lane)},
+                           std::max(0.0, lower));
         }
-        exact_lower_ = std::min(exact_lower_, lower);
+        double& least = face.error == 0 ? exact_lower_ : tolerated_lower_;
+        least = std::min(least, lower);
         met_ += meets ? 1U : 0U;
+    }
+
+    /// Something of the source is within this.
+    void take_upper(double upper_m) noexcept
+    {
+        upper_ = std::min(upper_, upper_m);
+        limit_ = std::min(limit_, upper_m);
+    }
+    /// Or of what counts as the surface.
+    void take_upper(const Face& face, double upper_m) noexcept
+    {
+        limit_ = std::min(limit_, upper_m);
+        upper_ = face.error == 0 ? std::min(upper_, upper_m) : upper_;
     }
 
     /// The lowest of equally near faces is taken.
     [[nodiscard]] bool may_be_nearest(FaceId face, double lower_m) const noexcept
     {
-        return lower_m <= upper_ && (nearest_.distance > 0.0 || face < nearest_face_);
+        return lower_m <= limit_ && (nearest_.distance > 0.0 || face < nearest_face_);
     }
 
     void keep_if_nearest(const ClosestPoints& closest, FaceId face, std::uint32_t block) noexcept
@@ -300,7 +330,7 @@ private:
     {
         if (!core_.is_convex_body())
         {
-            upper_ = std::min(upper_, bounds.upper);
+            take_upper(bounds.upper);
             return;
         }
         for (const Vec3& corner : triangle_of(face))
@@ -309,7 +339,7 @@ private:
             if (core_.bounds(point).lower < upper_)
             {
                 const ClosestPoints closest = measure(point);
-                upper_ = std::min(upper_, closest.distance + closest.distance_error);
+                take_upper(closest.distance + closest.distance_error);
             }
         }
     }
@@ -320,15 +350,19 @@ private:
     double reach_;
     double share_; ///< Of the best distance: what is farther is not looked at.
     std::uint32_t enough_;
+    ErrorCode tolerance_; ///< Faces with no larger error count as the surface.
     WalkBudget& budget_;
     KernelBox box_;
     NearestTriangles triangles_;
     std::optional<Separations> separations_; ///< Of a convex body.
     CornersAtCore corners_;                  ///< The corners of the block that is tested.
-    double open_{kInfinity};        ///< What is not known exactly is at least this far away.
-    double exact_lower_{kInfinity}; ///< Exact faces are;
-    double upper_{kInfinity};       ///< something of the surface is at most.
-    std::uint32_t met_{0};          ///< Exact faces that meet the core.
+    double open_{kInfinity};            ///< What is not known exactly is at least this far away.
+    double exact_lower_{kInfinity};     ///< Exact faces are;
+    double tolerated_lower_{kInfinity}; ///< what faces within the tolerance stand for is;
+    double upper_{kInfinity};           ///< something of the source is at most,
+    double limit_{kInfinity};           ///< and of the surface or the source.
+    ErrorCode largest_tolerated_{0};
+    std::uint32_t met_{0}; ///< Faces of the surface that meet the core.
     ClosestPoints nearest_{.distance = kInfinity};
     FaceId nearest_face_{};
     std::uint32_t nearest_block_{kNoNode};
@@ -338,17 +372,17 @@ private:
 
 void gather_surface(const AbTree& tree, const PlacedCore& core, double reach_m, QueryMemory& memory,
                     WalkBudget& budget, LocalSurface& surface, ProofShare share,
-                    std::uint32_t enough) noexcept
+                    std::uint32_t enough, ErrorCode tolerance) noexcept
 {
     TACTUS_ASSERT(enough > 0);
     if (core.is_point())
     {
-        gather_surface(tree, core.center(), reach_m, memory, budget, surface, share);
+        gather_surface(tree, core.center(), reach_m, memory, budget, surface, share, tolerance);
         return;
     }
     if (is_beyond_kernels(core.center(), tree.quantum_m()))
     {
-        gather_surface(tree, core.center(), reach_m, memory, budget, surface, share);
+        gather_surface(tree, core.center(), reach_m, memory, budget, surface, share, tolerance);
         DistanceAnswer& answer = surface.answer;
         answer.lower_m = std::max(0.0, answer.lower_m - core.radius());
         answer.kind = answer.lower_m > reach_m ? AnswerKind::decided : AnswerKind::bracket;
@@ -356,7 +390,7 @@ void gather_surface(const AbTree& tree, const PlacedCore& core, double reach_m, 
     }
     TACTUS_ASSERT(!core.is_mesh());
     surface.center_m = core.center();
-    CoreSearch search(tree, core, reach_m, share, enough, budget, surface);
+    CoreSearch search(tree, core, reach_m, share, enough, tolerance, budget, surface);
     search.run(memory);
     surface.answer = search.answer();
 }

@@ -29,15 +29,18 @@ class SurfaceSearch
 public:
     /// `surface` is null when only the distance is asked for; then nothing is collected.
     SurfaceSearch(const AbTree& tree, const Vec3& center_m, double reach_m, double band_m,
-                  ProofShare share, WalkBudget& budget, LocalSurface* surface) noexcept
+                  ProofShare share, ErrorCode tolerance, WalkBudget& budget,
+                  LocalSurface* surface) noexcept
         : tree_(tree)
         , center_(center_m)
         , quantum_(static_cast<double>(tree.quantum_m()))
         , reach_(reach_m)
         , share_(share_of(share))
+        , tolerance_(tolerance)
+        , tolerance_m_(static_cast<double>(error_in_quanta(tolerance)) * quantum_)
         , budget_(budget)
         , probe_(make_probe(center_m, tree.quantum_m()))
-        , reach_quanta_(surface == nullptr ? 0.0F : to_quanta(reach_m))
+        , reach_quanta_(surface == nullptr ? 0.0F : to_quanta(reach_m + tolerance_m_))
         , floor_(reach_quanta_)
         , limit_(to_quanta(band_m))
     {
@@ -79,12 +82,16 @@ public:
     {
         Findings found;
         found.exact_lower_m = exact_lower_;
+        found.tolerated_lower_m = tolerated_lower_;
         found.upper_m = corner_ < kInfiniteQuanta ? std::min(upper_, to_metres(corner_)) : upper_;
         found.open_m = tree_.is_complete() ? unproven_ * quantum_ : 0.0;
-        found.pruned_m = limit_ > floor_ ? to_metres(bound()) : kInfinity;
+        found.pruned_m = limit_ > floor_   ? to_metres(bound()) - tolerance_m_
+                         : tolerance_ != 0 ? to_metres(floor_) - tolerance_m_
+                                           : kInfinity;
         found.dropped_m = nearest_triangles_ ? nearest_triangles_->dropped_m() : kInfinity;
         DistanceAnswer answer = answer_from(found, reach_);
         answer.tool_point_m = center_;
+        answer.tolerated_m = static_cast<double>(error_in_quanta(largest_tolerated_)) * quantum_;
         if (is_nearest_proven(found))
         {
             answer.nearest_face = nearest_face_;
@@ -276,7 +283,7 @@ private:
             {
                 const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
                 const float lower_sq = std::max(batch.lower_sq[i][lane], 0.0F);
-                add_exact(
+                add_surface(
                     {TreeRef{batch.blocks[i]}.index(), lane, std::sqrt(lower_sq) - probe_.slack});
             }
         }
@@ -292,7 +299,7 @@ private:
             return false;
         }
         TACTUS_ASSERT(tree_.side(index).in_use);
-        const std::uint32_t coarse = tree_.side(index).coarse;
+        const std::uint32_t coarse = lanes_above(tree_.side(index), tolerance_);
         const float limit_before = limit_;
         FaceBounds bounds; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
         std::uint32_t near = tree_.kernels().face_bounds(
@@ -307,7 +314,7 @@ private:
         for (; near != 0; near &= near - 1)
         {
             const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
-            add_exact({index, lane, bounds.lower[lane]});
+            add_surface({index, lane, bounds.lower[lane]});
         }
         return true;
     }
@@ -359,19 +366,23 @@ private:
                static_cast<double>(error);
     }
 
-    void add_exact(const Candidate& candidate) noexcept
+    /// A face that is exact or within the tolerance.
+    void add_surface(const Candidate& candidate) noexcept
     {
         if (nearest_triangles_ && candidate.lower <= floor_)
         {
-            nearest_triangles_->add({tree_.side(candidate.block).prims[candidate.lane],
-                                     block_triangle(tree_.block(candidate.block), candidate.lane)},
-                                    std::max(0.0, to_metres(candidate.lower)));
+            const ErrorCode error = error_of(candidate);
+            largest_tolerated_ = std::max(largest_tolerated_, error);
+            nearest_triangles_->add(
+                {tree_.side(candidate.block).prims[candidate.lane],
+                 block_triangle(tree_.block(candidate.block), candidate.lane)},
+                std::max(0.0, to_metres(candidate.lower - error_in_quanta(error))));
             if (nearest_triangles_->dropped_m() < kInfinity)
             {
                 floor_ = std::min(floor_, to_quanta(nearest_triangles_->dropped_m()));
             }
         }
-        if (candidate.lower > limit_)
+        if (is_too_far(candidate))
         {
             return;
         }
@@ -388,14 +399,25 @@ private:
     {
         for (const Candidate& candidate : candidates_)
         {
-            if (candidate.lower > limit_)
+            if (is_too_far(candidate))
             {
                 continue;
             }
             const ClosestPoint closest = closest_point(candidate.block, candidate.lane);
             const double distance = std::sqrt(closest.distance_sq);
-            exact_lower_ = std::min(exact_lower_, distance - closest.distance_error);
-            upper_ = std::min(upper_, distance + closest.distance_error);
+            const double lower = distance - closest.distance_error;
+            if (const ErrorCode error = error_of(candidate); error == 0)
+            {
+                exact_lower_ = std::min(exact_lower_, lower);
+                upper_ = std::min(upper_, distance + closest.distance_error);
+            }
+            else
+            {
+                tolerated_lower_ =
+                    std::min(tolerated_lower_,
+                             lower - static_cast<double>(error_in_quanta(error)) * quantum_);
+                bound_by_corners(candidate);
+            }
             const FaceId face = tree_.face_of(tree_.side(candidate.block).prims[candidate.lane]);
             if (nearest_face_.is_none() || closest.distance_sq < nearest_.distance_sq ||
                 (closest.distance_sq == nearest_.distance_sq && face < nearest_face_))
@@ -408,6 +430,25 @@ private:
         candidates_.clear();
     }
 
+    [[nodiscard]] ErrorCode error_of(const Candidate& candidate) const noexcept
+    {
+        return tree_.side(candidate.block).errors[candidate.lane];
+    }
+    /// Neither it nor what it stands for is the nearest.
+    [[nodiscard]] bool is_too_far(const Candidate& candidate) const noexcept
+    {
+        return candidate.lower > limit_ + error_in_quanta(tolerance_);
+    }
+    /// The corners of a face that is not exact are original vertices.
+    void bound_by_corners(const Candidate& candidate) noexcept
+    {
+        for (const Vec3& corner :
+             to_triangle(block_triangle(tree_.block(candidate.block), candidate.lane)))
+        {
+            upper_ = std::min(upper_, (corner - center_).norm() * kRootRoundedUp);
+        }
+    }
+
     static constexpr std::size_t kCandidates = 64;
     /// A remembered block this much farther than the last answer is not where the surface is now.
     static constexpr float kPoorLimit = 2.0F;
@@ -417,6 +458,8 @@ private:
     double quantum_;
     double reach_;
     float share_; ///< Of the limit: what is farther is not looked at without a face in reach.
+    ErrorCode tolerance_; ///< Faces with no larger error count as the surface.
+    double tolerance_m_;
     WalkBudget& budget_;
     std::optional<NearestTriangles> nearest_triangles_; ///< None when nothing is collected.
     KernelProbe probe_;
@@ -429,6 +472,8 @@ private:
     double unproven_{kInfinity};    ///< what is not known exactly is at least this far away.
     StaticVector<Candidate, kCandidates> candidates_;
     double exact_lower_{kInfinity};
+    double tolerated_lower_{kInfinity}; ///< Of what faces within the tolerance stand for.
+    ErrorCode largest_tolerated_{0};
     double upper_{kInfinity};
     ClosestPoint nearest_;
     FaceId nearest_face_{};
@@ -461,14 +506,15 @@ DistanceAnswer answer_from_afar(const AbTree& tree, const Vec3& center_m, double
 
 /// Not inlined: a rehearsal must run the same machine code as the query.
 [[gnu::noinline]] DistanceAnswer search(const AbTree& tree, const Vec3& center_m, double reach_m,
-                                        double band_m, ProofShare share, QueryMemory& memory,
-                                        WalkBudget& budget, LocalSurface* surface) noexcept
+                                        double band_m, ProofShare share, ErrorCode tolerance,
+                                        QueryMemory& memory, WalkBudget& budget,
+                                        LocalSurface* surface) noexcept
 {
     if (is_beyond_kernels(center_m, tree.quantum_m()))
     {
         return answer_from_afar(tree, center_m, reach_m);
     }
-    SurfaceSearch search(tree, center_m, reach_m, band_m, share, budget, surface);
+    SurfaceSearch search(tree, center_m, reach_m, band_m, share, tolerance, budget, surface);
     search.run(memory);
     return search.answer();
 }
@@ -476,19 +522,21 @@ DistanceAnswer answer_from_afar(const AbTree& tree, const Vec3& center_m, double
 } // namespace
 
 void gather_surface(const AbTree& tree, const Vec3& center_m, double reach_m, QueryMemory& memory,
-                    WalkBudget& budget, LocalSurface& surface, ProofShare share) noexcept
+                    WalkBudget& budget, LocalSurface& surface, ProofShare share,
+                    ErrorCode tolerance) noexcept
 {
     surface.center_m = center_m;
     surface.count = 0;
     surface.truncated = false;
-    surface.answer = search(tree, center_m, reach_m, kInfinity, share, memory, budget, &surface);
+    surface.answer =
+        search(tree, center_m, reach_m, kInfinity, share, tolerance, memory, budget, &surface);
     surface.is_cut = surface.truncated || budget.is_spent;
 }
 
 DistanceAnswer query_distance(const AbTree& tree, const Vec3& center_m, double band_m,
                               QueryMemory& memory, WalkBudget& budget) noexcept
 {
-    return search(tree, center_m, 0.0, band_m, ProofShare::all, memory, budget, nullptr);
+    return search(tree, center_m, 0.0, band_m, ProofShare::all, 0, memory, budget, nullptr);
 }
 
 } // namespace tactus

@@ -24,12 +24,13 @@ inline constexpr float kProofShare = 0.9F;
     return share == ProofShare::all ? 1.0F : kProofShare;
 }
 
-/// Answers the distance question for a point and collects the exact triangles within `reach_m` of
-/// it, in one traversal of the tree.
+/// Answers the distance question for a point and collects the triangles of the surface within
+/// `reach_m` of it, in one traversal of the tree. Faces whose error is not above `tolerance` count
+/// as the surface, as exact ones do (code 0); their error is taken off L.
 ///
 /// L is the least of (distance - error) over active faces, U the least of the exact faces'
 /// distances and the distances to coarse corners (which are original vertices). Both include the
-/// kernels' error laws. Where an exact face is within reach both come from double precision. Where
+/// kernels' error laws. Where the surface is within reach both come from double precision. Where
 /// none is, the search stops at `share` of the best distance: most of it is all that "decided"
 /// needs. A traversal that runs out of budget, or a tree that is incomplete, lowers L and the
 /// certified radius to what was proven.
@@ -37,8 +38,8 @@ inline constexpr float kProofShare = 0.9F;
 /// Writes `surface` completely. Haptic thread; cost: the nodes near the ball, about 5 ns a triangle
 /// in it.
 void gather_surface(const AbTree& tree, const Vec3& center_m, double reach_m, QueryMemory& memory,
-                    WalkBudget& budget, LocalSurface& surface,
-                    ProofShare share = ProofShare::most) noexcept TACTUS_NONBLOCKING;
+                    WalkBudget& budget, LocalSurface& surface, ProofShare share = ProofShare::most,
+                    ErrorCode tolerance = 0) noexcept TACTUS_NONBLOCKING;
 
 /// The distance question alone, within `band_m` (infinity for no band): beyond it L is the band and
 /// U is infinite.

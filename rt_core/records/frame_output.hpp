@@ -92,9 +92,11 @@ struct PairOutput
     Vec3 point_m{0.0, 0.0, 0.0};
     double lower_m{0.0}; ///< From the core, >= 0; the tool's radius is not taken off.
     double upper_m{0.0}; ///< Likewise; infinite where nothing is known yet.
-    /// All original faces within it of the core are active and exact.
+    /// All original faces within it of the core are active and exact, or stood for by faces of an
+    /// error of at most tolerated_m.
     double certified_radius_m{0.0};
-    FaceId nearest_face{};               ///< None when there is no exact one in reach.
+    double tolerated_m{0.0};             ///< 0 where all faces in reach are exact.
+    FaceId nearest_face{};               ///< None when there is none of the surface in reach.
     Vec3 nearest_point_m{0.0, 0.0, 0.0}; ///< On that face; without one of no meaning.
     bool skipped{false};                 ///< Answered from the last distance and the motion since.
     TriangleFeature nearest_feature{TriangleFeature::interior}; ///< Of the nearest face.

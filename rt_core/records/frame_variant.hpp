@@ -30,8 +30,8 @@ struct FrameVariant
     /// Above 0 every coarse face within so many times the reach is split, whatever its error;
     /// answers are what the faces' errors prove all the same.
     double fixed_radius{0.0};
-    /// Coarse faces whose error is at most this stay as they are: near the surface answers are
-    /// brackets, and a proxy in touch waits. Model frame.
+    /// Above 0 coarse faces count as the surface whose error is at most this, whatever
+    /// FrameSetup::force_tolerance_n and the pools say. Model frame.
     double tolerance_m{0.0};
 };
 

@@ -17,7 +17,7 @@
 namespace tactus
 {
 
-/// An exact triangle near a tool, in the model's frame. 40 B.
+/// A triangle of the surface near a tool, in the model's frame. 40 B.
 struct LocalTriangle
 {
     PrimId prim{}; ///< Until the next frame; AbTree::face_of() knows its lasting name.
@@ -31,6 +31,9 @@ enum class AnswerKind : std::uint8_t
     decided, ///< L is above the tool's reach: there is no contact, proven without refining.
     bracket, ///< L < U and the question is open.
     stale,   ///< Of an older revision or pose than allowed; L and U hold for that one only.
+    /// As exact, where coarse faces whose error is within the tolerance count as the surface: their
+    /// error is taken off L, and U comes from exact faces and from corners.
+    within_tolerance,
 };
 
 /// The distance from a tool's core to a model, in the model's frame and metres.
@@ -39,17 +42,26 @@ struct DistanceAnswer
     AnswerKind kind{AnswerKind::bracket};
     double lower_m{0.0};       ///< L: no original surface is nearer.
     double upper_m{kInfinity}; ///< U: some is within this.
-    /// All original faces within this distance of the core are active and exact; negative when not
-    /// even those that touch it are.
+    /// All original faces within this distance of the core are active and exact, or stood for by
+    /// faces within the tolerance; negative when not even those that touch it are.
     double certified_radius_m{-1.0};
-    FaceId nearest_face{}; ///< Of the nearest exact face; none when there is none in reach.
+    /// The largest error of a face near the tool that counts as the surface.
+    double tolerated_m{0.0};
+    FaceId nearest_face{}; ///< The nearest of the surface; none when there is none in reach.
     Vec3 tool_point_m{0.0, 0.0, 0.0};    ///< Of the core: the nearest one to the surface.
     Vec3 nearest_point_m{0.0, 0.0, 0.0}; ///< Of the surface.
     TriangleFeature nearest_feature{TriangleFeature::interior};
 };
 
-/// Everything the force stage needs of one pair: the exact triangles within the certified distance
-/// of the tool's core. In order of the traversal; the force does not depend on it.
+/// Whether the nearest place of the surface is known.
+[[nodiscard]] constexpr bool is_known(AnswerKind kind) noexcept
+{
+    return kind == AnswerKind::exact || kind == AnswerKind::within_tolerance;
+}
+
+/// Everything the force stage needs of one pair: the triangles of the surface, exact or within the
+/// tolerance, that are within the certified distance of the tool's core. In order of the traversal;
+/// the force does not depend on it.
 struct LocalSurface
 {
     Vec3 center_m{0.0, 0.0, 0.0}; ///< Of the core, in the model's frame.

@@ -153,7 +153,8 @@ void Coarsener::look_at(const Place& place, std::span<const RefineRequest> reque
     ++work.scanned;
     work.budget.spend(WorkCost::scan);
     const VsplitRecord& record = pages_->slots().pages[place.slot].records[place.record];
-    if (const double slack = slack_of(record, requests); slack > 0.0)
+    const double slack = slack_of(record, requests);
+    if (slack > 0.0 && !is_needless(record, requests))
     {
         list_when_left(place, slack);
         return;
@@ -180,6 +181,17 @@ void Coarsener::look_at(const Place& place, std::span<const RefineRequest> reque
 void Coarsener::look_soon(RecordId record) noexcept
 {
     list(place_of(record), cursor_);
+}
+
+/// Whether the faces without it would do for all who ask: a smaller error is none of theirs.
+bool Coarsener::is_needless(const VsplitRecord& record,
+                            std::span<const RefineRequest> requests) const noexcept
+{
+    ErrorCode least = 255;
+    for_each_question(requests, [&](const RefineQuestion& question)
+                      { least = std::min(least, question.tolerance); });
+    return least != 0 && std::ranges::max(record.error) <= least &&
+           forest_->error_before(record) <= least;
 }
 
 /// How much farther the tools have to go before the record is left behind by all of them.

@@ -84,6 +84,8 @@ private:
                  WorkCounters& work) noexcept;
     [[nodiscard]] double slack_of(const VsplitRecord& record,
                                   std::span<const RefineRequest> requests) const noexcept;
+    [[nodiscard]] bool is_needless(const VsplitRecord& record,
+                                   std::span<const RefineRequest> requests) const noexcept;
 
     VertexForest* forest_;
     PageTable* pages_;

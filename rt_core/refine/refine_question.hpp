@@ -7,6 +7,8 @@
 #include "rt_core/query/near_faces.hpp"
 #include "rt_core/query/other_surface.hpp"
 #include "rt_core/records/urgency.hpp"
+#include "rt_core/records/work_counters.hpp"
+#include "rt_core/spm/error_code.hpp"
 #include "rt_core/spm/ids.hpp"
 
 #include <algorithm>
@@ -24,6 +26,7 @@ struct RefineMemory
     /// No coarse face's distance from the centre minus its error is below this. While it is not
     /// below the reach there is nothing to split, and nobody needs to look.
     double certified_m{0.0};
+    ErrorCode tolerance{0}; ///< Larger errors are meant by "coarse".
     bool is_known{false};
     KernelProbe probe{}; ///< Of this frame's centre.
 };
@@ -45,7 +48,7 @@ struct RefineQuestion
     double moved_m{0.0};      ///< No point of the surface has moved farther since the last frame.
     double ahead_m{0.0};      ///< How much farther than usual beyond the reach is refined.
     bool counts_errors{true}; ///< Without: coarse faces are wanted by distance alone.
-    double tolerance_m{0.0};  ///< Coarse faces with no larger error are not wanted.
+    ErrorCode tolerance{0};   ///< Faces with no larger error need no split.
     UnfinishedSearch* unfinished{nullptr}; ///< Of this question, near another surface; or null.
     /// So far from where it is needed the question is asked, because that is where it will be: what
     /// only it wants may wait. 0: it is needed now.
@@ -68,6 +71,8 @@ struct Closure
     std::uint32_t first_held{kNone}; ///< In the refiner's list.
     std::uint32_t saved{0};          ///< Splits that the pair left to others: see SplitShares.
     std::uint32_t waited{0};         ///< Frames on end in which nothing was left for it.
+    /// What was in the way of something that is needed now, in the last frame.
+    FrameFault late_for{FrameFault::none};
 };
 
 /// What one pair asks of one model in a frame; without a question, that it asks no more.

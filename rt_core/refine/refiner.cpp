@@ -44,12 +44,6 @@ double excess_of(const RefineQuestion& question, double lower_m) noexcept
     return lower_m - question.reach_m + question.later_m;
 }
 
-/// Whether a coarse face of this error may stay as it is.
-bool is_good_enough(const RefineQuestion& question, double error_m) noexcept
-{
-    return error_m <= question.tolerance_m;
-}
-
 /// What of a face's error counts.
 double counted(const RefineQuestion& question, double error_m) noexcept
 {
@@ -219,8 +213,9 @@ void Refiner::follow(const RefineQuestion& question, double& farthest_m, bool& i
     TACTUS_ASSERT(!is_beyond_kernels(question.center_m, tree_->quantum_m()));
     RefineMemory& memory = *question.memory;
     memory.probe = make_probe(question.center_m, tree_->quantum_m());
-    if (!memory.is_known)
+    if (!memory.is_known || memory.tolerance != question.tolerance)
     {
+        memory.tolerance = question.tolerance;
         memory.center_m = question.center_m;
         memory.keep_m = question.keep_m;
         memory.certified_m = 0.0;
@@ -310,7 +305,7 @@ bool Refiner::gather_near_surface(const RefineQuestion& question, std::uint32_t 
             const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
             const double bound =
                 static_cast<double>(error_in_quanta(side.errors[lane])) * quantum_m_;
-            if (!is_good_enough(question, bound))
+            if (side.errors[lane] > question.tolerance)
             {
                 take(side.prims[lane],
                      near.gap_m(block, lane) + not_counted(question, bound) + question.span_m,
@@ -325,18 +320,16 @@ void Refiner::gather_block(std::uint32_t index, const RefineQuestion& question) 
 {
     const BlockGeometry& block = tree_->block(index);
     const BlockSide& side = tree_->side(index);
+    const std::uint32_t coarse = lanes_above(side, question.tolerance);
     FaceBounds bounds; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
-    bound_faces(tree_->kernels(), block, side.coarse, question.memory->probe, bounds);
-    for (std::uint32_t lanes = side.coarse; lanes != 0; lanes &= lanes - 1)
+    bound_faces(tree_->kernels(), block, coarse, question.memory->probe, bounds);
+    for (std::uint32_t lanes = coarse; lanes != 0; lanes &= lanes - 1)
     {
         const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
         const double bound = static_cast<double>(error_in_quanta(side.errors[lane])) * quantum_m_;
-        if (!is_good_enough(question, bound))
-        {
-            take(side.prims[lane],
-                 static_cast<double>(bounds.lower[lane]) * quantum_m_ - counted(question, bound),
-                 question);
-        }
+        take(side.prims[lane],
+             static_cast<double>(bounds.lower[lane]) * quantum_m_ - counted(question, bound),
+             question);
     }
 }
 
@@ -414,6 +407,10 @@ double Refiner::excess_of_pending(const RefineRequest& request) const noexcept
         }
         for (const RefineQuestion& question : request.questions)
         {
+            if (forest_->error_of(prim) <= question.tolerance)
+            {
+                continue;
+            }
             const double lower = lower_bound(prim, question);
             excess = lower <= target_of(question) ? std::min(excess, excess_of(question, lower))
                                                   : excess;
@@ -587,7 +584,7 @@ void Refiner::consider_star(RecordId id, const VsplitRecord& record,
         for (std::uint32_t lanes = coarse.lanes; lanes != 0; lanes &= lanes - 1)
         {
             const auto place = static_cast<std::size_t>(std::countr_zero(lanes));
-            if (is_good_enough(question, coarse.errors_m[place]))
+            if (record.error[place] <= question.tolerance)
             {
                 continue;
             }

@@ -67,4 +67,12 @@ static_assert(kErrorQuanta[1] == 1.0F / 256.0F);
     return static_cast<ErrorCode>(code);
 }
 
+/// The largest code whose bound is not above `quanta`: 0 below the smallest.
+[[nodiscard]] constexpr ErrorCode largest_code_within(double quanta) noexcept
+{
+    const ErrorCode code = encode_error(quanta);
+    return static_cast<double>(error_in_quanta(code)) <= quanta ? code
+                                                                : static_cast<ErrorCode>(code - 1);
+}
+
 } // namespace tactus
