@@ -564,7 +564,7 @@ bool is_settled(const tactus_frame& frame)
            std::ranges::all_of(output.pairs,
                                [&frame](const PairOutput& pair)
                                {
-                                   return pair.kind == AnswerKind::exact ||
+                                   return is_known(pair.kind) ||
                                           (pair.kind == AnswerKind::decided &&
                                            !frame.frame->tool(pair.tool).spec().wants_distance);
                                }) &&
@@ -639,7 +639,7 @@ void write_answers(const tactus_frame& frame, const tactus_poses& poses, std::si
         write(poses.lower_m, index, pair.lower_m);
         write(poses.upper_m, index, pair.upper_m);
         write(poses.kind, index, static_cast<std::uint8_t>(pair.kind));
-        if (pair.kind == AnswerKind::exact)
+        if (is_known(pair.kind))
         {
             write(poses.nearest_m, index, pair.nearest_point_m);
         }
@@ -649,6 +649,7 @@ static_assert(static_cast<int>(AnswerKind::exact) == TACTUS_EXACT);
 static_assert(static_cast<int>(AnswerKind::decided) == TACTUS_DECIDED);
 static_assert(static_cast<int>(AnswerKind::bracket) == TACTUS_BRACKET);
 static_assert(static_cast<int>(AnswerKind::stale) == TACTUS_STALE);
+static_assert(static_cast<int>(AnswerKind::within_tolerance) == TACTUS_WITHIN_TOLERANCE);
 static_assert(static_cast<int>(Side::unsigned_distance) == TACTUS_UNSIGNED);
 static_assert(static_cast<int>(Side::outside) == TACTUS_OUTSIDE);
 static_assert(static_cast<int>(Side::inside) == TACTUS_INSIDE);

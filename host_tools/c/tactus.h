@@ -215,7 +215,9 @@ typedef enum tactus_kind
     TACTUS_EXACT = 0,   /* lower_m and upper_m differ by rounding only. */
     TACTUS_DECIDED = 1, /* Proven to be out of touch. */
     TACTUS_BRACKET = 2, /* Lower bound and upper bound, and the question is open. */
-    TACTUS_STALE = 3    /* Of a pose that is too old. */
+    TACTUS_STALE = 3,   /* Of a pose that is too old. */
+    /* As exact, where coarser faces whose error is taken off lower_m count as the surface. */
+    TACTUS_WITHIN_TOLERANCE = 4
 } tactus_kind;
 
 /* All arrays are the caller's. N poses, T tools, J objects of the set-up, the last index fastest.

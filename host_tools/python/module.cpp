@@ -466,6 +466,7 @@ True
     module.attr("DECIDED") = static_cast<int>(TACTUS_DECIDED);
     module.attr("BRACKET") = static_cast<int>(TACTUS_BRACKET);
     module.attr("STALE") = static_cast<int>(TACTUS_STALE);
+    module.attr("WITHIN_TOLERANCE") = static_cast<int>(TACTUS_WITHIN_TOLERANCE);
     module.attr("IN_CONTACT") = TACTUS_IN_CONTACT;
     module.attr("FROZEN") = TACTUS_FROZEN;
     module.attr("SQUEEZED") = TACTUS_SQUEEZED;
@@ -560,7 +561,7 @@ A scale of 0.001 to 1000, within 10,000 m; friction of 0 to 3, the dynamic at mo
              "period_s"_a = 1e-3, "loads_whole"_a = false, "object_speed_max_m_per_s"_a = 0.5)
         .def("run", &Frame::run, "positions_m"_a, "rotations"_a = py::none(), "rounds"_a = 0,
              "Moves the tools through N poses, one frame each; with `rounds` as many, with loading "
-             "between, until the answers are exact or decided.")
+             "between, until the answers are exact, within tolerance or decided.")
         .def("load", &Frame::load, "One round of loading.")
         .def("place", &Frame::place, "object"_a, py::kw_only(), "rotation"_a = py::none(),
              "translation_m"_a = py::none(), "scale"_a = 1.0,

@@ -12,6 +12,7 @@ EXACT: int
 DECIDED: int
 BRACKET: int
 STALE: int
+WITHIN_TOLERANCE: int
 IN_CONTACT: int
 FROZEN: int
 SQUEEZED: int

@@ -90,7 +90,8 @@ std::string watch_line(const dds::WatchedController& controller)
 {
     const Telemetry& telemetry = controller.telemetry;
     const double frames = static_cast<double>(std::max<std::uint64_t>(telemetry.frame, 1));
-    const auto sure = static_cast<double>(telemetry.exact + telemetry.decided);
+    const auto sure =
+        static_cast<double>(telemetry.exact + telemetry.decided + telemetry.within_tolerance);
     std::string text =
         fmt::format("watch {}: {} frames, {:.1f} % sure, {} stale, {} missed, {} own faults",
                     controller.name, telemetry.frame, 100.0 * sure / frames, telemetry.stale,

@@ -227,10 +227,11 @@ struct Film::Maker
     }
 
 private:
-    /// As hrtc counts: decided before exact, bracket, stale.
+    /// As hrtc counts: decided before exact, within tolerance, bracket, stale.
     static AnswerKind worst_of(std::span<const PairOutput> pairs)
     {
-        constexpr std::array order{AnswerKind::stale, AnswerKind::bracket, AnswerKind::exact};
+        constexpr std::array order{AnswerKind::stale, AnswerKind::bracket,
+                                   AnswerKind::within_tolerance, AnswerKind::exact};
         for (const AnswerKind kind : order)
         {
             if (std::ranges::find(pairs, kind, &PairOutput::kind) != pairs.end())
@@ -383,6 +384,8 @@ LiveController Film::at(std::uint64_t frame) const
     telemetry.decided = moment.answers[static_cast<std::size_t>(AnswerKind::decided)];
     telemetry.bracket = moment.answers[static_cast<std::size_t>(AnswerKind::bracket)];
     telemetry.stale = moment.answers[static_cast<std::size_t>(AnswerKind::stale)];
+    telemetry.within_tolerance =
+        moment.answers[static_cast<std::size_t>(AnswerKind::within_tolerance)];
     telemetry.faults_now = moment.faults;
     telemetry.faults_seen = moment.faults_seen;
     telemetry.tool_count = static_cast<std::uint32_t>(tool_count_);

@@ -76,7 +76,7 @@ private:
         std::uint64_t scene{0};                 ///< Hash of the frame's changes,
         std::uint64_t pieces{0};                ///< of what came,
         std::uint64_t faces{0};                 ///< and of the models' state hashes.
-        std::array<std::uint32_t, 4> answers{}; ///< Frames so far, by the worst answer's kind.
+        std::array<std::uint32_t, 5> answers{}; ///< Frames so far, by the worst answer's kind.
         std::uint32_t faults{0};
         std::uint32_t faults_seen{0};
         std::uint32_t pairs_end{0};

@@ -27,7 +27,7 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array kKindNames{"exact", "decided", "bracket", "stale"};
+constexpr std::array kKindNames{"exact", "decided", "bracket", "stale", "within_tolerance"};
 
 /// Names of FrontTimes after the stages.
 const char* time_name(std::size_t i)
@@ -230,7 +230,8 @@ Json controller_json(const LiveController& controller, const ModelShelf& shelf)
              {{"exact", telemetry.exact},
               {"decided", telemetry.decided},
               {"bracket", telemetry.bracket},
-              {"stale", telemetry.stale}}},
+              {"stale", telemetry.stale},
+              {"within_tolerance", telemetry.within_tolerance}}},
             {"deadlines", controller.is_recorded ? Json(nullptr) : deadlines_json(telemetry)},
             {"faults", faults_of(telemetry.faults_now)},
             {"faults_seen", faults_of(telemetry.faults_seen)},

@@ -16,7 +16,7 @@ namespace tactus
 namespace
 {
 
-constexpr std::array kAnswerNames{"exact", "decided", "bracket", "stale"};
+constexpr std::array kAnswerNames{"exact", "decided", "bracket", "stale", "within_tolerance"};
 constexpr std::array kFeatureNames{"corner_0", "corner_1", "corner_2", "edge_0",
                                    "edge_1",   "edge_2",   "interior"};
 constexpr std::array kSideNames{"unsigned", "outside", "inside"};
@@ -165,6 +165,7 @@ void tell_run(FieldSink& sink, const RecordedSetup& setup)
     sink.integer("pose_age_max_ns", setup.pose_age_max_ns);
     sink.flag("static_when_it_fits", setup.static_when_it_fits);
     sink.text("prediction", kPredictionNames.at(static_cast<std::size_t>(setup.prediction)));
+    sink.number("force_tolerance_n", setup.force_tolerance_n);
     sink.text("compiler", setup.compiler);
     sink.text("architecture", setup.architecture);
     sink.text("kernels", setup.kernels);
@@ -268,6 +269,7 @@ void tell_pair(FieldSink& sink, const PairOutput& pair)
     sink.number("lower_m", pair.lower_m);
     sink.number("upper_m", pair.upper_m);
     sink.number("certified_radius_m", pair.certified_radius_m);
+    sink.number("tolerated_m", pair.tolerated_m);
     sink.vector("point_world_m", pair.point_m);
     sink.integer("nearest_face", known(pair.nearest_face));
     sink.vector("nearest_point_world_m", where(has_nearest, pair.nearest_point_m));

@@ -200,6 +200,7 @@ std::optional<Refusal> Controller::lay_out_pools(const Options& options)
     }
     setup_.static_when_it_fits = options.static_when_it_fits;
     setup_.prediction = options.prediction;
+    setup_.force_tolerance_n = options.force_tolerance_n;
     setup_.kernels = options.kernels != nullptr ? options.kernels : &best_kernels();
     setup_.period_ns = options.period().ns;
     const auto cache = static_cast<std::size_t>(options.cache_mib * kBytesPerMib);

@@ -190,6 +190,12 @@ void declare_force(CommandLine& line, Options& options)
                     "surface, which is within an eighth of it of the mesh; edges of more than "
                     "25 degrees stay [each facet is felt]")
         .number_between(kSmoothWidthMin_m, kSmoothWidthMax_m);
+    line.add_option("--force-tolerance", options.force_tolerance_n,
+                    "Coarser levels count as the surface where that changes a force by no more "
+                    "than this, in newtons, and farther where the pools have no room for finer "
+                    "ones; 0: only exact faces do. Not for mesh tools")
+        .number_between(0.0, kForceToleranceMax_n)
+        .show_default();
     line.add_option("--slew", options.slew_share_per_ms,
                     "How fast a force may change beside what hand and objects make, as a share of "
                     "the device's largest force in a millisecond")

@@ -50,8 +50,10 @@ Json answers_of(const AnswerCounts& answers, double diagonal_m)
 {
     return {{"exact", answers.exact},
             {"decided", answers.decided},
+            {"within_tolerance", answers.within_tolerance},
             {"bracket", answers.bracket},
             {"stale", answers.stale},
+            {"tolerated_max_m", answers.tolerated_max_m},
             {"longest_inexact_run", answers.longest_inexact_run},
             {"width_max_diag", answers.width_max_m / diagonal_m}};
 }

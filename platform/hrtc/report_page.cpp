@@ -161,7 +161,7 @@ void add_verdict(const Json& report, plot::Page& page)
     const auto brackets = report["answers"]["bracket"].get<std::uint64_t>();
     page.verdict(fmt::format("No deadline missed by the loop's own fault, {} by the machine's; {}.",
                              report["deadline"]["machine_late"].get<std::uint64_t>(),
-                             brackets == 0 ? "every answer exact or decided"
+                             brackets == 0 ? "no answer is a bracket"
                                            : fmt::format("{} answers are brackets", brackets)),
                  true);
 }
@@ -232,10 +232,9 @@ std::vector<plot::Chart> series_of(const Json& report, const RunStatistics& stat
         }
         return made;
     };
-    std::vector<plot::Chart> charts{
-        chart("Force on the device", "N"),
-        chart("Widest bracket; 0 where every answer is exact or decided", "mm"),
-        chart("Times of the stages", "us")};
+    std::vector<plot::Chart> charts{chart("Force on the device", "N"),
+                                    chart("Widest bracket; 0 where no answer is open", "mm"),
+                                    chart("Times of the stages", "us")};
     charts[0].lines = {line("force", [](const SeriesPoint& point) { return point.force_n; })};
     charts[1].lines = {
         line("bracket", [](const SeriesPoint& point) { return 1e3F * point.width_m; })};

@@ -163,9 +163,15 @@ std::string answers_text(const Json& report)
     const auto share = [&](const char* kind)
     { return 100.0 * report["answers"][kind].get<double>() / frames; };
     return fmt::format(
-        "exact {:.2f} %, decided {:.2f} %, bracket {:.2f} %, stale {:.2f} %; "
+        "exact {:.2f} %, decided {:.2f} %, {}bracket {:.2f} %, stale {:.2f} %; "
         "longest inexact run {}",
-        share("exact"), share("decided"), share("bracket"), share("stale"),
+        share("exact"), share("decided"),
+        share("within_tolerance") > 0.0
+            ? fmt::format("within {:.2g} um {:.2f} %, ",
+                          1e6 * report["answers"]["tolerated_max_m"].get<double>(),
+                          share("within_tolerance"))
+            : "",
+        share("bracket"), share("stale"),
         counted(report["answers"]["longest_inexact_run"].get<std::uint64_t>(), "frame"));
 }
 

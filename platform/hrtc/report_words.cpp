@@ -12,6 +12,7 @@ constexpr ReportWord kWords[] = {
     {"exact", "answer: the distance to the original surface, to the last bit; good"},
     {"decided", "answer: proven clear of the surface, which lies beyond the tool's reach; good"},
     {"bracket", "answer: between two bounds, since data is missing or the work was too much"},
+    {"within", "answer: as exact, but coarser faces that are off by no more count as the surface"},
     {"stale", "answer: an object moves, and its host was silent. Force off: that, or a device "
               "without a new sample for 20 ms"},
     {"in contact", "share of the frames in which a tool touched something"},

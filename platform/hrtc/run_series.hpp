@@ -16,7 +16,7 @@ namespace tactus::hrtc
 struct SeriesPoint
 {
     float force_n{0.0F}; ///< Largest on a device.
-    float width_m{0.0F}; ///< Of the widest bracket; 0: every answer exact or decided.
+    float width_m{0.0F}; ///< Of the widest bracket; 0: no answer was open.
     float frame_us{0.0F};
     std::array<float, kStages> stage_us{};
 

@@ -20,12 +20,14 @@ int badness(AnswerKind kind) noexcept
         return 0;
     case AnswerKind::exact:
         return 1;
-    case AnswerKind::bracket:
+    case AnswerKind::within_tolerance:
         return 2;
-    case AnswerKind::stale:
+    case AnswerKind::bracket:
         return 3;
+    case AnswerKind::stale:
+        return 4;
     }
-    return 3;
+    return 4;
 }
 
 bool is_felt(const ToolOutput& output, const ToolForce& force) noexcept
@@ -35,15 +37,17 @@ bool is_felt(const ToolOutput& output, const ToolForce& force) noexcept
 
 } // namespace
 
-void AnswerCounts::add(AnswerKind kind, double width_m) noexcept
+void AnswerCounts::add(AnswerKind kind, double width_m, double tolerated_m) noexcept
 {
     const bool is_inexact = kind == AnswerKind::bracket || kind == AnswerKind::stale;
     exact += kind == AnswerKind::exact ? 1 : 0;
     decided += kind == AnswerKind::decided ? 1 : 0;
+    within_tolerance += kind == AnswerKind::within_tolerance ? 1 : 0;
     bracket += kind == AnswerKind::bracket ? 1 : 0;
     stale += kind == AnswerKind::stale ? 1 : 0;
     inexact_run_ = is_inexact ? inexact_run_ + 1 : 0;
     longest_inexact_run = std::max(longest_inexact_run, inexact_run_);
+    tolerated_max_m = std::max(tolerated_max_m, tolerated_m);
     width_max_m = is_inexact ? std::max(width_max_m, width_m) : width_max_m;
 }
 
@@ -152,20 +156,23 @@ double RunStatistics::add_answers(const FrameOutput& output) noexcept
 {
     AnswerKind worst = AnswerKind::decided;
     double widest_m = 0.0;
+    double tolerated_m = 0.0;
     for (const PairOutput& pair : output.pairs)
     {
         const double width_m = pair.upper_m - pair.lower_m;
-        pairs[pair.tool * objects + pair.object].add(pair.kind, width_m);
+        const double here_m = pair.kind == AnswerKind::within_tolerance ? pair.tolerated_m : 0.0;
+        pairs[pair.tool * objects + pair.object].add(pair.kind, width_m, here_m);
+        tolerated_m = std::max(tolerated_m, here_m);
         if (badness(pair.kind) > badness(worst))
         {
             worst = pair.kind;
         }
-        if (badness(pair.kind) > badness(AnswerKind::exact))
+        if (badness(pair.kind) > badness(AnswerKind::within_tolerance))
         {
             widest_m = std::max(widest_m, width_m);
         }
     }
-    answers.add(worst, widest_m);
+    answers.add(worst, widest_m, tolerated_m);
     return widest_m;
 }
 

@@ -27,13 +27,15 @@ struct AnswerCounts
     std::uint64_t decided{0};
     std::uint64_t bracket{0};
     std::uint64_t stale{0};
+    std::uint64_t within_tolerance{0};
     std::uint64_t longest_inexact_run{0};
-    double width_max_m{0.0}; ///< Widest bracket of a frame that was neither exact nor decided.
+    double width_max_m{0.0};     ///< Widest bracket of a frame that was open or stale.
+    double tolerated_max_m{0.0}; ///< Of answers within the tolerance.
 
-    void add(AnswerKind kind, double width_m) noexcept;
+    void add(AnswerKind kind, double width_m, double tolerated_m) noexcept;
     [[nodiscard]] std::uint64_t in_all() const noexcept
     {
-        return exact + decided + bracket + stale;
+        return exact + decided + within_tolerance + bracket + stale;
     }
 
 private:

@@ -24,6 +24,7 @@ void TelemetryTap::show(const ShownFrame& frame, const RunStatistics& statistics
     news_.decided = statistics.answers.decided;
     news_.bracket = statistics.answers.bracket;
     news_.stale = statistics.answers.stale;
+    news_.within_tolerance = statistics.answers.within_tolerance;
     news_.missed = statistics.deadlines.missed;
     news_.own_faults = statistics.deadlines.own_faults;
     news_.machine_late = statistics.deadlines.machine_late;

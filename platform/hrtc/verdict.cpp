@@ -118,7 +118,8 @@ void Judge::judge_answers()
 {
     const Json& answers = report_["answers"];
     if (const auto brackets = answers["bracket"].get<std::uint64_t>();
-        brackets > 0 && answers["exact"].get<std::uint64_t>() == 0)
+        brackets > 0 && answers["exact"].get<std::uint64_t>() == 0 &&
+        answers["within_tolerance"].get<std::uint64_t>() == 0)
     {
         say_loss(RunPart::scene,
                  "no answer was exact, " + counted(brackets, "was a bracket", "were brackets"));
@@ -149,7 +150,9 @@ std::string Judge::why_untouched() const
         return "the tool began inside";
     }
     const Json& answers = report_["answers"];
-    if (answers["exact"].get<std::uint64_t>() + answers["bracket"].get<std::uint64_t>() == 0)
+    if (answers["exact"].get<std::uint64_t>() + answers["bracket"].get<std::uint64_t>() +
+            answers["within_tolerance"].get<std::uint64_t>() ==
+        0)
     {
         return "no tool came near an object; the lines at the start say where they are";
     }

@@ -12,7 +12,7 @@ namespace
 
 // A field that is added to one of these has to be hashed below.
 static_assert(sizeof(ToolOutput) == 256);
-static_assert(sizeof(PairOutput) == 128);
+static_assert(sizeof(PairOutput) == 136);
 static_assert(sizeof(Contact) == 96);
 static_assert(sizeof(MeshReport) == 8 * kMaxMeetingFaces + 24);
 static_assert(sizeof(ModelOutput) == 80);
@@ -123,6 +123,7 @@ std::uint64_t hash_pairs(std::span<const PairOutput> pairs) noexcept
         hash.add(pair.lower_m);
         hash.add(pair.upper_m);
         hash.add(pair.certified_radius_m);
+        hash.add(pair.tolerated_m);
         hash.add(std::uint64_t{pair.nearest_face.value});
         hash.add(pair.nearest_point_m);
         hash.add(std::uint64_t{pair.skipped});

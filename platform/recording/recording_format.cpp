@@ -51,6 +51,7 @@ RecordedSetup to_recorded(const FrameSetup& setup)
     recorded.pose_age_max_ns = setup.pose_age_max_ns;
     recorded.static_when_it_fits = setup.static_when_it_fits;
     recorded.prediction = setup.prediction;
+    recorded.force_tolerance_n = setup.force_tolerance_n;
     recorded.tools.assign(setup.tools.begin(), setup.tools.end());
     recorded.objects.assign(setup.objects.begin(), setup.objects.end());
     recorded.poses.assign(setup.poses.begin(), setup.poses.end());

@@ -70,6 +70,7 @@ struct RecordedSetup
     std::int64_t pose_age_max_ns{100'000'000};
     bool static_when_it_fits{false};
     Prediction prediction{Prediction::automatic};
+    double force_tolerance_n{0.0};
     std::vector<ToolSpec> tools;
     HullVertices hull_vertices; ///< Of tools that were read from a recording.
     std::vector<ObjectSpec> objects;

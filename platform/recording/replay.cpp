@@ -80,6 +80,7 @@ private:
         setup_.pose_age_max_ns = setup.pose_age_max_ns;
         setup_.static_when_it_fits = setup.static_when_it_fits;
         setup_.prediction = setup.prediction;
+        setup_.force_tolerance_n = setup.force_tolerance_n;
         setup_.kernels = kernels;
         memory_.resize(Frame::required_bytes(setup_) / sizeof(CacheLine) + 1);
         arena_.emplace(std::as_writable_bytes(std::span(memory_)));

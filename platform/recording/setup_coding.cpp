@@ -7,6 +7,7 @@
 #include "platform/recording/change_coding.hpp"
 #include "platform/recording/core_coding.hpp"
 #include "rt_core/frame/frame.hpp"
+#include "rt_core/limits.hpp"
 
 #include <algorithm>
 #include <array>
@@ -218,6 +219,7 @@ std::vector<std::byte> code_setup(const RecordedSetup& setup)
     {
         append(bytes, capacity);
     }
+    append(bytes, setup.force_tolerance_n);
     return bytes;
 }
 
@@ -302,9 +304,15 @@ std::optional<std::string> parse_setup(std::span<const std::byte> payload, Recor
     {
         *capacity = reader.read<std::uint32_t>();
     }
+    setup.force_tolerance_n = reader.read<double>();
     if (Fault fault = unless_whole(reader, "setup"))
     {
         return fault;
+    }
+    if (!(setup.force_tolerance_n >= 0.0 && setup.force_tolerance_n <= kForceToleranceMax_n))
+    {
+        return "the force tolerance is " + std::to_string(setup.force_tolerance_n) + " N; 0 to " +
+               std::to_string(kForceToleranceMax_n) + " are allowed";
     }
     if (guests.base_cells == 0)
     {

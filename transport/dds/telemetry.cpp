@@ -173,8 +173,8 @@ bool is_sound(const ToolTelemetry& tool)
 /// Of an object that nothing is known of yet the upper bound is infinite.
 bool is_sound(const PairTelemetry& pair, std::uint32_t tools)
 {
-    return pair.tool < tools && pair.kind <= AnswerKind::stale && pair.lower_m <= pair.upper_m &&
-           all_finite(pair.point_m) && all_finite(pair.force_n);
+    return pair.tool < tools && pair.kind <= AnswerKind::within_tolerance &&
+           pair.lower_m <= pair.upper_m && all_finite(pair.point_m) && all_finite(pair.force_n);
 }
 
 ModelIdentity identity_of(const tactus_v5_ModelTelemetry& wire)
@@ -195,6 +195,7 @@ void copy_counts(const From& from, To& to)
     to.decided = from.decided;
     to.bracket = from.bracket;
     to.stale = from.stale;
+    to.within_tolerance = from.within_tolerance;
     to.missed = from.missed;
     to.own_faults = from.own_faults;
     to.machine_late = from.machine_late;

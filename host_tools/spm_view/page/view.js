@@ -89,6 +89,7 @@ function show_figures(controller) {
     figure(list, "frame, longest", times ? `${times.frame[1].toFixed(0)} µs` : "-");
     figure(list, "exact", percent(answers.exact));
     figure(list, "decided", percent(answers.decided));
+    figure(list, "within tolerance", percent(answers.within_tolerance));
     figure(list, "bracket", percent(answers.bracket));
     figure(list, "stale", percent(answers.stale));
     const deadlines = controller.deadlines || NO_DEADLINES;
