@@ -63,6 +63,7 @@ FrameRig::FrameRig(const std::vector<const TestModel*>& models, const RigOptions
     setup.period_ns = options.period_ns;
     setup.static_when_it_fits = options.static_when_it_fits;
     setup.prediction = options.prediction;
+    setup.force_tolerance_n = options.force_tolerance_n;
     setup.variant = options.variant;
     setup.for_guests = options.for_guests;
     const std::vector<ModelSource> sources = plan_pools(setup, options);

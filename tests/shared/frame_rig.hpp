@@ -35,6 +35,7 @@ struct RigOptions
     bool cache_off{false};
     bool static_when_it_fits{false};
     Prediction prediction{Prediction::automatic};
+    double force_tolerance_n{0.0};
     FrameVariant variant;
     bool record{false}; ///< Keep a recording; frames must then run through step() only.
 };

@@ -27,7 +27,7 @@ for list in pages index_pages faces blocks nodes; do
 done
 check report.json machine '>' 0 models == 1 tools == 1 pairs == 1 period_ns == 1000000
 check report.json models.0.faces '>' 19000 tools.0.radius_m '>' 0 \
-    pairs.0.answers.exact+pairs.0.answers.decided '>' 0
+    pairs.0.answers.exact+pairs.0.answers.decided+pairs.0.answers.within_tolerance '>' 0
 
 check report.json frames == 3000 pools.total_bytes '<=' 2097152 wire.bytes_received '>' 0 \
     wire.host_lost == 0 work.splits '>' 0 force.max_n '>' 0 force.max_n '<' 20

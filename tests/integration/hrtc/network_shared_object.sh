@@ -75,7 +75,8 @@ for name in left right; do
         models.0.pose.moves '>' 100 models.0.pose.refused.rotation == 0 \
         models.0.pose.step_max_m '<' 0.01 models.0.pieces_refused == 0 wire.host_lost == 0 \
         force.max_n '>' 0 force.max_n '<=' "$touch_force_max_n" \
-        answers.exact+answers.decided+answers.bracket+answers.stale == '1*frames'
+        answers.exact+answers.decided+answers.within_tolerance+answers.bracket+answers.stale \
+            == '1*frames'
     check_contact "$name.json" force.contact_share 0.3
     check_clean "$name.json"
     # When the host died the object was stale after 100 ms, and then gone: the force faded for some

@@ -62,6 +62,7 @@ struct Example
         pair.lower_m = 65.0;
         pair.upper_m = 66.0;
         pair.certified_radius_m = 67.0;
+        pair.tolerated_m = 96.0;
         pair.nearest_face = FaceId{68};
         pair.nearest_point_m = Vec3(69.0, 70.0, 71.0);
         pair.nearest_feature = TriangleFeature::edge_2;
@@ -169,7 +170,7 @@ TEST(FrameExport, tells_every_value_under_its_name)
             "faults": ["tool_stuck"]}],
         "pairs": [{
             "object": 3, "answer": "exact", "point_world_m": [62.0, 63.0, 64.0], "lower_m": 65.0,
-            "upper_m": 66.0, "certified_radius_m": 67.0, "nearest_face": 68,
+            "upper_m": 66.0, "certified_radius_m": 67.0, "tolerated_m": 96.0, "nearest_face": 68,
             "nearest_point_world_m": [69.0, 70.0, 71.0], "nearest_feature": "edge_2",
             "damping_n_s_per_m": 72.0, "normal_world": [0.0, 0.0, 1.0], "side": "outside",
             "contacts": 0, "meeting_faces": null}],

@@ -74,7 +74,7 @@ TEST(PrometheusText, tells_of_each_name_once)
             types.push_back(line);
         }
     }
-    EXPECT_EQ(types.size(), 11U);
+    EXPECT_EQ(types.size(), 12U);
     std::ranges::sort(types);
     EXPECT_EQ(std::ranges::adjacent_find(types), types.end());
 }

@@ -31,7 +31,7 @@ Json report_of(const std::string& model)
         "run": {"version": "1.2.3", "started_utc": "2026-01-02T03:04:05Z", "devices": ["hand"],
                 "options": "rate=1000"},
         "frames": 5003, "period_ns": 1000003, "duration_s": 5.003, "times_us": {},
-        "answers": {"exact": 4001, "decided": 1002, "bracket": 0, "stale": 0,
+        "answers": {"exact": 4001, "decided": 1002, "within_tolerance": 0, "bracket": 0, "stale": 0,
                     "longest_inexact_run": 23, "width_max_diag": 1.234567e-5},
         "work": {"splits": 29, "merges": 31},
         "budgets": {"frame_us": 500, "at_floor": 37, "work": {"min": 41, "max": 41}},
@@ -259,7 +259,7 @@ TEST(ReportPage, says_what_went_wrong)
         return make_page(report, statistics_of(1), library()).find(wanted) != std::string::npos;
     };
     EXPECT_TRUE(verdict("good", "No deadline missed by the loop&#39;s own fault, 79 by the "
-                                "machine&#39;s; every answer exact or decided."));
+                                "machine&#39;s; no answer is a bracket."));
     report["answers"]["bracket"] = 7; // Proven bounds are no fault.
     EXPECT_TRUE(verdict("good", "No deadline missed by the loop&#39;s own fault, 79 by the "
                                 "machine&#39;s; 7 answers are brackets."));

@@ -20,7 +20,7 @@ using Report = nlohmann::ordered_json;
 Report good_report()
 {
     return Report::parse(R"({
-        "answers": {"exact": 40, "decided": 60, "bracket": 0, "stale": 0},
+        "answers": {"exact": 40, "decided": 60, "within_tolerance": 0, "bracket": 0, "stale": 0},
         "budgets": {"frame_us": null, "splits": 64}, "scene": {"limited": 0},
         "pools": {"total_bytes": 2000000},
         "wire": {"host_lost": false},
@@ -117,6 +117,10 @@ TEST(Verdict, is_never_good_without_one_exact_answer)
     report["answers"]["bracket"] = 4'655;
     EXPECT_EQ(verdict(report), "mesh and scene: no answer was exact, 4655 were brackets");
     EXPECT_TRUE(fails_when_strict(report));
+    report["answers"]["within_tolerance"] = 1;
+    EXPECT_EQ(verdict(report), "ok");
+    EXPECT_FALSE(fails_when_strict(report));
+    report["answers"]["within_tolerance"] = 0;
     report["answers"]["exact"] = 1;
     EXPECT_EQ(verdict(report), "ok");
 }
@@ -135,7 +139,8 @@ TEST(Verdict, says_why_nothing_was_touched)
     report["safety"]["begun"]["velocity"] = 2;
     EXPECT_EQ(verdict(report), nothing + "the force was off for velocity | controller: force off "
                                          "for: velocity 2");
-    report["answers"] = {{"exact", 0}, {"decided", 100}, {"bracket", 0}, {"stale", 0}};
+    report["answers"] = {
+        {"exact", 0}, {"decided", 100}, {"within_tolerance", 0}, {"bracket", 0}, {"stale", 0}};
     report["safety"]["begun"]["velocity"] = 0;
     EXPECT_EQ(verdict(report), nothing + "no tool came near an object; the lines at the start say "
                                          "where they are");

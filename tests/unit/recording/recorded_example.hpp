@@ -86,6 +86,7 @@ inline RecordedSetup example_setup(const TinyModel& model)
     setup.models = {{{4, 1, 400, 60, 40, false}, model.header, model.base}};
     setup.static_when_it_fits = true;
     setup.prediction = Prediction::quadratic;
+    setup.force_tolerance_n = 0.0625;
     setup.compiler = "some compiler";
     setup.architecture = "some processor";
     setup.kernels = "some kernels";

@@ -72,6 +72,7 @@ std::vector<Part> parts()
           pair([](auto& p) { p.kind = AnswerKind::stale; }),
           pair([](auto& p) { p.point_m.x() = 1.0; }), pair([](auto& p) { p.lower_m = 1.0; }),
           pair([](auto& p) { p.upper_m = 1.0; }), pair([](auto& p) { p.certified_radius_m = 1.0; }),
+          pair([](auto& p) { p.tolerated_m = 1.0; }),
           pair([](auto& p) { p.nearest_face = FaceId{1}; }),
           pair([](auto& p) { p.nearest_point_m.x() = 1.0; }),
           pair([](auto& p) { p.skipped = true; }), pair([](auto& p) { p.is_shed = true; }),

@@ -4,10 +4,12 @@
 #include "platform/recording/recording.hpp"
 #include "platform/recording/replay.hpp"
 #include "rt_core/base/crc32c.hpp"
+#include "rt_core/limits.hpp"
 #include "tests/unit/recording/recorded_example.hpp"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 
 namespace tactus::test
@@ -128,6 +130,7 @@ TEST(RecordingFile, gives_back_what_was_written)
     EXPECT_EQ(setup.models[0].capacities.nodes, 40U);
     EXPECT_TRUE(setup.static_when_it_fits);
     EXPECT_EQ(setup.prediction, Prediction::quadratic);
+    EXPECT_EQ(setup.force_tolerance_n, 0.0625);
     EXPECT_EQ(setup.kernels, "some kernels");
     EXPECT_EQ(sut.value().frame_count(), 3U);
     EXPECT_EQ(sut.value().lost_from(), kNoFrame);
@@ -337,6 +340,16 @@ TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
                                 }),
                    "63 printable characters");
     expect_refusal(with_bytes(kSetup, kNames + 1, {0x1B}), "63 printable characters");
+    for (const double force_tolerance_n :
+         {std::nextafter(kForceToleranceMax_n, 1.0), -1e-300, std::nan("")})
+    {
+        expect_refusal(with_section(kSetup,
+                                    [&](auto& payload) {
+                                        std::memcpy(payload.data() + payload.size() - 8,
+                                                    &force_tolerance_n, 8);
+                                    }),
+                       "the force tolerance is");
+    }
     expect_refusal(with_bytes(kModel, 0, {0}), "a pool has 0 slots; 1 to");
     expect_refusal(with_bytes(kModel, 0, {0, 0, 0, 0x20}), "slots; 1 to");
     expect_refusal(with_bytes(kModel, 0, {0, 0, 0, 0x02}), "more than 4096 MiB");

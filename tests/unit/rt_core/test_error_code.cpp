@@ -42,6 +42,20 @@ TEST(ErrorCode, encoding_never_rounds_down_and_is_the_least_code)
     }
 }
 
+TEST(ErrorCode, the_largest_code_within_a_bound_is_the_last_that_is_not_above_it)
+{
+    EXPECT_EQ(largest_code_within(0.0), 0);
+    EXPECT_EQ(largest_code_within(std::nextafter(1.0 / 256.0, 0.0)), 0);
+    EXPECT_EQ(largest_code_within(1.0 / 256.0), 1);
+    EXPECT_EQ(largest_code_within(1e300), 255);
+    for (std::uint32_t code = 1; code < 255; ++code)
+    {
+        const auto bound = static_cast<double>(error_in_quanta(static_cast<ErrorCode>(code)));
+        EXPECT_EQ(largest_code_within(bound), code);
+        EXPECT_EQ(largest_code_within(std::nextafter(bound, 0.0)), code - 1);
+    }
+}
+
 TEST(ErrorCode, encoding_never_calls_a_face_exact)
 {
     EXPECT_EQ(encode_error(0.0), 1);

@@ -32,41 +32,49 @@ constexpr double kFilterSlack = 4e-3;
 /// The answer by looking at every face.
 struct PointTruth
 {
-    double lower{kInfinity};        ///< Least d - e.
-    double upper{kInfinity};        ///< Least exact d or coarse corner's distance.
-    double coarse_lower{kInfinity}; ///< Least d - e of coarse faces.
-    std::vector<double> exact; ///< Exact faces' distances, by place in the list; else infinite.
-    FaceId nearest{};          ///< Lowest id of the nearest exact faces, in the kernel's bits.
+    double lower{kInfinity};           ///< Least d - e.
+    double upper{kInfinity};           ///< Least exact d or coarse corner's distance.
+    double exact_lower{kInfinity};     ///< Least d of exact faces,
+    double tolerated_lower{kInfinity}; ///< least d - e of those within the tolerance,
+    double coarse_lower{kInfinity};    ///< and of the others.
+    /// d - e of faces of the surface, by place in the list; else infinite.
+    std::vector<double> surface;
+    FaceId nearest{}; ///< Lowest id of the nearest faces of the surface, in the kernel's bits.
 
-    PointTruth(std::span<const ChangedFace> faces, const Vec3& center)
+    PointTruth(std::span<const ChangedFace> faces, const Vec3& center, ErrorCode tolerance = 0)
     {
         double least_sq = kInfinity;
         for (const ChangedFace& face : faces)
         {
             const Triangle triangle = to_triangle(face.corners_m);
             const auto d = static_cast<double>(DistanceOracle::distance(center, triangle));
-            exact.push_back(face.error == 0 ? d : kInfinity);
-            if (face.error == 0)
+            const double e = static_cast<double>(error_in_quanta(face.error)) *
+                             static_cast<double>(kTreeQuantum);
+            surface.push_back(face.error <= tolerance ? d - e : kInfinity);
+            if (face.error <= tolerance)
             {
-                lower = std::min(lower, d);
-                upper = std::min(upper, d);
                 const double sq = closest_point_on_triangle(center, triangle).distance_sq;
                 if (sq < least_sq || (sq == least_sq && face.face < nearest))
                 {
                     least_sq = sq;
                     nearest = face.face;
                 }
+            }
+            double& least = face.error == 0           ? exact_lower
+                            : face.error <= tolerance ? tolerated_lower
+                                                      : coarse_lower;
+            least = std::min(least, d - e);
+            if (face.error == 0)
+            {
+                upper = std::min(upper, d);
                 continue;
             }
-            const double e = static_cast<double>(error_in_quanta(face.error)) *
-                             static_cast<double>(kTreeQuantum);
-            coarse_lower = std::min(coarse_lower, d - e);
             for (const Vec3& corner : triangle)
             {
                 upper = std::min(upper, (corner - center).norm());
             }
         }
-        lower = std::max(0.0, std::min(lower, coarse_lower));
+        lower = std::max(0.0, std::min({exact_lower, tolerated_lower, coarse_lower}));
     }
 };
 
@@ -77,17 +85,20 @@ struct PointAnswer
 };
 
 PointAnswer ask(const AbTree& tree, const Vec3& center, double reach,
-                std::uint32_t nodes = 1'000'000, std::uint32_t triangles = 1'000'000)
+                std::uint32_t nodes = 1'000'000, std::uint32_t triangles = 1'000'000,
+                ErrorCode tolerance = 0)
 {
     PointAnswer asked;
     asked.budget.nodes = nodes;
     asked.budget.triangles = triangles;
     QueryMemory memory;
-    gather_surface(tree, center, reach, memory, asked.budget, *asked.surface);
+    gather_surface(tree, center, reach, memory, asked.budget, *asked.surface, ProofShare::most,
+                   tolerance);
     return asked;
 }
 
-/// Everything exact within the certified radius is listed, and nothing coarse reaches into it.
+/// Everything of the surface within the certified radius is listed, and nothing coarse reaches into
+/// it.
 void expect_certified(const AbTree& tree, const LocalSurface& surface,
                       std::span<const ChangedFace> faces, const PointTruth& truth)
 {
@@ -99,7 +110,7 @@ void expect_certified(const AbTree& tree, const LocalSurface& surface,
     const auto listed = faces_of(tree, surface);
     for (std::size_t i = 0; i < faces.size(); ++i)
     {
-        if (truth.exact[i] < radius - kSlack)
+        if (truth.surface[i] < radius - kSlack)
         {
             ASSERT_EQ(listed.count(faces[i].face.value), 1U) << faces[i].face.value;
         }
@@ -184,6 +195,58 @@ TEST(SurfaceQuery, equals_brute_force_in_every_style)
             }
         }
     }
+}
+
+TEST(SurfaceQuery, takes_faces_within_the_tolerance_for_the_surface)
+{
+    Random random(48);
+    int exact = 0;
+    int tolerated = 0;
+    int open = 0;
+    for (const FaceStyle& style : face_styles())
+    {
+        for (int tree = 0; tree < 6; ++tree)
+        {
+            TreeRig rig({300, 400, 400});
+            fill(rig, random, style, 300, false);
+            const auto faces = rig.present();
+            for (int i = 0; i < 100; ++i)
+            {
+                const Vec3 center = random_center(random);
+                const double reach = random.between(0.0, 0.6);
+                const ErrorCode tolerance = large_error(random, faces);
+                const double tolerance_m = static_cast<double>(error_in_quanta(tolerance)) *
+                                           static_cast<double>(kTreeQuantum);
+                const PointTruth truth(faces, center, tolerance);
+                const PointAnswer asked =
+                    ask(*rig.sut, center, reach, 1'000'000, 1'000'000, tolerance);
+                const DistanceAnswer& answer = asked.surface->answer;
+                ASSERT_LE(answer.lower_m, truth.lower + kSlack) << style.name << " " << i;
+                ASSERT_GE(answer.upper_m, truth.upper - kSlack) << style.name << " " << i;
+                ASSERT_LE(answer.tolerated_m, tolerance_m);
+                ASSERT_NO_FATAL_FAILURE(expect_certified(*rig.sut, *asked.surface, faces, truth));
+                const double known = std::min(truth.exact_lower, truth.tolerated_lower);
+                if (known > 0.0 && known < std::min(truth.coarse_lower, reach) - kFilterSlack)
+                {
+                    ASSERT_TRUE(is_known(answer.kind)) << style.name << " " << i;
+                    ASSERT_NEAR(answer.lower_m, known, kSlack);
+                }
+                if (is_known(answer.kind) &&
+                    std::abs(truth.exact_lower - truth.tolerated_lower) > kSlack)
+                {
+                    ASSERT_EQ(answer.kind == AnswerKind::exact,
+                              truth.exact_lower < truth.tolerated_lower);
+                    ASSERT_EQ(answer.nearest_face, truth.nearest) << style.name << " " << i;
+                }
+                exact += answer.kind == AnswerKind::exact ? 1 : 0;
+                tolerated += answer.kind == AnswerKind::within_tolerance ? 1 : 0;
+                open += answer.kind == AnswerKind::bracket ? 1 : 0;
+            }
+        }
+    }
+    EXPECT_GT(exact, 50);
+    EXPECT_GT(tolerated, 200);
+    EXPECT_GT(open, 200);
 }
 
 TEST(SurfaceQuery, is_true_when_the_reach_ends_just_before_the_surface)
@@ -300,7 +363,7 @@ TEST(SurfaceQuery, more_triangles_than_fit_keep_the_nearest_and_shrink_the_certi
         const auto faces = rig.present();
         const Vec3 center = random_center(random);
         const PointTruth truth(faces, center);
-        std::vector<double> sorted = truth.exact;
+        std::vector<double> sorted = truth.surface;
         std::sort(sorted.begin(), sorted.end());
 
         const PointAnswer asked = ask(*rig.sut, center, 100.0);
@@ -318,7 +381,7 @@ TEST(SurfaceQuery, more_triangles_than_fit_keep_the_nearest_and_shrink_the_certi
         const auto listed = faces_of(*rig.sut, surface);
         for (std::size_t i = 0; i < faces.size(); ++i)
         {
-            const bool is_near = truth.exact[i] < sorted[surface.count - 1] + kFilterSlack;
+            const bool is_near = truth.surface[i] < sorted[surface.count - 1] + kFilterSlack;
             ASSERT_TRUE(is_near || listed.count(faces[i].face.value) == 0);
         }
         for (std::uint32_t i = 0; i < surface.count; ++i)

@@ -96,6 +96,17 @@ public:
 
 using TreeRig = BasicTreeRig<AbTree>;
 
+/// Of three faces the largest.
+inline ErrorCode large_error(Random& random, std::span<const ChangedFace> faces)
+{
+    ErrorCode largest = 0;
+    for (int i = 0; i < 3; ++i)
+    {
+        largest = std::max(largest, faces[random.below(faces.size())].error);
+    }
+    return largest;
+}
+
 /// How a test's faces lie in path space and in space.
 struct FaceStyle
 {

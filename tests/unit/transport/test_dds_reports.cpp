@@ -94,11 +94,11 @@ Telemetry telemetry_of(const Size& size)
 {
     Telemetry telemetry;
     Distinct distinct;
-    auto& [frame, period_ns, time_ns, exact, decided, bracket, stale, missed, own_faults,
-           machine_late, faults_now, faults_seen, tool_count, pair_count, model_count, tools, pairs,
-           models] = telemetry;
-    distinct.fill(frame, period_ns, time_ns, exact, decided, bracket, stale, missed, own_faults,
-                  machine_late, faults_now, faults_seen);
+    auto& [frame, period_ns, time_ns, exact, decided, bracket, stale, within_tolerance, missed,
+           own_faults, machine_late, faults_now, faults_seen, tool_count, pair_count, model_count,
+           tools, pairs, models] = telemetry;
+    distinct.fill(frame, period_ns, time_ns, exact, decided, bracket, stale, within_tolerance,
+                  missed, own_faults, machine_late, faults_now, faults_seen);
     time_ns = -time_ns;
     tool_count = size.tools;
     pair_count = size.pairs;
@@ -116,7 +116,7 @@ Telemetry telemetry_of(const Size& size)
         distinct.fill(host_epoch, object, lower_m, upper_m, point_m, force_n);
         host_epoch <<= 40U;
         tool = static_cast<std::uint8_t>(i % size.tools);
-        kind = static_cast<AnswerKind>(i % 4);
+        kind = static_cast<AnswerKind>(i % 5);
         lower_m = -lower_m;
         upper_m = i % 7 == 0 ? kInfinity : upper_m;
     }
@@ -271,7 +271,7 @@ struct TelemetryReport
         [](S& s) { s.tool.gripper_m = kNan; },
         [](S& s) { s.tool.rotation[3] = kInfinity; },
         [](S& s) { s.pair.tool = 1; },
-        [](S& s) { s.pair.kind = 4; },
+        [](S& s) { s.pair.kind = 5; },
         [](S& s) { s.pair.upper_m = kNan; },
         [](S& s) { s.pair.upper_m = -1.0; },
         [](S& s) { s.pair.force_n[2] = kInfinity; },
