@@ -79,7 +79,7 @@ struct Findings
     // Less than `open`, where what is not exact may begin.
     answer.certified_radius_m = open > 0.0 ? std::min(reach_m, open * (1.0 - 0x1p-52)) : -1.0;
     const bool is_beyond = answer.lower_m > 0.0 && answer.lower_m == reach_m;
-    const AnswerKind known = found.exact_lower_m <= found.tolerated_lower_m
+    const AnswerKind known = found.exact_lower_m <= std::max(found.tolerated_lower_m, 0.0)
                                  ? AnswerKind::exact
                                  : AnswerKind::within_tolerance;
     answer.kind = answer.lower_m > reach_m   ? AnswerKind::decided

@@ -64,6 +64,7 @@ public:
         , share_(static_cast<double>(share_of(share)))
         , enough_(enough)
         , tolerance_(tolerance)
+        , looked_(reach_m + static_cast<double>(error_in_quanta(tolerance)) * quantum_)
         , budget_(budget)
         , box_(make_kernel_box(core, tree.quantum_m()))
         , triangles_(surface)
@@ -128,7 +129,7 @@ public:
         found.upper_m = upper_;
         // No face is nearer than one that meets the core, wherever it is.
         found.open_m = tree_.is_complete() ? std::max(open_, 0.0) : 0.0;
-        found.pruned_m = limit_ > reach_ ? worth_m() : kInfinity;
+        found.pruned_m = limit_ > looked_ ? worth_m() : kInfinity;
         found.dropped_m = triangles_.dropped_m();
         DistanceAnswer answer = answer_from(found, reach_);
         answer.tool_point_m = core_.center();
@@ -167,8 +168,8 @@ private:
     /// What is farther changes nothing. Never grows: what was left out stays farther.
     [[nodiscard]] double worth_m() const noexcept
     {
-        return limit_ > reach_ ? std::max(reach_, share_ * limit_)
-                               : std::max(std::min(reach_, triangles_.dropped_m()), limit_);
+        return limit_ > looked_ ? std::max(looked_, share_ * limit_)
+                                : std::max(std::min(looked_, triangles_.dropped_m()), limit_);
     }
 
     /// Along one direction a convex body is so far from the whole block that it does not matter.
@@ -274,8 +275,8 @@ private:
         double lower = std::max(0.0, bounds.lower);
         bool meets = bounds.meet;
         take_upper(face, bounds.upper);
-        const bool may_be_listed = lower - face.error_m <= reach_;
-        if (may_be_nearest(id, lower) || (may_be_listed && bounds.upper > reach_))
+        const double stands_for = lower - face.error_m;
+        if (may_be_nearest(id, stands_for) || (stands_for <= reach_ && bounds.upper > reach_))
         {
             const ClosestPoints closest = measure(face, known);
             lower = std::max(0.0, closest.distance - closest.distance_error);
@@ -351,6 +352,7 @@ private:
     double share_; ///< Of the best distance: what is farther is not looked at.
     std::uint32_t enough_;
     ErrorCode tolerance_; ///< Faces with no larger error count as the surface.
+    double looked_;       ///< So far: what is in reach may be stood for by a face beyond.
     WalkBudget& budget_;
     KernelBox box_;
     NearestTriangles triangles_;

@@ -245,7 +245,7 @@ TEST(SurfaceQuery, takes_faces_within_the_tolerance_for_the_surface)
         }
     }
     EXPECT_GT(exact, 50);
-    EXPECT_GT(tolerated, 200);
+    EXPECT_GT(tolerated, 10);
     EXPECT_GT(open, 200);
 }
 
