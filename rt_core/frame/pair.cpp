@@ -70,10 +70,10 @@ constexpr double kToleratedQuanta = 0.25;
 constexpr double kMostTolerated = 0.5;
 
 /// What a coarser surface helps against.
-constexpr FrameFault kNoRoom = FrameFault::forest_full | FrameFault::tree_full |
-                               FrameFault::cache_full | FrameFault::refine_heap_full |
-                               FrameFault::held_records_full;
-constexpr FrameFault kNotYet = FrameFault::split_budget_spent | FrameFault::node_budget_spent;
+constexpr FrameFault kSurfaceFull = FrameFault::forest_full | FrameFault::tree_full |
+                                    FrameFault::cache_full | FrameFault::refine_heap_full |
+                                    FrameFault::held_records_full;
+constexpr FrameFault kSurfaceLate = FrameFault::split_budget_spent | FrameFault::node_budget_spent;
 
 /// What lies ahead is looked for this far beyond, a share of the way: once in some two frames.
 constexpr double kWalkedShare = 0.2;
@@ -312,11 +312,11 @@ SurfaceTolerance::Room Pair::surface_room() const noexcept
 {
     const LocalSurface& surface = surface_;
     const FrameFault late_for = of_object_.closure.late_for;
-    if (surface.truncated || has_fault(late_for, kNoRoom) || was_cut_)
+    if (surface.truncated || has_fault(late_for, kSurfaceFull) || was_cut_)
     {
         return SurfaceTolerance::Room::short_;
     }
-    if (has_fault(late_for, kNotYet))
+    if (has_fault(late_for, kSurfaceLate))
     {
         return SurfaceTolerance::Room::late;
     }
