@@ -47,10 +47,8 @@ Vec3 gap_from(const Vec3& half, const Vec3& point) noexcept
     return {excess(point.x(), half.x()), excess(point.y(), half.y()), excess(point.z(), half.z())};
 }
 
-double squared_length(const Vec3& v) noexcept
-{
-    return v.squaredNorm();
-}
+/// An object, since a function would be called through a pointer.
+constexpr auto squared_length = [](const Vec3& v) noexcept { return v.squaredNorm(); };
 
 CornersAtCore::Row beyond_sq(const std::array<CornersAtCore::Row, 3>& place,
                              const Vec3& half) noexcept
@@ -309,7 +307,7 @@ CoreSeparation PlacedCore::separation(const Triangle& triangle) const noexcept
     const Triangle near = to_box_frame(triangle);
     const std::array<Vec3, 3> ways{gap_from(half_, near[0]), gap_from(half_, near[1]),
                                    gap_from(half_, near[2])};
-    const Vec3& way = *std::ranges::min_element(ways, {}, &squared_length);
+    const Vec3& way = *std::ranges::min_element(ways, {}, squared_length);
     const double length = way.norm();
     return length > 0.0 ? CoreSeparation{axes_ * (-way / length),
                                          apart_along(way, near) / length - 2.0 * rounding_of(near)}
