@@ -46,11 +46,11 @@ BodyRoom::BodyRoom(std::span<const PlacedSurface> surfaces, double clear_m,
 {
     for (const PlacedSurface& placed : surfaces)
     {
-        const bool is_exact = is_known(placed.surface->answer.kind);
+        const bool is_near_known = is_known(placed.surface->answer.kind);
         free_m_ = std::min(free_m_, free_of(placed));
         is_clear_ = is_clear_ && placed.lower_m > 0.0;
-        is_crossed_ = is_crossed_ || (is_exact && !(placed.lower_m > 0.0));
-        is_scarce_ = is_scarce_ || (is_exact && placed.lower_m < kScarce * radius_m);
+        is_crossed_ = is_crossed_ || (is_near_known && !(placed.lower_m > 0.0));
+        is_scarce_ = is_scarce_ || (is_near_known && placed.lower_m < kScarce * radius_m);
     }
 }
 

@@ -3,6 +3,7 @@
 #include "rt_core/frame/frame_parts.hpp"
 
 #include "rt_core/geometry/placed_core.hpp"
+#include "rt_core/math/infinity.hpp"
 #include "rt_core/math/similarity.hpp"
 
 #include <algorithm>
@@ -14,7 +15,7 @@ namespace tactus
 namespace
 {
 
-/// Some so many faces under a body are as many as a frame's work suffices for.
+/// The work of a frame at 1 kHz suffices for about so many faces under a body.
 constexpr double kFewFaces = 0.25 * kMaxLocalTriangles;
 
 /// Whether a body that lies on the model lies on more faces than that, as far as they are spread
@@ -31,7 +32,7 @@ bool is_too_fine(const FrameSetup& setup, ModelId id, const ModelHeader& header)
     const double area_sq_m =
         2.0 * (sides_m.x() * sides_m.y() + sides_m.y() * sides_m.z() + sides_m.z() * sides_m.x());
     const double faces = header.counts().base_faces + 2.0 * header.counts().records;
-    double least_scale = 1.0;
+    double least_scale = kInfinity;
     for (std::size_t i = 0; i < setup.objects.size(); ++i)
     {
         const bool shows_it = setup.objects[i].model == id && i < setup.poses.size();
@@ -41,12 +42,13 @@ bool is_too_fine(const FrameSetup& setup, ModelId id, const ModelHeader& header)
         setup.tools,
         [&](const ToolSpec& tool)
         {
-            const PlacedCore core(tool.core, Similarity{});
-            if (is_mesh(tool) || tool.passes_through || core.is_point())
+            if (is_mesh(tool) || tool.passes_through)
             {
                 return false;
             }
-            const double radius_m = (core.radius() + tool.radius_m) / least_scale;
+            const PlacedCore core(tool.core, Similarity{});
+            const double radius_m =
+                core.is_point() ? 0.0 : (core.radius() + tool.radius_m) / least_scale;
             return faces * radius_m * radius_m * std::numbers::pi > kFewFaces * area_sq_m;
         });
 }

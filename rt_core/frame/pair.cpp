@@ -312,7 +312,7 @@ SurfaceTolerance::Room Pair::surface_room() const noexcept
 {
     const LocalSurface& surface = surface_;
     const FrameFault late_for = of_object_.closure.late_for;
-    if (surface.truncated || has_fault(late_for, kSurfaceFull) || was_cut_)
+    if (surface.is_cut || has_fault(late_for, kSurfaceFull))
     {
         return SurfaceTolerance::Room::short_;
     }
@@ -593,7 +593,6 @@ void Pair::query_core(const Budgets& budgets, WorkCounters& work, FrameFault& fa
         work.skipped.add(Skip::starts, query_memory_.block != kNoNode ? 1 : 0);
         gather_surface(parts_.model.model->tree, outlook_.core(), outlook_.reach_m(), query_memory_,
                        budget, surface, proof_share(), enough_meeting(), tolerance_.code());
-        was_cut_ = budget.is_spent;
         had_work_left_ = (SurfaceTolerance::kFinerGrowth - 1.0) * work.budget.used() <=
                          static_cast<double>(work.budget.left());
         work.nodes_visited += budget.nodes_visited;
@@ -742,11 +741,13 @@ PairOutput Pair::output() const noexcept
     const ObjectPose& pose = parts_.object->pose;
     const DistanceAnswer& answer = surface_.answer;
     // Beyond reach as well; the force has no use for that.
-    const bool is_exact =
+    const bool is_nearest_known =
         answer.kind == AnswerKind::decided && tells_distance() && !answer.nearest_face.is_none();
+    const AnswerKind known =
+        answer.tolerated_m == 0.0 ? AnswerKind::exact : AnswerKind::within_tolerance;
     return {.tool = parts_.tool_index,
             .object = parts_.object_number,
-            .kind = is_exact ? AnswerKind::exact : answer.kind,
+            .kind = is_nearest_known ? known : answer.kind,
             .point_m = to_world(pose, answer.tool_point_m),
             .lower_m = lower_m_,
             .upper_m = upper_m_,

@@ -281,7 +281,6 @@ private:
     bool feels_otherwise_{false}; ///< Than in the last frame.
     SurfaceTolerance tolerance_;
     SurfaceTolerance::Room room_{SurfaceTolerance::Room::fitting}; ///< In the last frame.
-    bool was_cut_{false};                ///< The last query, by its budgets.
     bool had_work_left_{true};           ///< After it for half as much again as the frame had done.
     bool was_answered_{false};           ///< By the last query, and within its budgets.
     std::uint32_t answered_revision_{0}; ///< Of its models, at that time.

@@ -285,9 +285,9 @@ private:
             keep_if_nearest(closest, id, face.block);
         }
         lower -= face.error_m; // What it stands for.
+        largest_tolerated_ = std::max(largest_tolerated_, face.error);
         if (lower <= reach_)
         {
-            largest_tolerated_ = std::max(largest_tolerated_, face.error);
             triangles_.add({prim, block_triangle(tree_.block(face.block), face.lane)},
                            std::max(0.0, lower));
         }
@@ -395,6 +395,7 @@ void gather_surface(const AbTree& tree, const PlacedCore& core, double reach_m, 
     CoreSearch search(tree, core, reach_m, share, enough, tolerance, budget, surface);
     search.run(memory);
     surface.answer = search.answer();
+    surface.is_cut = surface.truncated || budget.is_spent;
 }
 
 } // namespace tactus

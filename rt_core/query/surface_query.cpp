@@ -379,7 +379,8 @@ private:
                 std::max(0.0, to_metres(candidate.lower - error_in_quanta(error))));
             if (nearest_triangles_->dropped_m() < kInfinity)
             {
-                floor_ = std::min(floor_, to_quanta(nearest_triangles_->dropped_m()));
+                floor_ =
+                    std::min(floor_, to_quanta(nearest_triangles_->dropped_m() + tolerance_m_));
             }
         }
         if (is_too_far(candidate))
@@ -416,6 +417,7 @@ private:
                 tolerated_lower_ =
                     std::min(tolerated_lower_,
                              lower - static_cast<double>(error_in_quanta(error)) * quantum_);
+                largest_tolerated_ = std::max(largest_tolerated_, error);
                 bound_by_corners(candidate);
             }
             const FaceId face = tree_.face_of(tree_.side(candidate.block).prims[candidate.lane]);

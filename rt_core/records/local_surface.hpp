@@ -45,7 +45,7 @@ struct DistanceAnswer
     /// All original faces within this distance of the core are active and exact, or stood for by
     /// faces within the tolerance; negative when not even those that touch it are.
     double certified_radius_m{-1.0};
-    /// The largest error of a face near the tool that counts as the surface.
+    /// The largest error of a face that was looked at and counts as the surface.
     double tolerated_m{0.0};
     FaceId nearest_face{}; ///< The nearest of the surface; none when there is none in reach.
     Vec3 tool_point_m{0.0, 0.0, 0.0};    ///< Of the core: the nearest one to the surface.
@@ -70,7 +70,7 @@ struct LocalSurface
     std::span<double> distances_m;      ///< As much; lower bounds, from the core.
     std::uint32_t count{0};
     bool truncated{false}; ///< More triangles were in reach; the certified radius says how far.
-    /// Room or budget ended the search of a point: from nearer, more may be known.
+    /// Room or budget ended the search: from nearer, more may be known.
     bool is_cut{false};
 };
 static_assert(sizeof(LocalTriangle) == 40);

@@ -19,7 +19,8 @@ namespace tactus
 /// Merges the records that the tools have left behind: the first phase of a refinement.
 ///
 /// A record is left behind when its star, with all errors in it, is beyond every question's keep
-/// distance. Until a tool has come that far nobody looks: the record waits in a wheel of buckets,
+/// distance, or when the faces without it are within every question's tolerance. Until a tool has
+/// come that far nobody looks: the record waits in a wheel of buckets,
 /// in that of the travel at which it may be left behind, and a frame looks into those that the
 /// tools have passed.
 ///
