@@ -307,7 +307,7 @@ SurfaceTolerance::Range Pair::tolerance_range() const noexcept
     return {std::min(least, most), most};
 }
 
-/// Of the last frame.
+/// What the last frame found.
 SurfaceTolerance::Room Pair::surface_room() const noexcept
 {
     const LocalSurface& surface = surface_;

@@ -76,6 +76,8 @@ protected:
         int held{0};   ///< those with a force that is not withheld,
         int known{0};  ///< and those in which the nearest place is known.
         int tolerated{0};
+        std::uint32_t refined{0}; ///< Records, at the end,
+        std::uint32_t records{0}; ///< of all.
     };
 
     static constexpr int kPressed = 400;
@@ -140,6 +142,14 @@ protected:
         const Vec3 top_m = top_of(model);
         Budgets budgets; // Of a frame at 1 kHz.
         budgets.work = Budgets::work_of(500'000, 1);
+        if (GetParam().is_whole) // Refined, if at all, before the tool comes near.
+        {
+            const Vec3 far_m = hand_at(0, top_m) + Vec3(0.0, 0.0, 2.0 * model.diagonal_m);
+            for (int frame = 0; frame < 1'500; ++frame)
+            {
+                sut.step(far_m - frame / 1'500.0 * (far_m - hand_at(0, top_m)), budgets);
+            }
+        }
         sut.settle(hand_at(0, top_m), budgets, 3'000);
         const double slack = 1e-12 * model.diagonal_m;
         const int frames = kPressed + static_cast<int>(trial_length(3'200));
@@ -169,6 +179,8 @@ protected:
                 run.tolerated += pair.kind == AnswerKind::within_tolerance ? 1 : 0;
             }
         }
+        run.refined = sut.model().forest.refined_records();
+        run.records = sut.model().header.counts().records;
     }
 };
 
@@ -192,6 +204,11 @@ TEST_P(Tolerance, holds_a_tool_where_there_is_no_room_for_the_exact_surface)
     EXPECT_GE(tolerant.known, 0.99 * tolerant.frames);
     EXPECT_GT(tolerant.tolerated, 0);
     EXPECT_EQ(strict.tolerated, 0);
+    if (GetParam().is_whole) // Flat, so merged, under the tool too.
+    {
+        EXPECT_LT(tolerant.refined, tolerant.records / 4);
+        EXPECT_EQ(strict.refined, strict.records);
+    }
     EXPECT_EQ(strict.held == strict.frames, GetParam().is_held_by_exact_faces);
 }
 

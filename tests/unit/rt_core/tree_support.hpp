@@ -96,7 +96,7 @@ public:
 
 using TreeRig = BasicTreeRig<AbTree>;
 
-/// Of three faces the largest.
+/// The largest error of three faces taken at random.
 inline ErrorCode large_error(Random& random, std::span<const ChangedFace> faces)
 {
     ErrorCode largest = 0;
