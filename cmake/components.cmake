@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 # What is installed for programs of others: components, each a shared and a static library of whole
-# rooms, with its headers, CMake targets and a pkg-config file (docs/library.md).
+# modules, with its headers, CMake targets and a pkg-config file (docs/library.md).
 #
-# A header of a room is included by its path: "rt_core/frame/frame.hpp". Installed, a public one is
-# <tactus/rt_core/frame/frame.hpp>; the headers that it needs, and nobody should include, are under
-# <tactus/detail/...>. cmake/install_headers.cmake finds those and writes the new names.
+# A header of a module is included by its path: "rt_core/frame/frame.hpp". Installed, a public one
+# is <tactus/rt_core/frame/frame.hpp>; the headers that it needs, and nobody should include, are
+# under <tactus/detail/...>. cmake/install_headers.cmake finds those and writes the new names.
 include(CMakePackageConfigHelpers)
 
 set(TACTUS_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/Tactus)
@@ -34,11 +34,11 @@ install(FILES ${CMAKE_BINARY_DIR}/installed/TactusConfig.cmake
     DESTINATION ${TACTUS_PACKAGE_DIR} COMPONENT libtactus-dev)
 
 # tactus_component_library(<name> SHARED|STATIC): one of the two libraries, from the objects that
-# the rooms have compiled. Only one of the two is imported by a program, as Tactus::<name>.
+# the modules have compiled. Only one of the two is imported by a program, as Tactus::<name>.
 function(tactus_component_library name kind)
     string(TOLOWER ${kind} suffix)
     set(library tactus_${name}_${suffix})
-    list(TRANSFORM ARG_ROOMS REPLACE "(.+)" "$<TARGET_OBJECTS:\\1>" OUTPUT_VARIABLE objects)
+    list(TRANSFORM ARG_MODULES REPLACE "(.+)" "$<TARGET_OBJECTS:\\1>" OUTPUT_VARIABLE objects)
     add_library(${library} ${kind} ${objects})
     set_target_properties(${library} PROPERTIES
         LINKER_LANGUAGE CXX OUTPUT_NAME tactus_${name} EXPORT_NAME ${name}
@@ -68,12 +68,12 @@ function(tactus_component_library name kind)
         DESTINATION ${TACTUS_PACKAGE_DIR} COMPONENT libtactus-dev)
 endfunction()
 
-# tactus_component(<name> ROOMS <library>... PUBLIC <header>... [NEEDS <component>...]
+# tactus_component(<name> MODULES <library>... PUBLIC <header>... [NEEDS <component>...]
 #     [LINK <library>...] [LINK_PRIVATE <library>...]
 #     [PC_REQUIRES <module>...] [PC_REQUIRES_PRIVATE <module>...] [PC_LIBS_PRIVATE <flag>...])
 # LINK are libraries whose headers ours include. The PC_ ones say the same for pkg-config.
 function(tactus_component name)
-    cmake_parse_arguments(ARG "" "" "ROOMS;PUBLIC;NEEDS;LINK;LINK_PRIVATE;PC_REQUIRES;\
+    cmake_parse_arguments(ARG "" "" "MODULES;PUBLIC;NEEDS;LINK;LINK_PRIVATE;PC_REQUIRES;\
 PC_REQUIRES_PRIVATE;PC_LIBS_PRIVATE" ${ARGN})
     foreach(header ${ARG_PUBLIC})
         if(NOT EXISTS ${PROJECT_SOURCE_DIR}/${header})
@@ -115,7 +115,7 @@ endfunction()
 
 # The frame, what goes in and comes out, and what every other component uses.
 tactus_component(core
-    ROOMS tactus_rt_core tactus_base
+    MODULES tactus_rt_core tactus_base
     LINK Eigen3::Eigen
     LINK_PRIVATE ccd
     PC_REQUIRES eigen3
@@ -168,7 +168,7 @@ endif()
 
 tactus_component(transport
     NEEDS core
-    ROOMS tactus_content_hash tactus_transport tactus_store tactus_topic_types tactus_dds
+    MODULES tactus_content_hash tactus_transport tactus_store tactus_topic_types tactus_dds
     LINK_PRIVATE sodium fmt::fmt CycloneDDS::ddsc
     PC_REQUIRES_PRIVATE libsodium fmt CycloneDDS
     PUBLIC
@@ -195,7 +195,7 @@ tactus_component(transport
 
 tactus_component(platform
     NEEDS core
-    ROOMS tactus_platform tactus_recording
+    MODULES tactus_platform tactus_recording
     LINK_PRIVATE Threads::Threads ${CMAKE_DL_LIBS}
     PC_LIBS_PRIVATE -pthread
     PUBLIC
@@ -228,7 +228,7 @@ tactus_component(platform
 
 tactus_component(host
     NEEDS core transport
-    ROOMS tactus_mesh tactus_shapes tactus_simplify tactus_encode
+    MODULES tactus_mesh tactus_shapes tactus_simplify tactus_encode
     LINK_PRIVATE fmt::fmt Threads::Threads
     PC_REQUIRES_PRIVATE fmt
     PC_LIBS_PRIVATE -pthread
@@ -245,7 +245,7 @@ tactus_component(host
         host_tools/shapes/shapes.hpp
         host_tools/simplify/simplify.hpp)
 
-tactus_component(c NEEDS core transport ROOMS tactus_c LINK_PRIVATE fmt::fmt
+tactus_component(c NEEDS core transport MODULES tactus_c LINK_PRIVATE fmt::fmt
     PC_REQUIRES_PRIVATE fmt PC_LIBS_PRIVATE -lstdc++)
 # It includes nothing of ours, and has one name in every language.
 install(FILES ${PROJECT_SOURCE_DIR}/host_tools/c/tactus.h

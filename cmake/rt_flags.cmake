@@ -23,14 +23,15 @@ if(TACTUS_FUNCTION_EFFECTS)
 endif()
 
 # tactus_library(<name> SOURCES ... HEADERS ... LINK ...)
-# One target per room: explicit files, headers included from the repository root. A header is the
+# One target per module: explicit files, headers included from the repository root. A header is the
 # first include of its source, where it has one, and is compiled alone with it; the others are where
 # CMAKE_VERIFY_INTERFACE_HEADER_SETS is on. PRECOMPILED headers of its own take the
-# place of the common ones (precompiled.cmake). The global property TACTUS_ROOMS lists all of them.
+# place of the common ones (precompiled.cmake). The global property TACTUS_MODULES lists all of
+# them.
 function(tactus_library name)
     cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;LINK;LINK_PRIVATE;PRECOMPILED" ${ARGN})
     add_library(${name} STATIC ${ARG_SOURCES})
-    set_property(GLOBAL APPEND PROPERTY TACTUS_ROOMS ${name})
+    set_property(GLOBAL APPEND PROPERTY TACTUS_MODULES ${name})
     target_sources(${name} PUBLIC
         FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${ARG_HEADERS})
     set(alone ${ARG_HEADERS})

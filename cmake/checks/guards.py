@@ -16,7 +16,7 @@ import sys
 CPP = ('*.hpp', '*.cpp', '*.h', '*.c', '*.idl')
 SCRIPTS = ('*.cmake', '*CMakeLists.txt', '*.sh', '.ci/run')
 PRODUCT = ('rt_core', 'transport', 'platform', 'host_tools')
-FLOORS = 'cmake/floors.cmake'
+LAYERS = 'cmake/layers.cmake'
 
 
 class Refusal(Exception):
@@ -94,26 +94,27 @@ def is_within(path, bases):
     return any(base in ('*', path) or path.startswith(base + '/') for base in bases)
 
 
-class Floors:
-    """The table of cmake/floors.cmake. Of CMake it may use the commands of the table below, with
+class Layers:
+    """The table of cmake/layers.cmake. Of CMake it may use the commands of the table below, with
     words, lists and comments; anything else is refused."""
 
     def __init__(self, tree):
-        self.rooms, self.outside, self.lists = {}, {}, {}
-        tables = {'tactus_room': self.rooms, 'tactus_outside': self.outside, 'set': self.lists}
-        if not tree.exists(FLOORS):
-            raise Refusal(f'{FLOORS}: is not there')
-        text = tree.code(FLOORS)
+        self.modules, self.external, self.lists = {}, {}, {}
+        tables = {'tactus_module': self.modules, 'tactus_external': self.external,
+                  'set': self.lists}
+        if not tree.exists(LAYERS):
+            raise Refusal(f'{LAYERS}: is not there')
+        text = tree.code(LAYERS)
         for command in re.finditer(r'([a-z_]+)\(([^()]*)\)|\S.*', text):
             table = tables.get(command[1])
             words = self.expanded(command[2] or '')
             if table is None or not words or words[0] in table:
                 line = text.count('\n', 0, command.start()) + 1
                 fault = 'has a name again' if table and words else 'is not understood'
-                raise Refusal(f'{FLOORS}:{line}: {fault}: ' + command[0].split('\n')[0])
+                raise Refusal(f'{LAYERS}:{line}: {fault}: ' + command[0].split('\n')[0])
             table[words[0]] = words[1:]
         if 'TACTUS_RT_CORE_STANDARD_HEADERS' not in self.lists:
-            raise Refusal(f'{FLOORS}: does not set TACTUS_RT_CORE_STANDARD_HEADERS')
+            raise Refusal(f'{LAYERS}: does not set TACTUS_RT_CORE_STANDARD_HEADERS')
 
     def expanded(self, text):
         """The words of a command, lists replaced by their own; none when one is not understood."""
@@ -129,26 +130,26 @@ class Floors:
         return words
 
     @functools.cache
-    def room_of(self, path):
-        """The room with the longest path that holds the path; empty when there is none."""
-        return max((room for room in self.rooms if is_within(path, [room])), key=len, default='')
+    def module_of(self, path):
+        """The module with the longest path that holds the path; empty when there is none."""
+        return max((module for module in self.modules if is_within(path, [module])), key=len, default='')
 
     def objection_to(self, file, header, is_quoted):
         """Why the file may not include the header; empty when it may."""
-        room = self.room_of(file)
+        module = self.module_of(file)
         first = header.split('/')[0]
-        if first in self.outside:
-            if not is_within(file, self.outside[first]):
-                return f'only these may include {first}: {" ".join(self.outside[first])}'
+        if first in self.external:
+            if not is_within(file, self.external[first]):
+                return f'only these may include {first}: {" ".join(self.external[first])}'
         elif is_quoted:
-            target = self.room_of(header)
+            target = self.module_of(header)
             # Types generated from IDL have no folder; like DDS itself they stay in transport/dds.
             is_generated = header == first and is_within(file, ('transport/dds', 'tests'))
             if not target and not is_generated:
-                return 'not a path of a room from the repository root'
-            if target and target != room and not is_within(target, self.rooms[room]):
-                return f'{room} may include: {" ".join([room, *self.rooms[room]])}'
-        elif room.startswith('rt_core'):
+                return 'not a path of a module from the repository root'
+            if target and target != module and not is_within(target, self.modules[module]):
+                return f'{module} may include: {" ".join([module, *self.modules[module]])}'
+        elif module.startswith('rt_core'):
             standard = self.lists['TACTUS_RT_CORE_STANDARD_HEADERS']
             if header not in standard:
                 return f'rt_core may include: {" ".join(standard)}'
@@ -157,22 +158,22 @@ class Floors:
 
 # Each guard yields its faults as (path, line, text).
 
-def floors(tree):
-    """Every #include follows cmake/floors.cmake."""
-    table = Floors(tree)
+def layers(tree):
+    """Every #include follows cmake/layers.cmake."""
+    table = Layers(tree)
     files = tree.files(*(f'{top}/*.{end}' for top in (*PRODUCT, 'tests')
                          for end in ('hpp', 'cpp', 'h', 'c')))
     for path in files:
-        if not table.room_of(path):
-            yield path, 1, f'in no room; give its folder a line in {FLOORS}'
+        if not table.module_of(path):
+            yield path, 1, f'in no module; give its folder a line in {LAYERS}'
     count = 0
     include = r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"\n]+)[>"]'
-    for path, line, match in tree.matches(include, filter(table.room_of, files)):
+    for path, line, match in tree.matches(include, filter(table.module_of, files)):
         count += 1
         if objection := table.objection_to(path, match[2], match[1] == '"'):
             yield path, line, f"includes '{match[2]}'; {objection}"
     if not count:
-        yield FLOORS, 1, 'no file of a room has an #include'
+        yield LAYERS, 1, 'no file of a module has an #include'
 
 
 def line_length(tree):
@@ -349,7 +350,7 @@ def named_tests(tree):
 
 
 GUARDS = {guard.__name__: guard for guard in (
-    floors, line_length, no_leftovers, machine_paths, licence, files_listed, limits_tested,
+    layers, line_length, no_leftovers, machine_paths, licence, files_listed, limits_tested,
     own_header_first, threads_told, links, named_tests)}
 
 

@@ -22,7 +22,7 @@ SPDX = '# SPDX-License-Identifier: Apache-2.0\n'
 
 
 class House(unittest.TestCase):
-    """A house without faults, the floors of the checkout included."""
+    """A house without faults, the layers of the checkout included."""
 
     def setUp(self):
         scratch = tempfile.TemporaryDirectory()
@@ -41,7 +41,7 @@ class House(unittest.TestCase):
         self.source('tests/unit/test_good.cpp', '#include "rt_core/base/good.hpp"',
                     'static_assert(kMaxGood == 1);')
         # Its comments name pages that the house does not have.
-        self.script(guards.FLOORS, re.sub('#.*', '', (CHECKOUT / guards.FLOORS).read_text()))
+        self.script(guards.LAYERS, re.sub('#.*', '', (CHECKOUT / guards.LAYERS).read_text()))
 
     def text(self, path, text):
         file = self.root / path
@@ -128,7 +128,7 @@ class Usage(House):
                           'rt_core/base/good.hpp:1'], ended.stdout)
 
 
-class Floors(House):
+class Layers(House):
     def test_an_include_that_goes_up_or_across_is_refused(self):
         for path, line, fault in (
                 ('rt_core/base/good.hpp', '#include "rt_core/math/vec3.hpp"',
@@ -140,49 +140,49 @@ class Floors(House):
                 ('transport/link.hpp', '#include <dds/dds.h>',
                  "includes 'dds/dds.h'; only these may include dds: transport/dds tests"),
                 ('transport/link.hpp', '#include "chunks.h"',
-                 "includes 'chunks.h'; not a path of a room from the repository root"),
+                 "includes 'chunks.h'; not a path of a module from the repository root"),
                 ('platform/posix/clock.cpp', '#include "platform/hrtc/loop.hpp"',
                  "includes 'platform/hrtc/loop.hpp'; platform may include: platform ")):
             with self.subTest(path=path, line=line):
                 self.source(path, line)
-                self.refuse('floors', f'{path}:4: {fault}')
+                self.refuse('layers', f'{path}:4: {fault}')
 
-    def test_what_a_room_may_include_passes(self):
+    def test_what_a_module_may_include_passes(self):
         self.source('platform/hrtc/main.cpp', '#include "transport/link.hpp"')
         self.source('transport/dds/link.cpp', '#include "chunks.h"', '#include <dds/dds.h>')
         self.source('transport/link.cpp', '#include <vector>', '#include "transport/link.hpp"')
         self.source('rt_core/frame/frame.hpp', '#include "rt_core/forest/forest.hpp"')
         self.source('tests/unit/rig.hpp', '#include "platform/hrtc/loop.hpp"')
-        self.accept('floors')
+        self.accept('layers')
 
-    def test_a_file_in_no_room_is_refused(self):
+    def test_a_file_in_no_module_is_refused(self):
         self.source('host_tools/attic/old.hpp', '')
         self.source('rt_core/basement/old.hpp', '')
-        self.refuse('floors', 'host_tools/attic/old.hpp:1: in no room',
-                    'rt_core/basement/old.hpp:1: in no room')
+        self.refuse('layers', 'host_tools/attic/old.hpp:1: in no module',
+                    'rt_core/basement/old.hpp:1: in no module')
 
     def test_a_house_without_includes_is_refused(self):
         for path in ('rt_core/base/good.hpp', 'tests/unit/test_good.cpp'):
             self.source(path, '')
-        self.refuse('floors', 'cmake/floors.cmake:1: no file of a room has an #include')
+        self.refuse('layers', 'cmake/layers.cmake:1: no file of a module has an #include')
 
     def test_a_table_that_is_not_understood_ends_with_2(self):
-        table = (self.root / guards.FLOORS).read_text()
+        table = (self.root / guards.LAYERS).read_text()
         line = table.count('\n') + 1
-        for command, fault in (('macro(tactus_room path)', 'is not understood: macro('),
-                               ('tactus_room(tests/unit ${nowhere})', 'is not understood: tactus_'),
-                               ('tactus_room(tests/unit "*")', 'is not understood: tactus_'),
-                               ('tactus_room()', 'is not understood: tactus_room()'),
-                               ('tactus_room(tests/unit', 'is not understood: tactus_room(tests'),
+        for command, fault in (('macro(tactus_module path)', 'is not understood: macro('),
+                               ('tactus_module(tests/unit ${nowhere})', 'is not understood: tactus_'),
+                               ('tactus_module(tests/unit "*")', 'is not understood: tactus_'),
+                               ('tactus_module()', 'is not understood: tactus_module()'),
+                               ('tactus_module(tests/unit', 'is not understood: tactus_module(tests'),
                                ('and so on', 'is not understood: and so on'),
-                               ('tactus_room(tests *)', 'has a name again: tactus_room(tests *)')):
+                               ('tactus_module(tests *)', 'has a name again: tactus_module(tests *)')):
             with self.subTest(command):
-                self.text(guards.FLOORS, f'{table}{command} # A comment.\n')
-                self.refuse('floors', f'{guards.FLOORS}:{line}: {fault}', code=2)
-        self.text(guards.FLOORS, 'tactus_room(tests *)\n')
-        self.refuse('floors', 'does not set TACTUS_RT_CORE_STANDARD_HEADERS', code=2)
-        (self.root / guards.FLOORS).unlink()
-        self.refuse('floors', f'{guards.FLOORS}: is not there', code=2)
+                self.text(guards.LAYERS, f'{table}{command} # A comment.\n')
+                self.refuse('layers', f'{guards.LAYERS}:{line}: {fault}', code=2)
+        self.text(guards.LAYERS, 'tactus_module(tests *)\n')
+        self.refuse('layers', 'does not set TACTUS_RT_CORE_STANDARD_HEADERS', code=2)
+        (self.root / guards.LAYERS).unlink()
+        self.refuse('layers', f'{guards.LAYERS}: is not there', code=2)
 
 
 class Text(House):
