@@ -121,8 +121,6 @@ tactus_component(core
     PC_REQUIRES eigen3
     PC_REQUIRES_PRIVATE ccd
     PUBLIC
-        platform/base/print_assertions.hpp
-        platform/base/refusal.hpp
         rt_core/base/arena.hpp
         rt_core/base/assert.hpp
         rt_core/base/model_id.hpp
@@ -161,7 +159,9 @@ tactus_component(core
         rt_core/spm/base_mesh.hpp
         rt_core/spm/error_code.hpp
         rt_core/spm/header.hpp
-        rt_core/spm/ids.hpp)
+        rt_core/spm/ids.hpp
+        transport/base/print_assertions.hpp
+        transport/base/refusal.hpp)
 if(TACTUS_ONLY_CORE)
     return()
 endif()
@@ -199,32 +199,32 @@ tactus_component(platform
     LINK_PRIVATE Threads::Threads ${CMAKE_DL_LIBS}
     PC_LIBS_PRIVATE -pthread
     PUBLIC
-        platform/clock.hpp
-        platform/device_frame.hpp
-        platform/device_guard.hpp
-        platform/dhd/dhd_device.hpp
-        platform/float_control.hpp
-        platform/haptic_device.hpp
-        platform/heartbeat.hpp
-        platform/latency_histogram.hpp
-        platform/periodic_timer.hpp
-        platform/plugin/device_plugin.hpp
-        platform/pool_memory.hpp
-        platform/posix/memory_lock.hpp
-        platform/posix/posix_clock.hpp
-        platform/posix/posix_periodic_timer.hpp
-        platform/posix/service_notify.hpp
+        platform/devices/device_frame.hpp
+        platform/devices/device_guard.hpp
+        platform/devices/dhd/dhd_device.hpp
+        platform/devices/haptic_device.hpp
+        platform/devices/plugin/device_plugin.hpp
+        platform/devices/simulated/hand_motion.hpp
+        platform/devices/simulated/scripted_hand.hpp
+        platform/devices/simulated/simulated_device.hpp
+        platform/devices/udp/udp_device.hpp
+        platform/devices/wrapped_device.hpp
+        platform/machine/clock.hpp
+        platform/machine/float_control.hpp
+        platform/machine/heartbeat.hpp
+        platform/machine/latency_histogram.hpp
+        platform/machine/periodic_timer.hpp
+        platform/machine/pool_memory.hpp
+        platform/machine/posix/memory_lock.hpp
+        platform/machine/posix/posix_clock.hpp
+        platform/machine/posix/posix_periodic_timer.hpp
+        platform/machine/posix/service_notify.hpp
+        platform/machine/rt_thread.hpp
+        platform/machine/time.hpp
         platform/recording/frame_tap.hpp
         platform/recording/recording.hpp
         platform/recording/recording_writer.hpp
-        platform/recording/replay.hpp
-        platform/rt_thread.hpp
-        platform/simulated/hand_motion.hpp
-        platform/simulated/scripted_hand.hpp
-        platform/simulated/simulated_device.hpp
-        platform/time.hpp
-        platform/udp/udp_device.hpp
-        platform/wrapped_device.hpp)
+        platform/recording/replay.hpp)
 
 tactus_component(host
     NEEDS core transport

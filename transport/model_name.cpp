@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #include "transport/model_name.hpp"
 
-#include "platform/base/printable.hpp"
-#include "platform/base/utf8.hpp"
+#include "transport/base/printable.hpp"
+#include "transport/base/utf8.hpp"
 
 #include <algorithm>
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <memory>
-#include <tactus/platform/plugin/device_plugin.hpp>
+#include <tactus/platform/devices/plugin/device_plugin.hpp>
 
 using namespace tactus;
 

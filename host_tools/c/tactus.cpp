@@ -2,12 +2,12 @@
 // Copyright the Tactus authors.
 #include "host_tools/c/tactus.h"
 
-#include "platform/base/refusal.hpp"
 #include "rt_core/frame/frame.hpp"
 #include "rt_core/frame/list_touches.hpp"
 #include "rt_core/geometry/believed_motion.hpp"
 #include "rt_core/math/rotation.hpp"
 #include "rt_core/records/object_touch.hpp"
+#include "transport/base/refusal.hpp"
 #include "transport/courier.hpp"
 #include "transport/dds/dds_client.hpp"
 #include "transport/inside_test.hpp"

@@ -6,9 +6,9 @@
 #include "host_tools/encode/piece_coding.hpp"
 #include "host_tools/encode/region_grid.hpp"
 #include "host_tools/simplify/parallel_blocks.hpp"
-#include "platform/base/atomic_file.hpp"
 #include "rt_core/base/assert.hpp"
 #include "rt_core/spm/index_page.hpp"
+#include "transport/base/atomic_file.hpp"
 #include "transport/content_hash.hpp"
 
 #include <fmt/format.h>

@@ -4,9 +4,9 @@
 
 #include "host_tools/mesh/prepare.hpp"
 #include "host_tools/simplify/simplify.hpp"
-#include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/spm/header.hpp"
+#include "transport/base/refusal.hpp"
 
 #include <cstdint>
 #include <filesystem>

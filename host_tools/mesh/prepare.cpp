@@ -7,7 +7,7 @@
 #include "host_tools/mesh/detail/manifold.hpp"
 #include "host_tools/mesh/detail/stitch.hpp"
 #include "host_tools/mesh/detail/winding.hpp"
-#include "platform/base/counted.hpp"
+#include "transport/base/counted.hpp"
 
 #include <fmt/format.h>
 

@@ -4,9 +4,9 @@
 
 #include "host_tools/mesh/quantised_mesh.hpp"
 #include "host_tools/mesh/triangle_mesh.hpp"
-#include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/limits.hpp"
+#include "transport/base/refusal.hpp"
 
 #include <array>
 #include <cstddef>

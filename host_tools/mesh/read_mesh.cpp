@@ -6,8 +6,8 @@
 #include "host_tools/mesh/detail/read_input.hpp"
 #include "host_tools/mesh/detail/readers.hpp"
 #include "host_tools/mesh/detail/text_cursor.hpp"
-#include "platform/base/printable.hpp"
-#include "platform/base/read_file.hpp"
+#include "transport/base/printable.hpp"
+#include "transport/base/read_file.hpp"
 
 #include <fmt/format.h>
 

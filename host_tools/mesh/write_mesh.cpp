@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #include "host_tools/mesh/write_mesh.hpp"
 
-#include "platform/base/atomic_file.hpp"
 #include "rt_core/math/vec3.hpp"
+#include "transport/base/atomic_file.hpp"
 
 #include <fmt/format.h>
 

@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #include "host_tools/scene/placed_models.hpp"
 
-#include "host_tools/scene/material_text.hpp"
 #include "host_tools/scene/scene.hpp"
+#include "transport/material_text.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -4,8 +4,8 @@
 
 #include "host_tools/scene/scene_mesh.hpp"
 #include "host_tools/scene/scene_object.hpp"
-#include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
+#include "transport/base/refusal.hpp"
 
 #include <cstddef>
 #include <filesystem>

@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #include "host_tools/scene/unique_names.hpp"
 
-#include "platform/base/utf8.hpp"
 #include "rt_core/base/assert.hpp"
+#include "transport/base/utf8.hpp"
 #include "transport/model_name.hpp"
 
 #include <algorithm>

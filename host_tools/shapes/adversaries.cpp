@@ -4,7 +4,7 @@
 #include "host_tools/shapes/detail/plate.hpp"
 #include "host_tools/shapes/detail/sine.hpp"
 #include "host_tools/shapes/shapes.hpp"
-#include "platform/base/refusal.hpp"
+#include "transport/base/refusal.hpp"
 
 #include <fmt/format.h>
 

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "host_tools/mesh/triangle_mesh.hpp"
-#include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
+#include "transport/base/refusal.hpp"
 
 #include <cstdint>
 #include <optional>

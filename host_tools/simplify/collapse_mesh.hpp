@@ -4,8 +4,8 @@
 
 #include "host_tools/simplify/edge_match.hpp"
 #include "host_tools/simplify/simplify.hpp"
-#include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
+#include "transport/base/refusal.hpp"
 
 #include <array>
 #include <cstdint>

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "host_tools/mesh/quantised_mesh.hpp"
-#include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/limits.hpp"
+#include "transport/base/refusal.hpp"
 
 #include <array>
 #include <cstdint>

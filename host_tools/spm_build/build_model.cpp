@@ -8,7 +8,7 @@
 #include "host_tools/simplify/sampled_distance.hpp"
 #include "host_tools/simplify/simplify.hpp"
 #include "host_tools/spm_build/memory_need.hpp"
-#include "platform/base/counted.hpp"
+#include "transport/base/counted.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "host_tools/mesh/triangle_mesh.hpp"
-#include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/spm/header.hpp"
+#include "transport/base/refusal.hpp"
 
 #include <nlohmann/json_fwd.hpp>
 

@@ -2,12 +2,12 @@
 // Copyright the Tactus authors.
 #include "host_tools/spm_build/build_scene.hpp"
 
-#include "host_tools/cli/progress.hpp"
 #include "host_tools/scene/common_places.hpp"
 #include "host_tools/scene/placed_models.hpp"
 #include "host_tools/scene/scene.hpp"
 #include "host_tools/spm_build/scene_plan.hpp"
-#include "platform/base/atomic_file.hpp"
+#include "platform/program/progress.hpp"
+#include "transport/base/atomic_file.hpp"
 
 #include <fmt/format.h>
 

@@ -4,8 +4,8 @@
 
 #include "host_tools/spm_build/build_model.hpp"
 #include "host_tools/spm_build/placing.hpp"
-#include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
+#include "transport/base/refusal.hpp"
 
 #include <cstddef>
 #include <filesystem>

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/cli/command_line.hpp"
-#include "host_tools/cli/progress.hpp"
-#include "host_tools/cli/run_program.hpp"
 #include "host_tools/mesh/prepare.hpp"
 #include "host_tools/mesh/read_mesh.hpp"
 #include "host_tools/shapes/shapes.hpp"
@@ -12,8 +9,11 @@
 #include "host_tools/spm_build/options.hpp"
 #include "host_tools/spm_build/placing.hpp"
 #include "host_tools/spm_build/size_notes.hpp"
-#include "platform/base/atomic_file.hpp"
-#include "platform/base/program_log.hpp"
+#include "platform/program/command_line.hpp"
+#include "platform/program/progress.hpp"
+#include "platform/program/run_program.hpp"
+#include "transport/base/atomic_file.hpp"
+#include "transport/base/program_log.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

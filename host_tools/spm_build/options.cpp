@@ -2,10 +2,10 @@
 // Copyright the Tactus authors.
 #include "host_tools/spm_build/options.hpp"
 
-#include "host_tools/cli/command_line.hpp"
 #include "host_tools/mesh/prepare.hpp"
 #include "host_tools/scene/scene.hpp"
 #include "host_tools/shapes/shapes.hpp"
+#include "platform/program/command_line.hpp"
 
 #include <fmt/format.h>
 

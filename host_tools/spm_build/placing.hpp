@@ -4,7 +4,7 @@
 
 #include "host_tools/mesh/triangle_mesh.hpp"
 #include "host_tools/scene/placed_models.hpp"
-#include "platform/base/refusal.hpp"
+#include "transport/base/refusal.hpp"
 
 #include <Eigen/Geometry>
 

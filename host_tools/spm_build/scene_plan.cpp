@@ -2,12 +2,12 @@
 // Copyright the Tactus authors.
 #include "host_tools/spm_build/scene_plan.hpp"
 
-#include "host_tools/cli/progress.hpp"
 #include "host_tools/mesh/index_lists.hpp"
 #include "host_tools/mesh/mesh_places.hpp"
 #include "host_tools/scene/left_out.hpp"
 #include "host_tools/scene/shared_grids.hpp"
 #include "host_tools/scene/unique_names.hpp"
+#include "platform/program/progress.hpp"
 #include "transport/content_hash.hpp"
 
 #include <fmt/format.h>

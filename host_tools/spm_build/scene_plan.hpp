@@ -5,9 +5,9 @@
 #include "host_tools/scene/placed_models.hpp"
 #include "host_tools/scene/scene.hpp"
 #include "host_tools/spm_build/build_model.hpp"
-#include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/math/vec3.hpp"
+#include "transport/base/refusal.hpp"
 
 #include <Eigen/Geometry>
 

@@ -2,10 +2,10 @@
 // Copyright the Tactus authors.
 #include "host_tools/spm_inspect/extraction.hpp"
 
-#include "host_tools/cli/command_line.hpp"
 #include "host_tools/mesh/write_mesh.hpp"
 #include "host_tools/spm_inspect/zone_option.hpp"
-#include "platform/base/program_log.hpp"
+#include "platform/program/command_line.hpp"
+#include "transport/base/program_log.hpp"
 
 #include <fmt/format.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/cli/command_line.hpp"
-#include "host_tools/cli/progress.hpp"
-#include "host_tools/cli/run_program.hpp"
 #include "host_tools/encode/decoded_model.hpp"
 #include "host_tools/encode/false_claims.hpp"
 #include "host_tools/spm_inspect/options.hpp"
 #include "host_tools/spm_inspect/point_distances.hpp"
+#include "platform/program/command_line.hpp"
+#include "platform/program/progress.hpp"
+#include "platform/program/run_program.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/store/model_store.hpp"
 

@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #include "host_tools/spm_inspect/options.hpp"
 
-#include "host_tools/cli/command_line.hpp"
 #include "host_tools/mesh/read_mesh.hpp"
+#include "platform/program/command_line.hpp"
 
 namespace tactus::spm_inspect
 {

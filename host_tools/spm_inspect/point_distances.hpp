@@ -2,9 +2,9 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/math/vec3.hpp"
+#include "transport/base/refusal.hpp"
 
 #include <optional>
 #include <string>

@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #include "host_tools/spm_inspect/zone_option.hpp"
 
-#include "platform/base/number_form.hpp"
-#include "platform/base/printable.hpp"
+#include "transport/base/number_form.hpp"
+#include "transport/base/printable.hpp"
 
 #include <fmt/format.h>
 

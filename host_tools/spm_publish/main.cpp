@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/cli/command_line.hpp"
-#include "host_tools/cli/run_program.hpp"
-#include "host_tools/cli/stop_signals.hpp"
 #include "host_tools/scene/placed_models.hpp"
 #include "host_tools/spm_publish/host_metrics.hpp"
 #include "host_tools/spm_publish/namesakes.hpp"
@@ -10,8 +7,11 @@
 #include "host_tools/spm_publish/pose_script.hpp"
 #include "host_tools/spm_publish/serving_report.hpp"
 #include "host_tools/spm_publish/watch.hpp"
-#include "platform/base/counted.hpp"
-#include "platform/base/refusal.hpp"
+#include "platform/program/command_line.hpp"
+#include "platform/program/run_program.hpp"
+#include "platform/program/stop_signals.hpp"
+#include "transport/base/counted.hpp"
+#include "transport/base/refusal.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/dds/dds_host.hpp"
 #include "transport/dds/telemetry.hpp"

@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
+#include "transport/base/refusal.hpp"
 #include "transport/dds/catalogue.hpp"
 #include "transport/dds/dds_host.hpp"
 #include "transport/log.hpp"

@@ -2,13 +2,13 @@
 // Copyright the Tactus authors.
 #include "host_tools/spm_publish/options.hpp"
 
-#include "host_tools/cli/command_line.hpp"
 #include "host_tools/mesh/read_mesh.hpp"
-#include "host_tools/scene/material_text.hpp"
 #include "host_tools/scene/scene.hpp"
 #include "host_tools/spm_publish/pose_script.hpp"
-#include "platform/base/printable.hpp"
+#include "platform/program/command_line.hpp"
+#include "transport/base/printable.hpp"
 #include "transport/dds/domain.hpp"
+#include "transport/material_text.hpp"
 #include "transport/model_name.hpp"
 
 #include <fmt/format.h>

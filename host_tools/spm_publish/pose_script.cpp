@@ -2,9 +2,9 @@
 // Copyright the Tactus authors.
 #include "host_tools/spm_publish/pose_script.hpp"
 
-#include "host_tools/scene/material_text.hpp"
-#include "platform/base/numbers.hpp"
-#include "platform/base/printable.hpp"
+#include "transport/base/numbers.hpp"
+#include "transport/base/printable.hpp"
+#include "transport/material_text.hpp"
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>

@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #include "host_tools/spm_publish/serving_report.hpp"
 
-#include "host_tools/cli/print_out.hpp"
-#include "platform/base/counted.hpp"
+#include "platform/program/print_out.hpp"
+#include "transport/base/counted.hpp"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/base/program_log.hpp"
+#include "transport/base/program_log.hpp"
 #include "transport/dds/dds_host.hpp"
 
 #include <chrono>

@@ -5,7 +5,7 @@
 #include "host_tools/encode/decoded_model.hpp"
 #include "host_tools/encode/replay.hpp"
 #include "host_tools/spm_view/known_model.hpp"
-#include "platform/base/refusal.hpp"
+#include "transport/base/refusal.hpp"
 #include "transport/front.hpp"
 
 #include <cstdint>

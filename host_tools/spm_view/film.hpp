@@ -5,9 +5,9 @@
 #include "host_tools/spm_view/live_state.hpp"
 #include "host_tools/spm_view/model_shelf.hpp"
 #include "host_tools/spm_view/timeline.hpp"
-#include "platform/base/refusal.hpp"
 #include "platform/recording/recording.hpp"
 #include "rt_core/records/frame_output.hpp"
+#include "transport/base/refusal.hpp"
 
 #include <cstdint>
 #include <cstring>

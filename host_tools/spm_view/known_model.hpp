@@ -2,10 +2,10 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/spm/content_key.hpp"
 #include "rt_core/spm/header.hpp"
+#include "transport/base/refusal.hpp"
 
 #include <cstddef>
 #include <optional>

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/cli/command_line.hpp"
-#include "host_tools/cli/run_program.hpp"
-#include "host_tools/cli/stop_signals.hpp"
 #include "host_tools/spm_view/film.hpp"
 #include "host_tools/spm_view/live_state.hpp"
 #include "host_tools/spm_view/model_fetcher.hpp"
 #include "host_tools/spm_view/model_shelf.hpp"
 #include "host_tools/spm_view/options.hpp"
 #include "host_tools/spm_view/web_server.hpp"
-#include "platform/base/program_log.hpp"
+#include "platform/program/command_line.hpp"
+#include "platform/program/run_program.hpp"
+#include "platform/program/stop_signals.hpp"
+#include "transport/base/program_log.hpp"
 #include "transport/dds/front.hpp"
 #include "transport/dds/telemetry.hpp"
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "host_tools/spm_view/model_shelf.hpp"
-#include "platform/base/refusal.hpp"
+#include "transport/base/refusal.hpp"
 #include "transport/dds/catalogue.hpp"
 #include "transport/dds/domain.hpp"
 #include "transport/dds/piece_exchange.hpp"

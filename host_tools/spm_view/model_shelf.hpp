@@ -3,7 +3,7 @@
 #pragma once
 
 #include "host_tools/spm_view/known_model.hpp"
-#include "platform/base/refusal.hpp"
+#include "transport/base/refusal.hpp"
 
 #include <cstdint>
 #include <memory>

@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #include "host_tools/spm_view/options.hpp"
 
-#include "host_tools/cli/command_line.hpp"
-#include "platform/base/printable.hpp"
+#include "platform/program/command_line.hpp"
+#include "transport/base/printable.hpp"
 #include "transport/dds/domain.hpp"
 
 #include <fmt/format.h>

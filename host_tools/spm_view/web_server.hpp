@@ -5,7 +5,7 @@
 #include "host_tools/spm_view/film.hpp"
 #include "host_tools/spm_view/live_state.hpp"
 #include "host_tools/spm_view/model_shelf.hpp"
-#include "platform/base/refusal.hpp"
+#include "transport/base/refusal.hpp"
 
 #include <cstdint>
 #include <filesystem>

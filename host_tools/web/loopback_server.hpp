@@ -3,7 +3,7 @@
 #pragma once
 
 #include "host_tools/web/peer_stream.hpp"
-#include "platform/base/refusal.hpp"
+#include "transport/base/refusal.hpp"
 
 #include <atomic>
 #include <cstddef>

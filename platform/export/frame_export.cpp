@@ -2,11 +2,11 @@
 // Copyright the Tactus authors.
 #include "platform/export/frame_export.hpp"
 
-#include "platform/base/atomic_file.hpp"
 #include "platform/export/csv_sink.hpp"
 #include "platform/export/json_sink.hpp"
 #include "platform/export/mcap_writer.hpp"
 #include "rt_core/base/assert.hpp"
+#include "transport/base/atomic_file.hpp"
 
 #include <fmt/format.h>
 

@@ -2,10 +2,10 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/base/refusal.hpp"
 #include "platform/export/frame_fields.hpp"
 #include "platform/recording/recording_format.hpp"
 #include "rt_core/base/result.hpp"
+#include "transport/base/refusal.hpp"
 
 #include <memory>
 #include <string>

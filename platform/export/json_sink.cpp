@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/export/json_sink.hpp"
 
-#include "platform/base/printable.hpp"
+#include "transport/base/printable.hpp"
 
 #include <fmt/format.h>
 

@@ -4,22 +4,26 @@
 /// hrtc, the haptic real-time controller: finds models, lays out the pools, runs the loop on its
 /// real-time thread, and reports.
 
-#include "host_tools/cli/command_line.hpp"
-#include "host_tools/cli/print_out.hpp"
-#include "host_tools/cli/run_program.hpp"
-#include "host_tools/cli/stop_signals.hpp"
-#include "platform/hrtc/assertion_brake.hpp"
-#include "platform/hrtc/histogram_files.hpp"
-#include "platform/hrtc/options.hpp"
+#include "platform/choices/messages.hpp"
+#include "platform/controller/session.hpp"
 #include "platform/hrtc/replay_file.hpp"
-#include "platform/hrtc/report.hpp"
-#include "platform/hrtc/report_page.hpp"
-#include "platform/hrtc/report_relief.hpp"
-#include "platform/hrtc/session.hpp"
-#include "platform/hrtc/start_lines.hpp"
 #include "platform/hrtc/subcommands.hpp"
-#include "platform/hrtc/verdict.hpp"
-#include "platform/process_stop.hpp"
+#include "platform/loop/assertion_brake.hpp"
+#include "platform/machine/process_stop.hpp"
+#include "platform/options/options.hpp"
+#include "platform/options/program_hooks.hpp"
+#include "platform/program/command_line.hpp"
+#include "platform/program/leave_with.hpp"
+#include "platform/program/print_out.hpp"
+#include "platform/program/run_program.hpp"
+#include "platform/program/stop_signals.hpp"
+#include "platform/report/histogram_files.hpp"
+#include "platform/report/report.hpp"
+#include "platform/report/report_page.hpp"
+#include "platform/report/report_relief.hpp"
+#include "platform/report/start_lines.hpp"
+#include "platform/report/verdict.hpp"
+#include "transport/base/output_file.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -41,7 +45,7 @@ int touch(const Options& options)
     {
         return replay_file(options.replay_path, options.kernels, options.export_paths, log_error);
     }
-    auto session = Session::open(options);
+    auto session = Session::open(options, program_hooks());
     if (!session)
     {
         return leave_with(session.error());
@@ -96,8 +100,7 @@ int run(int argc, char** argv)
     {
         return subcommand->run(argc - 1, argv + 1);
     }
-    const auto parsed =
-        parse_options(argc, argv, {.declare = {}, .footer = describe_subcommands()});
+    const auto parsed = parse_options(argc, argv, program_form());
     if (const int* code = std::get_if<int>(&parsed))
     {
         return *code;

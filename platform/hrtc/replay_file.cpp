@@ -2,11 +2,11 @@
 // Copyright the Tactus authors.
 #include "platform/hrtc/replay_file.hpp"
 
-#include "host_tools/cli/command_line.hpp"
-#include "host_tools/cli/print_out.hpp"
-#include "platform/base/printable.hpp"
 #include "platform/export/frame_export.hpp"
+#include "platform/program/command_line.hpp"
+#include "platform/program/print_out.hpp"
 #include "platform/recording/replay.hpp"
+#include "transport/base/printable.hpp"
 
 #include <fmt/format.h>
 

@@ -2,9 +2,10 @@
 // Copyright the Tactus authors.
 #include "platform/hrtc/subcommands.hpp"
 
-#include "platform/hrtc/deadline_test_command.hpp"
-#include "platform/hrtc/doctor_command.hpp"
-#include "platform/hrtc/load.hpp"
+#include "platform/diagnose/deadline_test_command.hpp"
+#include "platform/diagnose/doctor_command.hpp"
+#include "platform/diagnose/load.hpp"
+#include "platform/hrtc/file_readers.hpp"
 
 #include <fmt/format.h>
 
@@ -22,7 +23,7 @@ constexpr std::array kSubcommands{
     Subcommand{"doctor", "what of this machine is in the loop's way, and how to mend it",
                run_doctor},
     Subcommand{"deadline-test", "whose fault each missed deadline is, alone and beside load",
-               run_deadline_test},
+               [](int argc, char** argv) { return run_deadline_test(argc, argv, program_form()); }},
     Subcommand{"load", "keeps this machine busy", run_load},
 };
 
@@ -60,6 +61,14 @@ std::string describe_subcommands()
         text += fmt::format("\n  {:<26}{}", fmt::format("hrtc {}", each.name), each.summary);
     }
     return text + "\nEach has a --help of its own.";
+}
+
+CommandForm program_form()
+{
+    return {.declare = {},
+            .footer = describe_subcommands(),
+            .commands = subcommand_names(),
+            .readers = file_readers()};
 }
 
 } // namespace tactus::hrtc

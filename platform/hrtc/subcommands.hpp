@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/options/options.hpp"
+
 #include <span>
 #include <string>
 
@@ -26,5 +28,8 @@ struct Subcommand
 
 /// A paragraph for the end of --help.
 [[nodiscard]] std::string describe_subcommands();
+
+/// The form of hrtc's own command line.
+[[nodiscard]] CommandForm program_form();
 
 } // namespace tactus::hrtc

@@ -2,11 +2,11 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/base/refusal.hpp"
 #include "platform/recording/frame_decoder.hpp"
 #include "platform/recording/recording_format.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/spm/content_key.hpp"
+#include "transport/base/refusal.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/base/refusal.hpp"
 #include "platform/recording/recording.hpp"
 #include "platform/recording/setup_coding.hpp"
 #include "rt_core/base/arena.hpp"
 #include "rt_core/base/crc32c.hpp"
 #include "rt_core/frame/model.hpp"
+#include "transport/base/refusal.hpp"
 
 #include <algorithm>
 #include <cstring>

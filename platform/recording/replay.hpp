@@ -2,12 +2,12 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/base/refusal.hpp"
 #include "platform/recording/frame_decoder.hpp"
 #include "platform/recording/recording.hpp"
 #include "rt_core/frame/frame.hpp"
 #include "rt_core/kernels/kernels.hpp"
 #include "rt_core/records/frame_output.hpp"
+#include "transport/base/refusal.hpp"
 
 #include <cstdint>
 #include <functional>

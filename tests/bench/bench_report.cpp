@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "tests/bench/bench_report.hpp"
 
-#include "platform/hrtc/machine.hpp"
+#include "platform/loop/machine.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

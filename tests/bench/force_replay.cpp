@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "tests/bench/force_replay.hpp"
 
-#include "platform/allocation_counter.hpp"
+#include "platform/machine/allocation_counter.hpp"
 #include "tests/bench/heap_use.hpp"
 #include "tests/bench/stage_timer.hpp"
 #include "tests/bench/static_model.hpp"

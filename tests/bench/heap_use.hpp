@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/allocation_counter.hpp"
+#include "platform/machine/allocation_counter.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -3,12 +3,12 @@
 
 /// tactus_bench: measures, and prints rows that can be compared from commit to commit.
 
-#include "host_tools/cli/command_line.hpp"
-#include "host_tools/cli/run_program.hpp"
-#include "platform/base/atomic_file.hpp"
+#include "platform/program/command_line.hpp"
+#include "platform/program/run_program.hpp"
 #include "tests/bench/bench_report.hpp"
 #include "tests/bench/measuring.hpp"
 #include "tests/bench/suites.hpp"
+#include "transport/base/atomic_file.hpp"
 
 #include <fmt/format.h>
 

@@ -4,8 +4,8 @@
 /// scene_joiner: what a controller does to have a host's objects, or its models, without the rest
 /// of one. Says how long it took, and stays until it is told to end.
 
-#include "host_tools/cli/command_line.hpp"
-#include "host_tools/cli/run_program.hpp"
+#include "platform/program/command_line.hpp"
+#include "platform/program/run_program.hpp"
 #include "transport/dds/dds_client.hpp"
 #include "transport/dds/scene_reader.hpp"
 

@@ -4,7 +4,7 @@
 /// What poses from outside do to a force, and what they cost a frame.
 
 #include "host_tools/shapes/shapes.hpp"
-#include "platform/remote/pose_door.hpp"
+#include "platform/loop/pose_door.hpp"
 #include "tests/bench/least_times.hpp"
 #include "tests/bench/measuring.hpp"
 #include "tests/bench/scene_cases.hpp"

@@ -2,13 +2,13 @@
 // Copyright the Tactus authors.
 #include "tests/bench/scenes.hpp"
 
-#include "host_tools/cli/progress.hpp"
 #include "host_tools/encode/extract.hpp"
 #include "host_tools/encode/write_spm.hpp"
 #include "host_tools/mesh/prepare.hpp"
 #include "host_tools/mesh/read_mesh.hpp"
 #include "host_tools/shapes/shapes.hpp"
 #include "host_tools/simplify/simplify.hpp"
+#include "platform/program/progress.hpp"
 #include "tests/bench/bench_row.hpp"
 #include "tests/bench/mesh_refinement.hpp"
 #include "transport/content_hash.hpp"

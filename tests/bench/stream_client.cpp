@@ -4,8 +4,8 @@
 /// stream_client: the transport of a controller without the rest of it. Asks a host for chunks at a
 /// rate, or as fast as they come, and tells how long they took.
 
-#include "host_tools/cli/command_line.hpp"
-#include "host_tools/cli/run_program.hpp"
+#include "platform/program/command_line.hpp"
+#include "platform/program/run_program.hpp"
 #include "tests/bench/asking_client.hpp"
 #include "transport/dds/dds_client.hpp"
 

@@ -58,13 +58,13 @@ for processor in aarch64le x86_64; do
     rm -f "$scratch/seen.txt"
     output=$(configure "$scratch/host" "$processor") || { echo "$output"; exit 1; }
     rules=$(<"$scratch/build/build.ninja")
-    expect 'platform/posix/generic_extras.cpp' "$rules"
+    expect 'platform/machine/posix/generic_extras.cpp' "$rules"
     expect 'tests/unit/platform/test_timer_conformance.cpp' "$rules"
     expect '-D_QNX_SOURCE' "$rules"
     expect '-lsocket' "$rules"
     expect "/nto${processor%le}-ar" "$(<"$scratch/build/CMakeFiles/rules.ninja")"
     expect "-Vgcc_nto$processor" "$(<"$scratch/seen.txt")"
-    if [[ "$rules" == *platform/posix/linux_extras.cpp* ]]; then
+    if [[ "$rules" == *platform/machine/posix/linux_extras.cpp* ]]; then
         echo "the extras of Linux are built for QNX"
         exit 1
     fi

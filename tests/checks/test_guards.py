@@ -141,8 +141,8 @@ class Layers(House):
                  "includes 'dds/dds.h'; only these may include dds: transport/dds tests"),
                 ('transport/link.hpp', '#include "chunks.h"',
                  "includes 'chunks.h'; not a path of a module from the repository root"),
-                ('platform/posix/clock.cpp', '#include "platform/hrtc/loop.hpp"',
-                 "includes 'platform/hrtc/loop.hpp'; platform may include: platform ")):
+                ('platform/machine/posix/clock.cpp', '#include "platform/hrtc/loop.hpp"',
+                 "includes 'platform/hrtc/loop.hpp'; platform/machine may include: ")):
             with self.subTest(path=path, line=line):
                 self.source(path, line)
                 self.refuse('layers', f'{path}:4: {fault}')

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/base/printable.hpp"
+#include "transport/base/printable.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -6,7 +6,7 @@
 /// where the attack wants it; then does it again and again, until it is told to end. Prints how
 /// often. Exits 2 where it can't serve, 3 for an attack that it doesn't know.
 
-#include "host_tools/cli/stop_signals.hpp"
+#include "platform/program/stop_signals.hpp"
 #include "rt_core/math/vec3.hpp"
 #include "transport/dds/dds_host.hpp"
 #include "transport/dds/telemetry.hpp"

@@ -7,7 +7,7 @@
 /// With HAS_NO_GUARD the library has no guard. With ",refuse" behind the log's name the guard
 /// refuses itself.
 
-#include "platform/plugin/device_plugin.hpp"
+#include "platform/devices/plugin/device_plugin.hpp"
 
 #include <array>
 #include <atomic>

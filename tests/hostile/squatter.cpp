@@ -13,7 +13,7 @@
 ///
 /// Exits 2 where it can't, 3 for a kind that it doesn't know.
 
-#include "host_tools/cli/stop_signals.hpp"
+#include "platform/program/stop_signals.hpp"
 #include "rt_core/limits.hpp"
 #include "transport/dds/domain.hpp"
 #include "transport/dds/model_pieces.hpp"

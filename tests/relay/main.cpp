@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/cli/command_line.hpp"
-#include "host_tools/cli/run_program.hpp"
-#include "platform/posix/posix_clock.hpp"
+#include "platform/machine/posix/posix_clock.hpp"
+#include "platform/program/command_line.hpp"
+#include "platform/program/run_program.hpp"
 #include "tests/relay/relay.hpp"
 #include "tests/relay/tap_network.hpp"
 

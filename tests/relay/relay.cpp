@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "tests/relay/relay.hpp"
 
-#include "platform/posix/posix_clock.hpp"
+#include "platform/machine/posix/posix_clock.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

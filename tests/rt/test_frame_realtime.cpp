@@ -6,8 +6,8 @@
 /// sanitizer that one watches, too, and ends the program at the first breach.
 
 #include "host_tools/shapes/shapes.hpp"
-#include "platform/allocation_counter.hpp"
-#include "platform/system_call_trap.hpp"
+#include "platform/machine/allocation_counter.hpp"
+#include "platform/machine/system_call_trap.hpp"
 #include "tests/shared/frame_rig.hpp"
 #include "tests/shared/random.hpp"
 

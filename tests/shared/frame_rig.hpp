@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/pool_memory.hpp"
+#include "platform/machine/pool_memory.hpp"
 #include "rt_core/frame/frame.hpp"
 #include "tests/shared/rig_recorder.hpp"
 #include "tests/shared/test_model.hpp"

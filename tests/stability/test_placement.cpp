@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/hrtc/placement.hpp"
+#include "platform/choices/placement.hpp"
 #include "tests/shared/random.hpp"
 
 #include <gtest/gtest.h>

@@ -4,9 +4,9 @@
 /// The rules of docs/stability.md on the model of hand and device: what they allow doesn't swing
 /// and makes no more energy than they say; what they forbid does. Prints the tables of that page.
 
-#include "platform/allocation_counter.hpp"
-#include "platform/simulated/device_classes.hpp"
-#include "platform/simulated/hand_turn.hpp"
+#include "platform/devices/simulated/device_classes.hpp"
+#include "platform/devices/simulated/hand_turn.hpp"
+#include "platform/machine/allocation_counter.hpp"
 #include "rt_core/force/force_conditioner.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
 #include "rt_core/math/infinity.hpp"

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/simulated/hand_and_device.hpp"
+#include "platform/devices/simulated/hand_and_device.hpp"
 #include "rt_core/force/force_pipeline.hpp"
 
 #include <cstdint>

@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #include "transport/dds/domain.hpp"
 
-#include "platform/base/printable.hpp"
-#include "platform/base/program_log.hpp"
+#include "transport/base/printable.hpp"
+#include "transport/base/program_log.hpp"
 #include "transport/dds/loopback_sockets.hpp"
 #include "transport/log.hpp"
 

@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
+#include "transport/base/refusal.hpp"
 #include "transport/dds/disposal.hpp"
 #include "transport/dds/entity.hpp"
 #include "transport/dds/participants.hpp"

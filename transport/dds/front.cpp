@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "transport/dds/front.hpp"
 
-#include "platform/base/printable.hpp"
+#include "transport/base/printable.hpp"
 #include "transport/dds/newest.hpp"
 #include "transport/dds/placement.hpp"
 #include "transport/dds/take.hpp"

@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/base/refusal.hpp"
 #include "rt_core/spm/content_key.hpp"
+#include "transport/base/refusal.hpp"
 #include "transport/dds/topics.hpp"
 #include "transport/piece_parts.hpp"
 #include "transport/store/model_store.hpp"

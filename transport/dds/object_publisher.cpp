@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "transport/dds/object_publisher.hpp"
 
-#include "platform/base/printable.hpp"
+#include "transport/base/printable.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/dds/placement.hpp"
 #include "transport/model_name.hpp"

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "transport/dds/participants.hpp"
 
-#include "platform/base/printable.hpp"
+#include "transport/base/printable.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/dds/take.hpp"
 #include "transport/dds/topics.hpp"

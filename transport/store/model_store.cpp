@@ -2,9 +2,9 @@
 // Copyright the Tactus authors.
 #include "transport/store/model_store.hpp"
 
-#include "platform/base/files_near.hpp"
 #include "rt_core/base/byte_io.hpp"
 #include "rt_core/spm/base_mesh.hpp"
+#include "transport/base/files_near.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/served_model.hpp"
 

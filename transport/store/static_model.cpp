@@ -2,12 +2,12 @@
 // Copyright the Tactus authors.
 #include "transport/store/static_model.hpp"
 
-#include "platform/base/counted.hpp"
 #include "rt_core/base/arena.hpp"
 #include "rt_core/frame/frame.hpp"
 #include "rt_core/query/contact_report.hpp"
 #include "rt_core/query/probe.hpp"
 #include "rt_core/query/surface_query.hpp"
+#include "transport/base/counted.hpp"
 #include "transport/courier.hpp"
 #include "transport/store/store_link.hpp"
 

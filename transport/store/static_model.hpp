@@ -2,12 +2,12 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/math/infinity.hpp"
 #include "rt_core/math/vec3.hpp"
 #include "rt_core/records/contact.hpp"
 #include "rt_core/spm/header.hpp"
+#include "transport/base/refusal.hpp"
 #include "transport/served_model.hpp"
 
 #include <chrono>

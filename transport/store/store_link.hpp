@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/base/refusal.hpp"
+#include "transport/base/refusal.hpp"
 #include "transport/chunk_link.hpp"
 #include "transport/log.hpp"
 #include "transport/served_model.hpp"

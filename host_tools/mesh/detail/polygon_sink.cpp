@@ -3,7 +3,7 @@
 #include "host_tools/mesh/detail/polygon_sink.hpp"
 
 #include "host_tools/mesh/detail/cut_polygon.hpp"
-#include "platform/base/counted.hpp"
+#include "transport/base/counted.hpp"
 
 #include <fmt/format.h>
 

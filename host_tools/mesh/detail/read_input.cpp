@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/mesh/detail/read_input.hpp"
 
-#include "platform/base/read_file.hpp"
+#include "transport/base/read_file.hpp"
 
 #include <cerrno>
 #include <cstddef>

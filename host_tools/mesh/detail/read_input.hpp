@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/base/refusal.hpp"
 #include "rt_core/base/result.hpp"
+#include "transport/base/refusal.hpp"
 
 #include <filesystem>
 #include <string>

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/mesh/detail/readers.hpp"
 #include "host_tools/mesh/detail/text_cursor.hpp"
-#include "platform/base/refusal.hpp"
+#include "transport/base/refusal.hpp"
 
 #include <fmt/format.h>
 

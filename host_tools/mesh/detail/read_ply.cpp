@@ -3,8 +3,8 @@
 #include "host_tools/mesh/detail/ply_header.hpp"
 #include "host_tools/mesh/detail/readers.hpp"
 #include "host_tools/mesh/detail/text_cursor.hpp"
-#include "platform/base/printable.hpp"
-#include "platform/base/refusal.hpp"
+#include "transport/base/printable.hpp"
+#include "transport/base/refusal.hpp"
 
 #include <fmt/format.h>
 

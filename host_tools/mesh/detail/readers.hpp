@@ -4,7 +4,7 @@
 
 #include "host_tools/mesh/detail/polygon_sink.hpp"
 #include "host_tools/mesh/read_mesh.hpp"
-#include "platform/base/refusal.hpp"
+#include "transport/base/refusal.hpp"
 
 #include <string>
 #include <string_view>

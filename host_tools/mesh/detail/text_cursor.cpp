@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/mesh/detail/text_cursor.hpp"
 
-#include "platform/base/printable.hpp"
+#include "transport/base/printable.hpp"
 
 #include <fmt/format.h>
 

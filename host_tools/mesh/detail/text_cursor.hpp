@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/base/refusal.hpp"
+#include "transport/base/refusal.hpp"
 
 #include <cstddef>
 #include <cstdint>

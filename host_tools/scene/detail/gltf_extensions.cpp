@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/scene/detail/gltf_extensions.hpp"
 
-#include "platform/base/printable.hpp"
+#include "transport/base/printable.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -3,8 +3,8 @@
 #include "host_tools/scene/detail/gltf_file.hpp"
 
 #include "host_tools/scene/detail/gltf_extensions.hpp"
-#include "platform/base/printable.hpp"
-#include "platform/base/read_file.hpp"
+#include "transport/base/printable.hpp"
+#include "transport/base/read_file.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

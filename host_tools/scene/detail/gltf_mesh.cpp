@@ -4,8 +4,8 @@
 
 #include "host_tools/mesh/read_mesh.hpp"
 #include "host_tools/scene/detail/gltf_accessor.hpp"
-#include "platform/base/counted.hpp"
 #include "rt_core/math/vec3.hpp"
+#include "transport/base/counted.hpp"
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>

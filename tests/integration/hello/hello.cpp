@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/base/print_assertions.hpp"
 #include "rt_core/force/force_pipeline.hpp"
 #include "rt_core/frame/frame.hpp"
+#include "transport/base/print_assertions.hpp"
 #include "transport/courier.hpp"
 #include "transport/store/store_link.hpp"
 

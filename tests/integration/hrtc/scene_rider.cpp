@@ -6,10 +6,10 @@
 /// slower, however the machine is loaded. Tells as JSON how often it was held up by a model that
 /// wasn't here: because that was wanted too late, or because the machine was late to bring it.
 
-#include "host_tools/cli/command_line.hpp"
-#include "host_tools/cli/run_program.hpp"
-#include "platform/hrtc/controller.hpp"
-#include "platform/hrtc/scene_choice.hpp"
+#include "platform/controller/controller.hpp"
+#include "platform/program/command_line.hpp"
+#include "platform/program/run_program.hpp"
+#include "platform/scene/scene_choice.hpp"
 #include "transport/dds/dds_client.hpp"
 #include "transport/dds/scene_reader.hpp"
 

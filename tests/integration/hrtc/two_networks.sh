@@ -5,7 +5,7 @@
 # whatever common.sh starts is where it belongs. A machine that can't make networks skips (77).
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 readonly network_relay=$4 list_safety=$5 judge_recording=$6
-# What a device of the class touch can do: platform/simulated/device_classes.hpp.
+# What a device of the class touch can do: platform/devices/simulated/device_classes.hpp.
 readonly touch_force_max_n=3.3
 
 # skip_without_networks: ends the script where nobody may make a network.

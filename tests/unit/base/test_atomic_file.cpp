@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/base/atomic_file.hpp"
 #include "tests/shared/temporary_folder.hpp"
+#include "transport/base/atomic_file.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/base/files_near.hpp"
 #include "tests/shared/temporary_folder.hpp"
+#include "transport/base/files_near.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/base/number_form.hpp"
+#include "transport/base/number_form.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/base/print_assertions.hpp"
 #include "rt_core/base/assert.hpp"
+#include "transport/base/print_assertions.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/base/program_log.hpp"
+#include "transport/base/program_log.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/base/utf8.hpp"
+#include "transport/base/utf8.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/doctor/machine_view.hpp"
+#include "platform/diagnose/doctor/machine_view.hpp"
 
 #include <filesystem>
 #include <optional>

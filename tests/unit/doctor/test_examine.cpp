@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/doctor/doctor.hpp"
+#include "platform/diagnose/doctor/doctor.hpp"
 #include "tests/unit/doctor/doctor_cases.hpp"
 #include "tests/unit/doctor/made_up_machine.hpp"
 

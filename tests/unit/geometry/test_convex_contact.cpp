@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/allocation_counter.hpp"
+#include "platform/machine/allocation_counter.hpp"
 #include "rt_core/geometry/box_triangle.hpp"
 #include "rt_core/geometry/round_triangle.hpp"
 #include "rt_core/query/convex_contact.hpp"

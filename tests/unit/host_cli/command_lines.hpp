@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "host_tools/cli/command_line.hpp"
-#include "platform/base/printable.hpp"
+#include "platform/program/command_line.hpp"
+#include "transport/base/printable.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/cli/command_line.hpp"
+#include "platform/program/command_line.hpp"
 #include "tests/shared/temporary_folder.hpp"
 
 #include <gtest/gtest.h>

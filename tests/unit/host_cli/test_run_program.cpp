@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/cli/command_line.hpp"
-#include "host_tools/cli/run_program.hpp"
+#include "platform/program/command_line.hpp"
+#include "platform/program/run_program.hpp"
 
 #include <gtest/gtest.h>
 

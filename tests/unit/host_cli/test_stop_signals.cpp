@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/cli/print_out.hpp"
-#include "host_tools/cli/stop_signals.hpp"
+#include "platform/program/print_out.hpp"
+#include "platform/program/stop_signals.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/pool_memory.hpp"
+#include "platform/machine/pool_memory.hpp"
 #include "rt_core/frame/model.hpp"
 #include "transport/store/model_store.hpp"
 

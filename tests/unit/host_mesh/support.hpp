@@ -4,9 +4,9 @@
 
 #include "host_tools/mesh/prepare.hpp"
 #include "host_tools/mesh/read_mesh.hpp"
-#include "platform/base/refusal.hpp"
 #include "tests/shared/manifold.hpp"
 #include "tests/shared/temporary_folder.hpp"
+#include "transport/base/refusal.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/scene/material_text.hpp"
+#include "transport/material_text.hpp"
 
 #include <gtest/gtest.h>
 

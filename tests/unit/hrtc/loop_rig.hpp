@@ -2,11 +2,11 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/device_force.hpp"
-#include "platform/hrtc/haptic_loop.hpp"
-#include "platform/simulated/faulty_device.hpp"
-#include "platform/simulated/simulated_device.hpp"
-#include "platform/simulated/simulated_periodic_timer.hpp"
+#include "platform/devices/device_force.hpp"
+#include "platform/devices/simulated/faulty_device.hpp"
+#include "platform/devices/simulated/simulated_device.hpp"
+#include "platform/devices/simulated/simulated_periodic_timer.hpp"
+#include "platform/loop/haptic_loop.hpp"
 #include "tests/shared/frame_rig.hpp"
 #include "tests/unit/hrtc/period.hpp"
 

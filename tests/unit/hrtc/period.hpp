@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/time.hpp"
+#include "platform/machine/time.hpp"
 #include "tests/shared/period.hpp"
 
 namespace tactus::hrtc::test

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/hrtc/assertion_brake.hpp"
+#include "platform/controller/session.hpp"
+#include "platform/devices/wrapped_device.hpp"
 #include "platform/hrtc/replay_file.hpp"
-#include "platform/hrtc/session.hpp"
+#include "platform/loop/assertion_brake.hpp"
+#include "platform/program/leave_with.hpp"
 #include "platform/recording/recording.hpp"
 #include "platform/recording/replay.hpp"
-#include "platform/wrapped_device.hpp"
 #include "rt_core/base/assert.hpp"
 #include "tests/shared/temporary_folder.hpp"
 #include "tests/shared/test_model.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/hrtc/deadline_account.hpp"
+#include "platform/loop/deadline_account.hpp"
 #include "tests/unit/hrtc/period.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/hrtc/deadline_report.hpp"
+#include "platform/diagnose/deadline_report.hpp"
 
 #include <gtest/gtest.h>
 

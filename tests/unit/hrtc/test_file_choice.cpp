@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/hrtc/file_choice.hpp"
+#include "platform/hrtc/file_readers.hpp"
+#include "platform/hrtc/subcommands.hpp"
+#include "platform/options/file_choice.hpp"
 
 #include <gtest/gtest.h>
 
@@ -36,13 +38,14 @@ struct Taken
 Taken take(const Given& given)
 {
     Options options;
+    options.readers = file_readers();
     options.scene = given.scene;
     RawOptions raw;
     raw.files = given.files;
     raw.models = given.models;
     raw.tools = given.tools;
     raw.transport = given.transport;
-    const std::string fault = take_files(options, raw);
+    const std::string fault = take_files(options, raw, subcommand_names());
     return {fault, raw.models, options.scene, raw.transport.value_or("")};
 }
 
@@ -51,11 +54,11 @@ TEST(FileChoice, tells_files_from_published_names)
     for (const char* file :
          {"cow.spm", "models/cow", "./cow", "cow.obj", "cow.STL", "a.gltf", "b.GLB"})
     {
-        EXPECT_TRUE(is_file_name(file)) << file;
+        EXPECT_TRUE(is_file_name(file, file_readers())) << file;
     }
     for (const char* name : {"cow", "cow.v2", "cow@0123", "spm", "cow.spm@0123"})
     {
-        EXPECT_FALSE(is_file_name(name)) << name;
+        EXPECT_FALSE(is_file_name(name, file_readers())) << name;
     }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/hrtc/following_hand.hpp"
+#include "platform/controller/following_hand.hpp"
 #include "rt_core/base/arena.hpp"
 
 #include <gtest/gtest.h>

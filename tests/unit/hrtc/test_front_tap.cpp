@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/hrtc/front_tap.hpp"
+#include "platform/loop/front_tap.hpp"
 #include "tests/unit/hrtc/loop_rig.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/hrtc/guardian.hpp"
+#include "platform/controller/guardian.hpp"
 
 #include <gtest/gtest.h>
 

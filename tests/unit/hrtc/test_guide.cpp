@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/hrtc/guide.hpp"
+#include "platform/choices/guide.hpp"
 #include "tests/shared/random.hpp"
 
 #include <gtest/gtest.h>

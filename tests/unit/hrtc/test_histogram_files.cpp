@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/hrtc/histogram_files.hpp"
+#include "platform/controller/histogram_folder.hpp"
+#include "platform/report/histogram_files.hpp"
 #include "tests/shared/temporary_folder.hpp"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/hrtc/load.hpp"
-#include "platform/thread_usage.hpp"
+#include "platform/diagnose/load.hpp"
+#include "platform/machine/thread_usage.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/hrtc/object_pose.hpp"
-#include "platform/hrtc/placement.hpp"
+#include "platform/choices/placement.hpp"
+#include "platform/scene/object_pose.hpp"
 #include "tests/shared/frame_rig.hpp"
 
 #include <Eigen/Geometry>

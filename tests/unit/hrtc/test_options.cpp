@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/hrtc/options.hpp"
 #include "platform/hrtc/subcommands.hpp"
+#include "platform/options/options.hpp"
 #include "tests/shared/temporary_folder.hpp"
 #include "tests/unit/host_cli/command_lines.hpp"
 
@@ -31,7 +31,7 @@ int parse(int argc, char** argv)
     {
         return subcommand->run(argc - 1, argv + 1);
     }
-    const auto parsed = parse_options(argc, argv, {});
+    const auto parsed = parse_options(argc, argv, program_form());
     const int* code = std::get_if<int>(&parsed);
     return code == nullptr ? kExitDone : *code;
 }
@@ -115,7 +115,8 @@ TEST_F(HrtcOptions, of_a_run_from_files_with_a_domain_show_it_to_viewers_but_not
         {
             arguments.push_back(word.data());
         }
-        const auto parsed = parse_options(static_cast<int>(arguments.size()), arguments.data(), {});
+        const auto parsed =
+            parse_options(static_cast<int>(arguments.size()), arguments.data(), program_form());
         return std::get<Options>(parsed).is_watched;
     };
     EXPECT_FALSE(is_watched("hrtc ball.spm"));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/device_force.hpp"
-#include "platform/hrtc/recorded_motion.hpp"
+#include "platform/choices/recorded_motion.hpp"
+#include "platform/devices/device_force.hpp"
 #include "tests/shared/frame_rig.hpp"
 #include "tests/shared/temporary_folder.hpp"
 #include "tests/shared/test_model.hpp"

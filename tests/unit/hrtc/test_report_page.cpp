@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/hrtc/report.hpp"
-#include "platform/hrtc/report_page.hpp"
-#include "platform/hrtc/report_words.hpp"
+#include "platform/options/options.hpp"
 #include "platform/plot/markup.hpp"
+#include "platform/report/report.hpp"
+#include "platform/report/report_page.hpp"
+#include "platform/report/report_words.hpp"
 #include "tests/shared/count_of.hpp"
 
 #include <gtest/gtest.h>

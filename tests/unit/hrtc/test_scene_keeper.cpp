@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/hrtc/scene_keeper.hpp"
+#include "platform/controller/controller.hpp"
+#include "platform/scene/scene_keeper.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
 #include "tests/shared/test_model.hpp"
 #include "tests/unit/transport/dds_rig.hpp"
@@ -107,8 +108,8 @@ protected:
         const std::size_t capacity = controller_->frame().objects().capacity();
         door_.emplace(controller_->poses(), capacity, kAgeLimit);
         pin(scene, models);
-        keeper.emplace(authorities, std::move(reader_), *controller_, std::move(scene),
-                       lines.log());
+        keeper.emplace(authorities, std::move(reader_), controller_->scene_parts(),
+                       std::move(scene), lines.log());
         keeper->connect(
             *door_, now_,
             [this](std::uint32_t number, std::uint32_t generation, const std::string& name)

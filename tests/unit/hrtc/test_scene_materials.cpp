@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/hrtc/scene_materials.hpp"
+#include "platform/choices/scene_materials.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/allocation_counter.hpp"
-#include "platform/hrtc/self_check.hpp"
-#include "platform/thread_usage.hpp"
+#include "platform/diagnose/self_check.hpp"
+#include "platform/machine/allocation_counter.hpp"
+#include "platform/machine/thread_usage.hpp"
 #include "tests/unit/hrtc/period.hpp"
 
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/hrtc/machine.hpp"
-#include "platform/hrtc/supervisor.hpp"
-#include "platform/posix/posix_clock.hpp"
-#include "platform/posix/posix_periodic_timer.hpp"
+#include "platform/loop/machine.hpp"
+#include "platform/loop/supervisor.hpp"
+#include "platform/machine/posix/posix_clock.hpp"
+#include "platform/machine/posix/posix_periodic_timer.hpp"
 #include "rt_core/limits.hpp"
 #include "tests/unit/hrtc/loop_rig.hpp"
 

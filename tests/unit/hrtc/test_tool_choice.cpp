@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/hrtc/options.hpp"
-#include "platform/hrtc/tool_choice.hpp"
+#include "platform/choices/run_options.hpp"
+#include "platform/choices/tool_choice.hpp"
+#include "platform/hrtc/file_readers.hpp"
 #include "tests/shared/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -92,6 +93,7 @@ protected:
     static Options of(const std::string& tool)
     {
         Options options;
+        options.readers = file_readers();
         options.models = {"cow"};
         options.objects = {{}};
         options.tool_choices = {parse_tool(tool).value()};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/device_force.hpp"
-#include "platform/hrtc/tool_port.hpp"
-#include "platform/simulated/device_classes.hpp"
+#include "platform/devices/device_force.hpp"
+#include "platform/devices/simulated/device_classes.hpp"
+#include "platform/loop/tool_port.hpp"
 #include "tests/unit/hrtc/period.hpp"
 
 #include <gtest/gtest.h>

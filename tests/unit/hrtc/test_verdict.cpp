@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/hrtc/verdict.hpp"
+#include "platform/report/verdict.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

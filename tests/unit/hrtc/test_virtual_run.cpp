@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "host_tools/shapes/shapes.hpp"
-#include "platform/hrtc/haptic_loop.hpp"
-#include "platform/hrtc/supervisor.hpp"
-#include "platform/simulated/scripted_hand.hpp"
-#include "platform/simulated/simulated_device.hpp"
-#include "platform/simulated/simulated_periodic_timer.hpp"
-#include "platform/wrapped_device.hpp"
+#include "platform/devices/simulated/scripted_hand.hpp"
+#include "platform/devices/simulated/simulated_device.hpp"
+#include "platform/devices/simulated/simulated_periodic_timer.hpp"
+#include "platform/devices/wrapped_device.hpp"
+#include "platform/loop/haptic_loop.hpp"
+#include "platform/loop/supervisor.hpp"
 #include "tests/shared/frame_rig.hpp"
 #include "tests/unit/hrtc/period.hpp"
 

@@ -2,13 +2,13 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/device_force.hpp"
-#include "platform/haptic_device.hpp"
-#include "platform/simulated/device_classes.hpp"
-#include "platform/simulated/faulty_device.hpp"
-#include "platform/simulated/hand_motion.hpp"
-#include "platform/simulated/replay_device.hpp"
-#include "platform/simulated/simulated_device.hpp"
+#include "platform/devices/device_force.hpp"
+#include "platform/devices/haptic_device.hpp"
+#include "platform/devices/simulated/device_classes.hpp"
+#include "platform/devices/simulated/faulty_device.hpp"
+#include "platform/devices/simulated/hand_motion.hpp"
+#include "platform/devices/simulated/replay_device.hpp"
+#include "platform/devices/simulated/simulated_device.hpp"
 
 #include <memory>
 #include <utility>

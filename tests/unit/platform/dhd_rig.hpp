@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/dhd/dhd_device.hpp"
-#include "platform/posix/posix_clock.hpp"
+#include "platform/devices/dhd/dhd_device.hpp"
+#include "platform/machine/posix/posix_clock.hpp"
 #include "tests/unit/platform/device_rig.hpp"
 #include "tests/unit/platform/stand_in_dhd.hpp"
 #include "tests/unit/platform/udp_rig.hpp"

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/udp/datagram.hpp"
+#include "platform/devices/udp/datagram.hpp"
 
 /// Datagrams of each kind, no value like another.
 namespace tactus::test

@@ -3,7 +3,7 @@
 
 /// A library for --device plugin that fails as its words say.
 
-#include "platform/plugin/device_plugin.hpp"
+#include "platform/devices/plugin/device_plugin.hpp"
 
 #include <stdexcept>
 #include <string_view>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-/// A library that exports what platform/dhd takes from Force Dimension's SDK; without
+/// A library that exports what platform/devices/dhd takes from Force Dimension's SDK; without
 /// dhdSetForceAndTorqueAndGripperForce when STAND_IN_DHD_IS_OLD is defined.
 #include "tests/unit/platform/stand_in_dhd.hpp"
 

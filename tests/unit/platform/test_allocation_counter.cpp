@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/allocation_counter.hpp"
+#include "platform/machine/allocation_counter.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/brake_latch.hpp"
+#include "platform/devices/brake_latch.hpp"
 
 #include <gtest/gtest.h>
 

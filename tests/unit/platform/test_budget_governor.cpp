@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/budget_governor.hpp"
+#include "platform/loop/budget_governor.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/device_frame.hpp"
+#include "platform/devices/device_frame.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
 #include "rt_core/limits.hpp"
 #include "tests/shared/random.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/plugin/device_plugin.hpp"
+#include "platform/devices/plugin/device_plugin.hpp"
 
 #include <gtest/gtest.h>
 

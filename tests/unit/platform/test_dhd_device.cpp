@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/dhd/dhd_guard.hpp"
+#include "platform/devices/dhd/dhd_guard.hpp"
 #include "tests/unit/platform/dhd_rig.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/simulated/faulty_device.hpp"
+#include "platform/devices/simulated/faulty_device.hpp"
 #include "tests/unit/platform/device_rig.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/float_control.hpp"
+#include "platform/machine/float_control.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/pool_memory.hpp"
-#include "platform/posix/linux_extras.hpp"
-#include "platform/posix/memory_lock.hpp"
-#include "platform/rt_thread.hpp"
+#include "platform/machine/pool_memory.hpp"
+#include "platform/machine/posix/linux_extras.hpp"
+#include "platform/machine/posix/memory_lock.hpp"
+#include "platform/machine/rt_thread.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/simulated/device_classes.hpp"
-#include "platform/simulated/hand_and_device.hpp"
+#include "platform/devices/simulated/device_classes.hpp"
+#include "platform/devices/simulated/hand_and_device.hpp"
 #include "tests/shared/random.hpp"
 
 #include <gtest/gtest.h>

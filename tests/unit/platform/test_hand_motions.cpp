@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/simulated/hand_motions.hpp"
-#include "platform/simulated/landing_sites.hpp"
-#include "platform/simulated/simulated_device.hpp"
+#include "platform/devices/simulated/hand_motions.hpp"
+#include "platform/devices/simulated/landing_sites.hpp"
+#include "platform/devices/simulated/simulated_device.hpp"
 #include "tests/shared/period.hpp"
 #include "tests/unit/platform/fake_wall.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/simulated/device_classes.hpp"
-#include "platform/simulated/hand_turn.hpp"
+#include "platform/devices/simulated/device_classes.hpp"
+#include "platform/devices/simulated/hand_turn.hpp"
 
 #include <gtest/gtest.h>
 

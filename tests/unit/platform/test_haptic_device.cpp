@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/allocation_counter.hpp"
-#include "platform/haptic_device.hpp"
-#include "platform/simulated/device_classes.hpp"
-#include "platform/system_call_trap.hpp"
+#include "platform/devices/haptic_device.hpp"
+#include "platform/devices/simulated/device_classes.hpp"
+#include "platform/machine/allocation_counter.hpp"
+#include "platform/machine/system_call_trap.hpp"
 #include "rt_core/math/rotation.hpp"
 #include "tests/unit/platform/dhd_rig.hpp"
 #include "tests/unit/platform/udp_rig.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/latency_histogram.hpp"
+#include "platform/machine/latency_histogram.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/remote/pose_door.hpp"
+#include "platform/loop/pose_door.hpp"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>

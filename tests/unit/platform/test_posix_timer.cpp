@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/posix/posix_clock.hpp"
-#include "platform/posix/posix_periodic_timer.hpp"
-#include "platform/thread_usage.hpp"
+#include "platform/machine/posix/posix_clock.hpp"
+#include "platform/machine/posix/posix_periodic_timer.hpp"
+#include "platform/machine/thread_usage.hpp"
 
 #include <gtest/gtest.h>
 

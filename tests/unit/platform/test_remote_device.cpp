@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/remote/info_fault.hpp"
-#include "platform/remote/remote_device.hpp"
-#include "platform/simulated/simulated_clock.hpp"
+#include "platform/devices/remote/info_fault.hpp"
+#include "platform/devices/remote/remote_device.hpp"
+#include "platform/devices/simulated/simulated_clock.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/simulated/replay_device.hpp"
+#include "platform/devices/simulated/replay_device.hpp"
 
 #include <gtest/gtest.h>
 

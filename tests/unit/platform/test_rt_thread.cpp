@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/float_control.hpp"
-#include "platform/posix/memory_lock.hpp"
-#include "platform/rt_thread.hpp"
-#include "platform/thread_usage.hpp"
+#include "platform/machine/float_control.hpp"
+#include "platform/machine/posix/memory_lock.hpp"
+#include "platform/machine/rt_thread.hpp"
+#include "platform/machine/thread_usage.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/allocation_counter.hpp"
-#include "platform/device_force.hpp"
-#include "platform/simulated/scripted_hand.hpp"
-#include "platform/simulated/simulated_device.hpp"
+#include "platform/devices/device_force.hpp"
+#include "platform/devices/simulated/scripted_hand.hpp"
+#include "platform/devices/simulated/simulated_device.hpp"
+#include "platform/machine/allocation_counter.hpp"
 #include "tests/unit/platform/fake_wall.hpp"
 
 #include <gtest/gtest.h>

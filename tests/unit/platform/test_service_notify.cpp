@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/posix/service_notify.hpp"
+#include "platform/machine/posix/service_notify.hpp"
 #include "tests/shared/temporary_folder.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/simulated/simulated_periodic_timer.hpp"
+#include "platform/devices/simulated/simulated_periodic_timer.hpp"
 
 #include <gtest/gtest.h>
 

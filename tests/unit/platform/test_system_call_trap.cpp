@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/posix/posix_clock.hpp"
-#include "platform/system_call_trap.hpp"
+#include "platform/machine/posix/posix_clock.hpp"
+#include "platform/machine/system_call_trap.hpp"
 
 #include <gtest/gtest.h>
 

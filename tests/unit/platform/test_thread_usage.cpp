@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/thread_usage.hpp"
+#include "platform/machine/thread_usage.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/udp/datagram.hpp"
+#include "platform/devices/udp/datagram.hpp"
 #include "tests/unit/platform/example_datagrams.hpp"
 #include "tests/unit/rt_core/coded_bytes.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/posix/posix_clock.hpp"
-#include "platform/udp/udp_device.hpp"
+#include "platform/devices/udp/udp_device.hpp"
+#include "platform/machine/posix/posix_clock.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/udp/session.hpp"
+#include "platform/devices/udp/session.hpp"
 
 #include <gtest/gtest.h>
 

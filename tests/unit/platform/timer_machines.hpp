@@ -2,9 +2,9 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/posix/posix_clock.hpp"
-#include "platform/posix/posix_periodic_timer.hpp"
-#include "platform/simulated/simulated_periodic_timer.hpp"
+#include "platform/devices/simulated/simulated_periodic_timer.hpp"
+#include "platform/machine/posix/posix_clock.hpp"
+#include "platform/machine/posix/posix_periodic_timer.hpp"
 
 #include <chrono>
 #include <thread>

@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/udp/datagram.hpp"
-#include "platform/udp/socket.hpp"
+#include "platform/devices/udp/datagram.hpp"
+#include "platform/devices/udp/socket.hpp"
 
 #include <gtest/gtest.h>
 

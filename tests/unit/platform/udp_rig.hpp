@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/posix/posix_clock.hpp"
-#include "platform/udp/udp_device.hpp"
+#include "platform/devices/udp/udp_device.hpp"
+#include "platform/machine/posix/posix_clock.hpp"
 #include "tests/unit/platform/device_rig.hpp"
 #include "tests/unit/platform/udp_peer.hpp"
 

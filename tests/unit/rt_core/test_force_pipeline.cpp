@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/simulated/device_classes.hpp"
+#include "platform/devices/simulated/device_classes.hpp"
 #include "rt_core/force/force_pipeline.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/math/infinity.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/base/printable.hpp"
+#include "transport/base/printable.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/model_name.hpp"
 

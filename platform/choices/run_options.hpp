@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/choices/device_choice.hpp"
+#include "platform/choices/file_readers.hpp"
+#include "platform/choices/guide.hpp"
+#include "platform/choices/placement.hpp"
+#include "platform/choices/scene_materials.hpp"
+#include "platform/choices/tool_choice.hpp"
+#include "platform/devices/simulated/hand_motions.hpp"
+#include "platform/machine/rt_thread.hpp"
+#include "rt_core/kernels/kernels.hpp"
+#include "rt_core/records/frame_input.hpp"
+#include "rt_core/records/prediction.hpp"
+#include "transport/model_name.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tactus::hrtc
+{
+
+enum class TransportKind : std::uint8_t
+{
+    dds,
+    file,
+};
+
+/// What a simulated hand does, and on what.
+struct HandChoice
+{
+    MotionKind motion{MotionKind::script};
+    std::string object; ///< Its name, or its model's; empty: each hand has another object.
+};
+
+/// Everything that a run is asked for; checked, in SI.
+struct Options
+{
+    FileReaders readers; ///< The program's.
+    /// NAME, NAME@HASH or NAME@SERVER, or paths with the file transport; each once.
+    std::vector<std::string> models;
+    std::vector<PlacedObject> objects; ///< By their numbers; each model is shown by one at least.
+    /// Not empty: models and objects are this file's, or with DDS those of the host whose scene has
+    /// this name, or NAME@SERVER; see scene_choice.hpp.
+    std::string scene;
+    SceneMaterials scene_materials; ///< Where --material says otherwise than the scene.
+    std::uint32_t objects_max{0};   ///< Room for so many; 0: as many as there are.
+    std::size_t tools{1};
+    std::vector<ToolChoice> tool_choices; ///< One a tool; none: all are default_tool().
+    std::vector<ToolLoad> tool_loads;     ///< One a tool; fewer: the others weigh nothing.
+    std::vector<std::optional<GuideChoice>> guides; ///< One a tool; fewer: the others have none.
+    std::vector<DeviceChoice> devices;      ///< One a tool; fewer: the others are simulated.
+    std::vector<DeviceFault> device_faults; ///< Of every simulated device.
+    std::vector<HandChoice> hands;          ///< One a tool; fewer: the others as the last.
+    TransportKind transport{TransportKind::dds};
+    std::uint32_t domain{0};
+    bool is_watched{false};   ///< On that domain viewers see it, with models from files, too.
+    std::string name;         ///< Of the controller, with DDS; empty: hrtc-PID.
+    Failover failover;        ///< With DDS.
+    bool follows_poses{true}; ///< Objects move as the hosts say.
+    bool shows_front{true};   ///< With DDS: tells which records are split.
+    double wait_s{10.0};      ///< For a model that nobody publishes yet, or a device.
+    std::int64_t rate_hz{1'000};
+    double duration_s{10.0};
+    std::vector<std::string> report_paths;
+    std::string record_path;       ///< Empty: no recording.
+    std::string trace_path;        ///< Empty: no trace.
+    std::string histograms_folder; ///< Empty: no histograms.
+    std::string replay_path; ///< Not empty: replay this recording; but for `kernels` and the next
+                             ///< one, nothing else is set then.
+    std::vector<std::string> export_paths; ///< Of a replay, for other tools.
+    double pool_mib{2.0};
+    double cache_mib{0.0};                 ///< 0: the usual share of the pool.
+    std::uint32_t splits{64};              ///< At most, when there is a frame budget.
+    std::optional<double> frame_budget_us; ///< None: half of the period.
+    bool static_when_it_fits{true};
+    Prediction prediction{Prediction::automatic};
+    const Kernels* kernels{nullptr}; ///< Of the queries; null: the best of the processor.
+    double stiffness_n_per_m{500.0};
+    double angular_stiffness_nm_per_rad{0.0};  ///< 0: as the stiffness and the tool's size make it.
+    double smooth_m{0.0};                      ///< 0: facets are felt.
+    double force_tolerance_n{0.001};           ///< FrameSetup's.
+    std::optional<double> speed_limit_m_per_s; ///< None: the device's own.
+    double object_speed_m_per_s{0.5};          ///< Believed of an object near a tool.
+    std::optional<std::uint32_t> clutch_button; ///< Of every device.
+    /// Of a silent loop, until the supervisor brakes. None: as the kernel can promise.
+    std::optional<std::uint32_t> supervisor_periods;
+    /// None: one diagonal of the first model a second.
+    std::optional<double> follow_speed_m_per_s;
+    double slew_share_per_ms{kSlewShare_per_ms}; ///< ChangeRule's.
+    bool trap_system_calls{false};
+    bool virtual_time{false}; ///< See LoopTime; with files and hands that the program moves alone.
+    bool strict{false};       ///< What is lost in a run, or comes to nothing, is a failure.
+    std::string as_file;      ///< All options, as a file for --config.
+    RtThreadOptions thread;
+
+    [[nodiscard]] std::size_t pool_bytes() const noexcept
+    {
+        return static_cast<std::size_t>(pool_mib * 0x1p20);
+    }
+    [[nodiscard]] Duration period() const noexcept { return nanoseconds(1'000'000'000 / rate_hz); }
+    /// The time that a frame may take.
+    [[nodiscard]] Duration frame_budget() const noexcept
+    {
+        return frame_budget_us ? nanoseconds(static_cast<std::int64_t>(*frame_budget_us * 1e3))
+                               : nanoseconds(period().ns / 2);
+    }
+    /// So many times the usual work a frame may do with the tools that there are.
+    [[nodiscard]] std::uint32_t work_times() const noexcept
+    {
+        const auto any = [this](std::string ToolChoice::*file)
+        {
+            return std::ranges::any_of(tool_choices, [file](const ToolChoice& tool)
+                                       { return !(tool.*file).empty(); });
+        };
+        return any(&ToolChoice::mesh_model)  ? Budgets::kMeshWork
+               : any(&ToolChoice::hull_file) ? Budgets::kHullWork
+                                             : 1U;
+    }
+    /// The work that a frame may do.
+    [[nodiscard]] std::uint32_t frame_work() const noexcept
+    {
+        return Budgets::work_of(frame_budget().ns, work_times());
+    }
+    [[nodiscard]] std::uint64_t frames() const noexcept
+    {
+        return static_cast<std::uint64_t>(duration_s * static_cast<double>(rate_hz));
+    }
+};
+
+} // namespace tactus::hrtc

@@ -1,0 +1,522 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/controller/controller.hpp"
+
+#include "platform/controller/following_hand.hpp"
+#include "platform/devices/simulated/hand_motions.hpp"
+#include "platform/devices/simulated/simulated_device.hpp"
+#include "platform/scene/material_limits.hpp"
+#include "platform/scene/object_pose.hpp"
+#include "platform/scene/scene_room.hpp"
+#include "rt_core/force/angular_stiffness.hpp"
+#include "rt_core/force/stiffness_rule.hpp"
+#include "rt_core/limits.hpp"
+#include "transport/base/counted.hpp"
+#include "transport/base_fetch.hpp"
+#include "transport/pool_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <set>
+#include <utility>
+
+namespace tactus::hrtc
+{
+
+namespace
+{
+
+constexpr double kBytesPerMib = 1024.0 * 1024.0;
+/// Without --follow-speed.
+constexpr double kSpeedMax_diag = 1.0;
+/// The simulated hand flies at two diagonals a second; its device stands twice that.
+constexpr double kHandSpeed_diag = 4.0;
+/// It touches what is so many times as large as its tool's radius, if there is such a thing.
+constexpr double kHandRoom = 10.0;
+
+/// What is told in two decimals is not less.
+double up_to_cents(double value)
+{
+    return std::ceil(100.0 * value) / 100.0;
+}
+
+/// Without one it is simulated.
+DeviceChoice choice_of(const Options& options, std::size_t tool)
+{
+    return tool < options.devices.size() ? options.devices[tool] : DeviceChoice{};
+}
+
+/// Without one it is the last one's.
+HandChoice hand_choice_of(const Options& options, std::size_t tool)
+{
+    return options.hands.empty() ? HandChoice{}
+                                 : options.hands[std::min(tool, options.hands.size() - 1)];
+}
+
+} // namespace
+
+Result<std::unique_ptr<Controller>, Refusal>
+Controller::create(const Options& options, std::vector<ServedModel> models, const Log& log,
+                   const std::function<bool()>& goes_on)
+{
+    std::unique_ptr<Controller> controller(new Controller(std::move(models), goes_on));
+    controller->budgets_.splits = options.splits;
+    controller->budgets_.merges = options.splits;
+    controller->budgets_.work = options.frame_work();
+    controller->make_poses(options);
+    if (std::optional<Refusal> error = controller->open_devices(options))
+    {
+        return *error;
+    }
+    controller->make_tools(options);
+    if (std::optional<Refusal> error = controller->lay_out_pools(options))
+    {
+        return *error;
+    }
+    controller->make_courier(log);
+    if (std::optional<Refusal> error = controller->finish_devices(options))
+    {
+        return *error;
+    }
+    return controller;
+}
+
+Controller::Controller(std::vector<ServedModel> models, const std::function<bool()>& goes_on)
+    : goes_on_(goes_on), models_(std::move(models))
+{
+    for (const ServedModel& model : models_)
+    {
+        headers_.push_back(ModelHeader::parse(model.header).value());
+    }
+}
+
+double Controller::diagonal_world_m() const noexcept
+{
+    return diagonal_of(0);
+}
+
+std::vector<std::uint32_t> Controller::first_objects() const
+{
+    std::vector<std::uint32_t> first;
+    for (std::uint32_t i = 0; i < models_.size(); ++i)
+    {
+        const auto shows = std::ranges::find(objects_, ModelId{i}, &ObjectSpec::model);
+        first.push_back(static_cast<std::uint32_t>(shows - objects_.begin()));
+    }
+    return first;
+}
+
+SceneParts Controller::scene_parts() const
+{
+    return {models_, objects_, tools_, first_objects(), frame_->objects().capacity()};
+}
+
+void Controller::make_poses(const Options& options)
+{
+    for (const PlacedObject& object : options.objects)
+    {
+        poses_.push_back(object_pose(object.place, headers_[object.model]));
+        objects_.push_back({ModelId{static_cast<std::uint32_t>(object.model)}, object.material});
+    }
+}
+
+/// Those that aren't simulated; before the tools, which need to know what the devices can do.
+std::optional<Refusal> Controller::open_devices(const Options& options)
+{
+    tools_.resize(options.tools);
+    const DeviceWait wait{milliseconds(static_cast<std::int64_t>(options.wait_s * 1e3)), goes_on_,
+                          options.rate_hz};
+    for (std::size_t i = 0; i < options.devices.size(); ++i)
+    {
+        if (options.devices[i].kind == DeviceKind::simulated)
+        {
+            continue;
+        }
+        auto device = open_device(options.devices[i], i, wait, clock_);
+        if (!device)
+        {
+            return Refusal{"--device: " + device.error().text};
+        }
+        const DeviceInfo& info = device.value()->info();
+        if (options.rate_hz < info.rate_min_hz || options.rate_hz > info.rate_max_hz)
+        {
+            return Refusal{fmt::format("--rate: {} Hz; the device {} takes {} to {} Hz",
+                                       options.rate_hz, info.name, info.rate_min_hz,
+                                       info.rate_max_hz)};
+        }
+        tools_[i].device = std::move(device).value();
+    }
+    return std::nullopt;
+}
+
+void Controller::make_tools(const Options& options)
+{
+    std::vector<ToolChoice> choices = options.tool_choices;
+    choices.resize(tools_.size(), default_tool(diagonal_world_m()));
+    for (std::size_t i = 0; i < tools_.size(); ++i)
+    {
+        ToolSetup& tool = tools_[i];
+        const DeviceLimits limits =
+            tool.device != nullptr ? tool.device->info().limits : choice_of(options, i).limits;
+        tool.shape = choices[i].words;
+        tool.spec = {choices[i].radius_m, options.stiffness_n_per_m, limits.force_max_n,
+                     options.follow_speed_m_per_s.value_or(kSpeedMax_diag * diagonal_world_m())};
+        tool.spec.core = choices[i].core;
+        const auto* mesh = std::get_if<MeshCore>(&tool.spec.core);
+        tool.hand_radius_m =
+            hand_radius_m(choices[i], mesh != nullptr ? &headers_[mesh->model.value] : nullptr,
+                          diagonal_world_m());
+        if (i < options.guides.size() && options.guides[i])
+        {
+            guides_.push_back(std::make_unique<Guide>(*options.guides[i]));
+            tool.own_force = guides_.back().get();
+            tool.guide = options.guides[i]->words;
+        }
+        tool.spec.torque_max_nm = limits.turn.torque_max_nm;
+        tool.spec.angular_stiffness_nm_per_rad = options.angular_stiffness_nm_per_rad;
+        tool.spec.smooth_m = Tool::is_held_as_body(tool.spec) ? 0.0 : options.smooth_m;
+        tool_specs_.push_back(tool.spec);
+    }
+}
+
+std::optional<Refusal> Controller::lay_out_pools(const Options& options)
+{
+    setup_.objects = objects_;
+    setup_.poses = poses_;
+    setup_.capacities.objects = options.objects_max;
+    setup_.tools = tool_specs_;
+    if (!options.scene.empty())
+    {
+        setup_.capacities.pairs =
+            std::min(capacities_of(setup_).pairs, SceneRoom::of(options.pool_bytes()).pairs);
+    }
+    setup_.static_when_it_fits = options.static_when_it_fits;
+    setup_.prediction = options.prediction;
+    setup_.force_tolerance_n = options.force_tolerance_n;
+    setup_.kernels = options.kernels != nullptr ? options.kernels : &best_kernels();
+    setup_.period_ns = options.period().ns;
+    const auto cache = static_cast<std::size_t>(options.cache_mib * kBytesPerMib);
+    const std::size_t most = options.pool_bytes() - sizeof(Frame);
+    std::vector<ModelCapacities> capacities(models_.size());
+    const bool fits = try_plan_pools(setup_, headers_, most, cache, capacities);
+    if (!fits && !try_plan_as_guests(options, most, cache))
+    {
+        const std::size_t least = least_pool_bytes(setup_, headers_, cache) + sizeof(Frame);
+        return Refusal{fmt::format("--pool-mib: {} MiB is too small for {}; {:.2f} MiB would "
+                                   "do for a start{}",
+                                   options.pool_mib, counted(models_.size(), "model"),
+                                   up_to_cents(static_cast<double>(least) / kBytesPerMib),
+                                   options.cache_mib > 0.0 ? ", or less --cache-mib" : "")};
+    }
+    if (fits)
+    {
+        if (auto error = fetch_bases(models_, options))
+        {
+            return error;
+        }
+    }
+    for (std::size_t i = 0; i < models_.size() && fits; ++i)
+    {
+        sources_.push_back({models_[i].header, models_[i].base, capacities[i]});
+    }
+    setup_.models = sources_;
+    const ModelCapacities sum = pool_capacities(setup_);
+    memory_.emplace(Frame::required_bytes(setup_) +
+                    Courier::required_bytes(sum.pages, sum.index_pages));
+    arena_.emplace(memory_->span());
+    if (const auto started = Frame::start(frame_, *arena_, setup_); !started)
+    {
+        return Refusal{
+            fmt::format("--pool-mib: {} MiB: {}", options.pool_mib, refusal_text(started.error()))};
+    }
+    return std::nullopt;
+}
+
+/// Nothing to do for those that are here.
+std::optional<Refusal> Controller::fetch_bases(std::span<ServedModel> models,
+                                               const Options& options) const
+{
+    const auto wait = std::chrono::milliseconds(static_cast<std::int64_t>(options.wait_s * 1e3));
+    return bring_bases(models, wait, goes_on_);
+}
+
+/// A scene of more models than there is room for at once.
+bool Controller::try_plan_as_guests(const Options& options, std::size_t bytes, std::size_t cache)
+{
+    if (options.scene.empty() || std::ranges::any_of(tool_specs_, &is_mesh))
+    {
+        return false;
+    }
+    for (const ServedModel& model : models_)
+    {
+        sources_.push_back({model.header, {}, {}});
+    }
+    setup_.models = sources_;
+    if (try_plan_guests(setup_, headers_, bytes, cache, setup_.for_guests))
+    {
+        return true;
+    }
+    sources_.clear();
+    setup_.models = {};
+    setup_.for_guests = {};
+    return false;
+}
+
+void Controller::make_courier(const Log& log)
+{
+    ModelPools& pools = frame_->pools();
+    CourierOptions courier;
+    courier.forgotten_ns =
+        std::max(courier.forgotten_ns, 3 * kWishTimeoutFrames * setup_.period_ns);
+    courier_.emplace(*arena_, pools.slots, pools.cache.door, log, courier);
+    for (std::uint32_t i = 0; i < models_.size(); ++i)
+    {
+        Model& model = frame_->model({i});
+        courier_->add(model.header, model.linker, *models_[i].link, models_[i].name);
+    }
+}
+
+std::optional<Refusal> Controller::finish_devices(const Options& options)
+{
+    for (std::size_t tool = 0; tool < tools_.size(); ++tool)
+    {
+        if (tools_[tool].device == nullptr)
+        {
+            if (auto error = simulate_device(options, tool))
+            {
+                return error;
+            }
+        }
+        tools_[tool].spec = frame_->tool(static_cast<std::uint32_t>(tool)).spec();
+        limit_force(options, tools_[tool]);
+        if (auto error = hang_load(options, tool))
+        {
+            return error;
+        }
+    }
+    if (auto error = check_grippers(options))
+    {
+        return error;
+    }
+    return check_damping(options);
+}
+
+/// A gripper without motors can't be held.
+std::optional<Refusal> Controller::check_grippers(const Options& options) const
+{
+    for (std::size_t i = 0; i < options.guides.size(); ++i)
+    {
+        const DeviceInfo& device = tools_[i].device->info();
+        const bool wants_gripper =
+            options.guides[i] && options.guides[i]->kind == GuideKind::gripper;
+        if (wants_gripper && !(device.gripper_force_max_n > 0.0))
+        {
+            return Refusal{fmt::format("--guide: '{}': the device {} makes no force at a gripper",
+                                       options.guides[i]->words, device.name)};
+        }
+    }
+    return std::nullopt;
+}
+
+/// No more than half of what the device can make, so that walls are felt beside it.
+std::optional<Refusal> Controller::hang_load(const Options& options, std::size_t tool)
+{
+    if (tool >= options.tool_loads.size())
+    {
+        return std::nullopt;
+    }
+    ToolLoad& load = tools_[tool].load;
+    load = options.tool_loads[tool];
+    load.down_world = choice_of(options, tool).frame.rotation * load.down_world;
+    const DeviceInfo& device = tools_[tool].device->info();
+    const double torque_max_nm = device.limits.turn.torque_max_nm;
+    if (load.weight_n() > 0.5 * device.limits.force_max_n)
+    {
+        return Refusal{fmt::format("--tool-mass: {:.4g} kg weigh {:.3g} N; the device {} carries "
+                                   "half of its {:.3g} N, {:.3g} kg, at most",
+                                   load.mass_kg, load.weight_n(), device.name,
+                                   device.limits.force_max_n,
+                                   0.5 * device.limits.force_max_n / kGravity_m_per_s2)};
+    }
+    if (torque_max_nm > 0.0 && load.torque_max_nm() > 0.5 * torque_max_nm)
+    {
+        return Refusal{fmt::format("--tool-mass: {:.4g} kg at {:.3g} m turn with {:.3g} N m; the "
+                                   "device {} carries half of its {:.3g} N m at most",
+                                   load.mass_kg, load.centre_m.norm(), load.torque_max_nm(),
+                                   device.name, torque_max_nm)};
+    }
+    return std::nullopt;
+}
+
+/// An object whose damping leaves a tool's device no wall could never be felt. What a server says
+/// is limited in the run.
+std::optional<Refusal> Controller::check_damping(const Options& options) const
+{
+    const bool is_served = options.transport == TransportKind::dds && !options.scene.empty();
+    for (std::size_t i = 0; i < objects_.size() && !is_served; ++i)
+    {
+        const ObjectSpec& object = objects_[i];
+        if (const auto why = why_unfelt(models_[object.model.value].name, object.material, tools_))
+        {
+            return Refusal{
+                fmt::format("{}: {}", options.scene.empty() ? "--material" : "--scene", *why)};
+        }
+    }
+    return std::nullopt;
+}
+
+std::optional<Refusal> Controller::simulate_device(const Options& options, std::size_t tool)
+{
+    const auto chosen = object_of_hand(options, tool);
+    if (!chosen)
+    {
+        return chosen.error();
+    }
+    const std::size_t object = chosen.value();
+    if (auto error = fetch_bases({&models_[objects_[object].model.value], 1}, options))
+    {
+        return error;
+    }
+    HandScene scene;
+    scene.anchors_world_m = anchors_world_m(object);
+    if (scene.anchors_world_m.empty())
+    {
+        return Refusal{fmt::format("model '{}': its base mesh is damaged",
+                                   models_[objects_[object].model.value].name)};
+    }
+    scene.diagonal_m = diagonal_of(object);
+    scene.tool_radius_m = tools_[tool].hand_radius_m;
+    scene.period = options.period();
+    scene.frames_total = options.frames();
+    scene.hands_before = static_cast<std::size_t>(std::ranges::count(objects_of_hands_, object));
+    objects_of_hands_.push_back(object);
+    auto motion = make_motion(hand_choice_of(options, tool).motion, scene, tool + 1);
+    if (!motion)
+    {
+        return Refusal{"--tool: " + motion.error().text};
+    }
+    SimulatedDeviceOptions device_options;
+    device_options.rate_hz = options.rate_hz;
+    device_options.device = choice_of(options, tool).limits;
+    if (tool < options.tool_loads.size())
+    {
+        device_options.load = options.tool_loads[tool];
+    }
+    device_options.workspace_centre_world_m = motion.value().centre_world_m;
+    device_options.workspace_radius_m = motion.value().reach_m;
+    device_options.speed_max_m_per_s =
+        std::max(device_options.speed_max_m_per_s, kHandSpeed_diag * scene.diagonal_m);
+    if (is_followed(options, object))
+    {
+        device_options.workspace_radius_m = kPoseReachMax_m;
+        motion.value().hand = std::make_unique<FollowingHand>(
+            std::move(motion.value().hand), frame_->objects(), static_cast<std::uint32_t>(object),
+            model_pose(poses_[object], headers_[objects_[object].model.value].origin_m()),
+            0.5 * kHandSpeed_diag * scene.diagonal_m * to_seconds(options.period()));
+    }
+    auto device = SimulatedDevice::create(device_options, std::move(motion.value().hand));
+    if (!device)
+    {
+        return Refusal{"--device: " + device.error().text};
+    }
+    tools_[tool].device = std::move(device).value();
+    if (!options.device_faults.empty())
+    {
+        tools_[tool].device = std::make_unique<FaultyDevice>(std::move(tools_[tool].device),
+                                                             options.device_faults, tool);
+    }
+    return std::nullopt;
+}
+
+/// What stands between the tool's force and its device.
+void Controller::limit_force(const Options& options, ToolSetup& tool) const
+{
+    const DeviceInfo& info = tool.device->info();
+    const PipelineSetup setup =
+        pipeline_setup(tool.spec, info.limits, 1.0 / static_cast<double>(options.rate_hz),
+                       options.speed_limit_m_per_s.value_or(info.speed_max_m_per_s));
+    tool.conditioner = setup.conditioner;
+    tool.limits = setup.limits;
+    tool.change.slew_share_per_ms = options.slew_share_per_ms;
+    tool.change.object_speed_max_m_per_s = options.object_speed_m_per_s;
+    tool.clutch_button = options.clutch_button;
+}
+
+/// Where no model is named each touches another object, as far as there are some that are much
+/// larger than its tool.
+Result<std::size_t, Refusal> Controller::object_of_hand(const Options& options,
+                                                        std::size_t tool) const
+{
+    if (const std::string& name = hand_choice_of(options, tool).object; !name.empty())
+    {
+        const auto called = std::ranges::find(options.objects, name, &PlacedObject::name);
+        if (called != options.objects.end())
+        {
+            return static_cast<std::size_t>(called - options.objects.begin());
+        }
+        const auto shows = [&](const ObjectSpec& object)
+        { return models_[object.model.value].name == name; };
+        const auto found = std::ranges::find_if(objects_, shows);
+        if (found != objects_.end())
+        {
+            return static_cast<std::size_t>(found - objects_.begin());
+        }
+        std::set<std::string> names;
+        for (const PlacedObject& object : options.objects)
+        {
+            names.insert(object.name.empty() ? models_[object.model].name : object.name);
+        }
+        return Refusal{"--motion: " +
+                       no_such_object(name, std::vector<std::string>(names.begin(), names.end()))};
+    }
+    for (std::size_t i = 0; i < objects_.size(); ++i)
+    {
+        const std::size_t object = (tool + i) % objects_.size();
+        if (diagonal_of(object) >= kHandRoom * tools_[tool].hand_radius_m)
+        {
+            return object;
+        }
+    }
+    return 0;
+}
+
+bool Controller::is_followed(const Options& options, std::size_t object) const
+{
+    const bool may_move = options.transport == TransportKind::dds && options.follows_poses;
+    return may_move &&
+           (!options.scene.empty() ||
+            std::ranges::count(first_objects(), static_cast<std::uint32_t>(object)) > 0);
+}
+
+double Controller::diagonal_of(std::size_t object) const noexcept
+{
+    return headers_[objects_[object].model.value].diagonal_m() * poses_[object].scale;
+}
+
+/// The base vertices of its model: original vertices, so they lie on its surface. None where the
+/// base mesh is damaged.
+std::vector<Vec3> Controller::anchors_world_m(std::size_t object) const
+{
+    std::vector<Vec3> anchors;
+    const ModelId model = objects_[object].model;
+    const ObjectPose pose = model_pose(poses_[object], headers_[model.value].origin_m());
+    const ModelHeader& header = headers_[model.value];
+    const ModelCounts counts = header.counts();
+    std::vector<Vec3f> positions_m(counts.base_vertices);
+    std::vector<BaseFace> faces(counts.base_faces);
+    std::vector<std::uint32_t> next(counts.base_faces);
+    if (!parse_base_mesh(models_[model.value].base, header, {positions_m, faces, next}))
+    {
+        return {};
+    }
+    for (const Vec3f& position_m : positions_m)
+    {
+        anchors.push_back(to_world(pose, to_vec3(position_m)));
+    }
+    return anchors;
+}
+
+} // namespace tactus::hrtc

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/controller/host_topics.hpp"
+
+#include "rt_core/base/assert.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace tactus::hrtc
+{
+
+Result<std::unique_ptr<HostTopics>, Refusal>
+HostTopics::create(dds::DdsClient& client, const Controller& controller,
+                   std::span<dds::Authority> authorities, std::unique_ptr<SceneKeeper> keeper,
+                   bool shows_front)
+{
+    std::unique_ptr<HostTopics> topics(
+        new HostTopics(client, controller, authorities, std::move(keeper)));
+    std::vector<ModelIdentity> identities;
+    for (std::size_t i = 0; i < controller.models().size() && i < kMaxShownModels; ++i)
+    {
+        const ServedModel& model = controller.models()[i];
+        const ModelHeader header = ModelHeader::parse(model.header).value();
+        identities.push_back({model.name, model.hash, header.fields().revision});
+    }
+    auto telemetry = dds::TelemetryWriter::create(client.domain(), client.controller_name(),
+                                                  std::move(identities));
+    if (!telemetry)
+    {
+        return telemetry.error();
+    }
+    topics->telemetry_ = std::move(telemetry).value();
+    if (shows_front)
+    {
+        auto front = FrontSender::create(client, controller);
+        if (!front)
+        {
+            return front.error();
+        }
+        topics->front_ = std::move(front).value();
+    }
+    return topics;
+}
+
+HostTopics::HostTopics(const dds::DdsClient& client, const Controller& controller,
+                       std::span<dds::Authority> authorities, std::unique_ptr<SceneKeeper> keeper)
+    : client_(client)
+    , controller_(controller)
+    , authorities_(authorities)
+    , keeper_(std::move(keeper))
+    , seen_(controller.models().size())
+{
+}
+
+void HostTopics::connect(PoseDoor& door, const TelemetryTap& tap, FrontTap* front,
+                         MonotonicTime now, SceneKeeper::NameSink names)
+{
+    tap_ = &tap;
+    if (front_ != nullptr)
+    {
+        TACTUS_ASSERT(front != nullptr);
+        front_->connect(*front);
+    }
+    if (keeper_ != nullptr)
+    {
+        keeper_->connect(door, now, std::move(names));
+    }
+}
+
+void HostTopics::tell_begins_inside(std::size_t tool) noexcept
+{
+    if (front_ != nullptr)
+    {
+        front_->tell_begins_inside(tool);
+    }
+}
+
+void HostTopics::step(MonotonicTime now)
+{
+    for (dds::Authority& authority : authorities_)
+    {
+        authority.step();
+    }
+    if (keeper_ != nullptr)
+    {
+        keeper_->step(now);
+    }
+    if (now - last_sent_ >= kTelemetryPeriod)
+    {
+        last_sent_ = now;
+        send_telemetry(now);
+    }
+    if (front_ != nullptr)
+    {
+        front_->step(now, keeper_.get());
+    }
+}
+
+std::vector<dds::PoseCounts> HostTopics::pose_counts() const
+{
+    std::vector<dds::PoseCounts> counts;
+    for (std::size_t i = 0; keeper_ != nullptr && i < controller_.models().size(); ++i)
+    {
+        counts.push_back(keeper_->counts(i));
+    }
+    return counts;
+}
+
+SceneNewsCounts HostTopics::scene_news() const
+{
+    return keeper_ != nullptr ? keeper_->news() : SceneNewsCounts{};
+}
+
+std::vector<dds::ServerEvent> HostTopics::server_events() const
+{
+    std::vector<dds::ServerEvent> events;
+    for (const dds::Authority& authority : authorities_)
+    {
+        events.insert(events.end(), authority.events().begin(), authority.events().end());
+    }
+    std::ranges::stable_sort(events, {}, &dds::ServerEvent::time);
+    return events;
+}
+
+void HostTopics::send_telemetry(MonotonicTime now)
+{
+    Telemetry telemetry;
+    if (!tap_->try_read(telemetry))
+    {
+        return; // No frame yet.
+    }
+    for (std::size_t i = 0; i < telemetry.model_count; ++i)
+    {
+        add_transport_side(i, telemetry.models[i], now);
+    }
+    for (std::size_t i = 0; i < telemetry.pair_count; ++i)
+    {
+        name_object(telemetry.pairs[i]);
+    }
+    telemetry_->write(telemetry);
+}
+
+void HostTopics::add_transport_side(std::size_t model, ModelTelemetry& telemetry, MonotonicTime now)
+{
+    const WaitingTimes& waiting =
+        controller_.courier().waiting_times(static_cast<std::uint32_t>(model));
+    telemetry.host_gone = controller_.models()[model].link->state() == LinkState::host_gone;
+    telemetry.pieces = waiting.total();
+    Seen& seen = seen_[model];
+    const auto news = static_cast<std::int64_t>(waiting.total() - seen.pieces);
+    telemetry.piece_wait_ns = news > 0 ? (waiting.sum_ns() - seen.wait_ns) / news : 0;
+    seen = {waiting.total(), waiting.sum_ns()};
+    if (keeper_ != nullptr)
+    {
+        const dds::PoseCounts& counts = keeper_->counts(model);
+        telemetry.follows_poses = counts.accepted > 0;
+        telemetry.pose_age_ns = telemetry.follows_poses ? (now - keeper_->heard(model)).ns : 0;
+        telemetry.poses_refused = counts.refused_in_all();
+    }
+}
+
+/// By its host and its number there, where a host shows it.
+void HostTopics::name_object(PairTelemetry& pair) const
+{
+    const auto shown = keeper_ != nullptr ? keeper_->shown_as(pair.object) : std::nullopt;
+    if (shown)
+    {
+        pair.host_epoch = shown->host_epoch;
+        pair.object = shown->number;
+    }
+}
+
+} // namespace tactus::hrtc

@@ -1,0 +1,398 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/controller/session.hpp"
+
+#include "platform/choices/device_choice.hpp"
+#include "platform/controller/histogram_folder.hpp"
+#include "platform/controller/recorder.hpp"
+#include "platform/controller/session_run.hpp"
+#include "platform/controller/trace_file.hpp"
+#include "platform/devices/plugin/device_plugin.hpp"
+#include "platform/machine/posix/linux_extras.hpp"
+#include "platform/scene/scene_choice.hpp"
+#include "transport/base/atomic_file.hpp"
+#include "transport/base/output_file.hpp"
+#include "transport/store/store_link.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <unistd.h>
+#include <utility>
+#include <vector>
+
+namespace tactus::hrtc
+{
+
+namespace
+{
+
+Result<std::vector<ServedModel>, Refusal> find_in_files(const Options& options)
+{
+    std::vector<ServedModel> models;
+    for (const std::string& path : options.models)
+    {
+        const std::string name = std::filesystem::path(path).stem().string();
+        auto model = serve_from_file(path, is_valid_name(name) ? name : "model", log_line);
+        if (!model)
+        {
+            return failure(model.error().text);
+        }
+        models.push_back(std::move(model).value());
+    }
+    return models;
+}
+
+/// The client must live as long as the models' links. Their base meshes are the controller's to
+/// bring, which knows whether it needs them all.
+Result<std::vector<ServedModel>, Refusal>
+find_published(const Options& options, dds::DdsClient& client, const std::function<bool()>& goes_on)
+{
+    const auto wait = std::chrono::milliseconds(static_cast<std::int64_t>(options.wait_s * 1e3));
+    std::vector<ModelSelector> selectors;
+    for (const std::string& text : options.models)
+    {
+        selectors.push_back(parse_selector(text).value());
+    }
+    auto models = client.find_headers(selectors, wait, goes_on);
+    if (!models)
+    {
+        return failure(models.error().text);
+    }
+    return models;
+}
+
+/// With the names of what is there at the start.
+RecordedSetup recorded_setup(const Options& options, const Controller& controller)
+{
+    RecordedSetup setup = to_recorded(controller.setup());
+    for (std::uint32_t i = 0; i < controller.models().size(); ++i)
+    {
+        setup.names[{RecordedName::Kind::model, i}] = controller.models()[i].name;
+    }
+    for (std::uint32_t i = 0; i < options.objects.size(); ++i)
+    {
+        if (const std::string& name = options.objects[i].name; !name.empty())
+        {
+            setup.names[{RecordedName::Kind::object, i}] = name;
+        }
+    }
+    return setup;
+}
+
+/// No recorder when none is wanted; returns why it can't be had.
+std::optional<std::string> start_recorder(const Options& options, Controller& controller,
+                                          std::optional<Recorder>& recorder)
+{
+    if (options.record_path.empty())
+    {
+        return std::nullopt;
+    }
+    auto file = AtomicFile::create(options.record_path);
+    if (!file)
+    {
+        return "--record: " + file.error().text;
+    }
+    recorder.emplace(
+        std::move(file).value(), recorded_setup(options, controller), controller.courier(),
+        options.virtual_time ? Recorder::Worker::caller : Recorder::Worker::own_thread);
+    return std::nullopt;
+}
+
+/// Likewise.
+std::optional<std::string> start_trace(const Options& options, std::optional<TraceFile>& trace)
+{
+    if (options.trace_path.empty())
+    {
+        return std::nullopt;
+    }
+    auto file = AtomicFile::create(options.trace_path);
+    if (!file)
+    {
+        return "--trace: " + file.error().text;
+    }
+    trace.emplace(std::move(file).value(), options.period());
+    return std::nullopt;
+}
+
+/// None when all that the options ask of the machine can be had or done without.
+std::optional<Refusal> check_machine(const Options& options)
+{
+    const auto refused = probe_realtime(options.thread);
+    if (!refused)
+    {
+        // The processor is the one option that only the system can judge.
+        const bool is_usage = refused.error().is_usage;
+        return Refusal{(is_usage ? "--cpu: " : "") + refused.error().text, is_usage};
+    }
+    if (!refused.value().empty() && !options.thread.allow_no_rt)
+    {
+        for (const std::string& line : refused.value())
+        {
+            log_error(line);
+        }
+        return failure("not run; --allow-no-rt runs it without");
+    }
+    return std::nullopt;
+}
+
+/// None when the files that the options name can be written.
+std::optional<Refusal> check_outputs(const Options& options)
+{
+    for (const std::string& path : options.report_paths)
+    {
+        if (const auto error = probe_output(path))
+        {
+            return failure("--report: " + error->text);
+        }
+    }
+    if (const auto error = probe_output(options.record_path))
+    {
+        return failure("--record: " + error->text);
+    }
+    if (const auto error = probe_output(options.trace_path))
+    {
+        return failure("--trace: " + error->text);
+    }
+    if (const auto error = options.histograms_folder.empty()
+                               ? std::nullopt
+                               : probe_histograms(options.histograms_folder))
+    {
+        return failure("--histograms: " + error->text);
+    }
+    return std::nullopt;
+}
+
+/// What brakes each device that would hold its force.
+Result<Guardian::Guards, Refusal> make_guards(const Options& options)
+{
+    Guardian::Guards guards;
+    for (const DeviceChoice& choice : options.devices)
+    {
+        if (!wants_guard(choice))
+        {
+            continue;
+        }
+        auto guard = open_guard(choice, options.rate_hz);
+        if (!guard)
+        {
+            return guard.error();
+        }
+        if (guard.value() != nullptr)
+        {
+            guards.push_back(std::move(guard).value());
+        }
+    }
+    return guards;
+}
+
+void tell_of_unguarded(const Options& options)
+{
+    for (std::size_t tool = 0; tool < options.devices.size(); ++tool)
+    {
+        const DeviceChoice& choice = options.devices[tool];
+        if (choice.kind == DeviceKind::plugin && !has_guard(choice.library))
+        {
+            log_line(fmt::format("tool {}: {} has no guard; when hrtc is killed, its own watchdog "
+                                 "ends the force, or nothing does",
+                                 tool, choice.library));
+        }
+    }
+}
+
+/// None where no device needs one.
+Result<std::unique_ptr<Guardian>, Refusal> start_guardian(const Options& options)
+{
+    if (std::ranges::none_of(options.devices, wants_guard))
+    {
+        return std::unique_ptr<Guardian>();
+    }
+    auto guardian = Guardian::start([&options] { return make_guards(options); },
+                                    options.thread.priority, options.thread.allow_no_rt);
+    if (!guardian)
+    {
+        return failure("--device: " + guardian.error().text);
+    }
+    return guardian;
+}
+
+} // namespace
+
+Result<std::unique_ptr<Session>, Refusal> Session::open(const Options& options, RunHooks hooks)
+{
+    if (auto error = check_machine(options))
+    {
+        return *error;
+    }
+    if (auto error = check_outputs(options))
+    {
+        return *error;
+    }
+    if (options.thread.cpu) // All other threads, those of DDS too, are started from this one.
+    {
+        linux_extras::keep_calling_thread_off(*options.thread.cpu);
+    }
+    auto guardian = start_guardian(options);
+    if (!guardian)
+    {
+        return guardian.error();
+    }
+    std::unique_ptr<Session> session(new Session(options, std::move(hooks)));
+    session->guardian_ = std::move(guardian).value();
+    if (auto error = session->connect())
+    {
+        return *error;
+    }
+    if (auto error = session->take_scene())
+    {
+        return *error;
+    }
+    if (auto error = take_tool_files(session->options_))
+    {
+        return *error;
+    }
+    if (auto error = session->assemble())
+    {
+        return *error;
+    }
+    tell_of_unguarded(session->options_);
+    return session;
+}
+
+/// To the hosts and viewers; nothing to do for files that no viewer is to see.
+std::optional<Refusal> Session::connect()
+{
+    if (options_.is_watched)
+    {
+        const std::string name =
+            options_.name.empty() ? fmt::format("hrtc-{}", getpid()) : options_.name;
+        auto client = dds::DdsClient::create(options_.domain, name, log_line);
+        if (!client && options_.transport == TransportKind::file)
+        {
+            log_line(client.error().text + "; no viewer sees the run");
+            return std::nullopt;
+        }
+        if (!client)
+        {
+            return failure(client.error().text);
+        }
+        client_ = std::move(client).value();
+    }
+    return std::nullopt;
+}
+
+/// Of a file or of a host; nothing to do without --scene.
+std::optional<Refusal> Session::take_scene()
+{
+    const bool has_hosts = options_.transport == TransportKind::dds;
+    if (has_hosts && (options_.follows_poses || !options_.scene.empty()))
+    {
+        reader_ =
+            std::make_unique<dds::SceneReader>(client_->domain(), client_->exchange(), log_line);
+    }
+    if (options_.scene.empty())
+    {
+        return std::nullopt;
+    }
+    if (!has_hosts)
+    {
+        return take_scene_file(options_);
+    }
+    auto shown = take_shown_scene(options_, *client_, *reader_, [this] { return goes_on(); });
+    if (!shown)
+    {
+        return shown.error();
+    }
+    scene_ = std::move(shown).value();
+    pin({scene_.name}, true, scene_.host_epoch);
+    return std::nullopt;
+}
+
+/// From now on this host's word counts for the name.
+void Session::pin(const ModelSelector& name, bool is_scene, std::uint64_t host_epoch)
+{
+    authorities_.emplace_back(client_->catalogue(), name, is_scene, options_.failover, log_line)
+        .pin(host_epoch);
+}
+
+/// The controller from the models, and the topics beside it.
+std::optional<Refusal> Session::assemble()
+{
+    const bool has_hosts = options_.transport == TransportKind::dds;
+    auto models = has_hosts ? find_published(options_, *client_, [this] { return goes_on(); })
+                            : find_in_files(options_);
+    if (!models)
+    {
+        return models.error();
+    }
+    for (const ServedModel& model : models.value())
+    {
+        if (has_hosts && options_.scene.empty())
+        {
+            pin({model.name, model.hash}, false, model.host_epoch);
+        }
+    }
+    if (reader_ != nullptr && options_.scene.empty())
+    {
+        take_first_places(options_, models.value(), *client_, *reader_,
+                          [this] { return goes_on(); });
+    }
+    auto controller = Controller::create(options_, std::move(models).value(), log_line,
+                                         [this] { return goes_on(); });
+    if (!controller)
+    {
+        return failure(controller.error().text);
+    }
+    controller_ = std::move(controller).value();
+    if (client_ != nullptr)
+    {
+        std::unique_ptr<SceneKeeper> keeper;
+        if (has_hosts && options_.follows_poses)
+        {
+            keeper = std::make_unique<SceneKeeper>(authorities_, std::move(reader_),
+                                                   controller_->scene_parts(), scene_, log_line);
+        }
+        auto topics = HostTopics::create(*client_, *controller_, authorities_, std::move(keeper),
+                                         options_.shows_front);
+        if (!topics)
+        {
+            return failure(topics.error().text);
+        }
+        topics_ = std::move(topics).value();
+    }
+    return std::nullopt;
+}
+
+Result<FinishedRun, Refusal> Session::run(const std::string& what)
+{
+    std::optional<Recorder> recorder;
+    if (const auto error = start_recorder(options_, *controller_, recorder))
+    {
+        return failure(*error);
+    }
+    std::optional<TraceFile> trace;
+    if (const auto error = start_trace(options_, trace))
+    {
+        return failure(*error);
+    }
+    SessionRun run({.options = options_,
+                    .controller = *controller_,
+                    .topics = topics_.get(),
+                    .recorder = recorder ? &*recorder : nullptr,
+                    .trace = trace ? &*trace : nullptr,
+                    .guardian = guardian_.get(),
+                    .hooks = hooks_});
+    if (auto error = run.start())
+    {
+        return *error;
+    }
+    run.wait(what);
+    return run.finish();
+}
+
+} // namespace tactus::hrtc

@@ -1,0 +1,545 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/controller/session_run.hpp"
+
+#include "platform/controller/failed_run.hpp"
+#include "platform/devices/udp/udp_device.hpp"
+#include "platform/loop/machine.hpp"
+#include "platform/machine/allocation_counter.hpp"
+#include "platform/machine/posix/service_notify.hpp"
+#include "platform/machine/system_call_trap.hpp"
+#include "transport/base/counted.hpp"
+#include "transport/inside_test.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <ctime>
+#include <numeric>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace tactus::hrtc
+{
+
+namespace
+{
+
+/// How long before the deadline the loop wakes to rehearse its queries.
+constexpr Duration kMarginMost = microseconds(100);
+/// Between two looks at the loop.
+constexpr std::chrono::milliseconds kLook{20};
+/// A device so many times its workspace's radius away from its middle is in another unit.
+constexpr double kFarOutside = 5.0;
+/// Descriptions of another device in a row: half a second of a driver that waits.
+constexpr std::uint64_t kOthersMax = 5;
+
+FinishedRun empty_run(const Controller& controller, const Options& options)
+{
+    const Duration period = options.period();
+    const std::size_t tools = controller.tools().size();
+    return {.statistics = RunStatistics(tools, controller.frame().objects().capacity(),
+                                        controller.models().size(), period),
+            .supervisor_periods =
+                options.supervisor_periods.value_or(silent_periods(describe_machine())),
+            .period = period,
+            .started = std::time(nullptr),
+            .safety = SafetyRecord(tools)};
+}
+
+/// With a time to keep; none in virtual time, where work takes none.
+std::optional<BudgetGovernor> make_governor(const Options& options)
+{
+    if (options.virtual_time || !options.frame_budget_us)
+    {
+        return std::nullopt;
+    }
+    return BudgetGovernor(options.frame_budget(), Budgets::least_work(options.work_times()),
+                          options.frame_work());
+}
+
+/// Whether a place in the model's frame is in the model's box.
+bool is_in_box(const ModelHeader& header, const Vec3& place_m)
+{
+    const auto& extent = header.fields().extent_quanta;
+    const Vec3 high_m =
+        static_cast<double>(header.quantum_m()) * Vec3(extent[0], extent[1], extent[2]);
+    return place_m.minCoeff() >= 0.0 && (high_m - place_m).minCoeff() >= 0.0;
+}
+
+/// On the haptic thread; returns why the option can't be had.
+std::optional<std::string> trap_calls(const Options& options)
+{
+    if (!options.trap_system_calls)
+    {
+        return std::nullopt;
+    }
+    const auto set = system_call_trap::set_on_this_thread();
+    return set ? std::nullopt : std::optional("--trap-system-calls: " + set.error().text);
+}
+
+} // namespace
+
+SessionRun::SessionRun(const RunParts& parts)
+    : parts_(parts)
+    , period_(parts.options.period())
+    , done_(empty_run(parts.controller, parts.options))
+    , time_(parts.options.virtual_time)
+    , governor_(make_governor(parts.options))
+    , door_(parts.controller.poses(), parts.controller.frame().objects().capacity(),
+            nanoseconds(parts.controller.setup().pose_age_max_ns),
+            parts.options.object_speed_m_per_s)
+    , telemetry_(period_)
+    , transport_(parts.controller.courier(), parts.controller.models(), connected_topics(),
+                 parts.trace != nullptr ? &parts.trace->tap() : nullptr)
+    , loop_(loop_parts(), done_.statistics)
+    , devices_gone_(parts.controller.tools().size())
+    , strangers_(parts.controller.tools().size())
+    , supervisor_({.tools = parts.controller.tools(),
+                   .heartbeat = &loop_.heartbeat(),
+                   .clock = &time_.clock(),
+                   .timer = &alarm_,
+                   .period = period_,
+                   .silent_periods = done_.supervisor_periods})
+{
+    if (time_.is_virtual())
+    {
+        time_.set_meanwhile([this] { work_between_frames(); });
+    }
+    else
+    {
+        transport_thread_.emplace(transport_);
+    }
+}
+
+/// Of a run that was left before its end: the supervisor watches until the loop has ended.
+SessionRun::~SessionRun()
+{
+    loop_.stop();
+    haptic_thread_.reset();
+    supervisor_.stop();
+}
+
+HostTopics* SessionRun::connected_topics()
+{
+    if (parts_.topics != nullptr)
+    {
+        SceneKeeper::NameSink names;
+        if (Recorder* const recorder = parts_.recorder; recorder != nullptr)
+        {
+            names =
+                [recorder](std::uint32_t number, std::uint32_t generation, const std::string& name)
+            { recorder->name_object(number, generation, name); };
+        }
+        parts_.topics->connect(door_, telemetry_, make_front(), time_.clock().now(),
+                               std::move(names));
+    }
+    return parts_.topics;
+}
+
+/// Null where nobody is to see it.
+FrontTap* SessionRun::make_front()
+{
+    if (parts_.topics->shows_front())
+    {
+        front_.emplace(parts_.controller.frame().pools().cache.pages);
+    }
+    return front_ ? &*front_ : nullptr;
+}
+
+LoopParts SessionRun::loop_parts()
+{
+    Controller& controller = parts_.controller;
+    const bool has_topics = parts_.topics != nullptr;
+    if (parts_.recorder == nullptr)
+    {
+        last_inputs_.emplace(controller.tools().size());
+    }
+    return {.frame = &controller.frame(),
+            .tools = controller.tools(),
+            .timer = &time_.timer(),
+            .clock = &time_.clock(),
+            .budgets = controller.budgets(),
+            .governor = governor_ ? &*governor_ : nullptr,
+            .tap = parts_.recorder != nullptr ? &parts_.recorder->tap() : nullptr,
+            .last_inputs = last_inputs_ ? &*last_inputs_ : nullptr,
+            .frames = parts_.options.frames(),
+            .is_virtual = time_.is_virtual(),
+            .hosts_gone = &transport_.hosts_gone(),
+            .starved = &transport_.starved(),
+            .pose_door = has_topics ? &door_ : nullptr,
+            .telemetry = has_topics ? &telemetry_ : nullptr,
+            .front = front_ ? &*front_ : nullptr,
+            .trace = parts_.trace != nullptr ? &parts_.trace->tap() : nullptr};
+}
+
+std::optional<Refusal> SessionRun::start()
+{
+    brake_.emplace(loop_);
+    if (!time_.is_virtual())
+    {
+        if (auto error = start_supervisor())
+        {
+            return error;
+        }
+    }
+    auto haptic = RtThread::start(parts_.options.thread, [this] { run_loop(); });
+    if (!haptic)
+    {
+        return failure(haptic.error().text);
+    }
+    haptic_thread_ = std::move(haptic).value();
+    return std::nullopt;
+}
+
+std::optional<Refusal> SessionRun::start_supervisor()
+{
+    auto supervising = RtThread::start(Supervisor::thread_beside(parts_.options.thread),
+                                       [this] { supervisor_.run(); });
+    if (!supervising)
+    {
+        return failure("supervisor: " + supervising.error().text);
+    }
+    supervisor_thread_ = std::move(supervising).value();
+    return std::nullopt;
+}
+
+/// In virtual time: what other threads do in a period, as often as they would, on the haptic one.
+void SessionRun::work_between_frames()
+{
+    allocation_counter::mark_this_thread(false);
+    const MonotonicTime now = time_.clock().now();
+    for (Duration since{}; since < period_; since = since + kRoundPause)
+    {
+        transport_.run(now);
+    }
+    if (parts_.recorder != nullptr)
+    {
+        parts_.recorder->step();
+    }
+    take_events();
+    allocation_counter::mark_this_thread(true);
+}
+
+/// The haptic thread's body.
+void SessionRun::run_loop()
+{
+    if (const auto error = trap_calls(parts_.options))
+    {
+        log_error(*error);
+        loop_.fail();
+        return;
+    }
+    const Duration margin = std::min(kMarginMost, {period_.ns / 5});
+    if (const auto started = time_.timer().start(period_, margin); !started)
+    {
+        log_error(started.error().text);
+        loop_.fail();
+        return;
+    }
+    loop_.run();
+}
+
+void SessionRun::wait(const std::string& what)
+{
+    watch(what);
+    end_after_failure();
+}
+
+void SessionRun::watch(const std::string& what)
+{
+    const RunHooks& hooks = parts_.hooks;
+    const FramesDone progress = hooks.begin_progress ? hooks.begin_progress(what) : FramesDone();
+    ServiceNotify manager;
+    manager.ready();
+    std::uint64_t seen = 0;
+    while (!loop_.is_done() && !loop_.has_failed())
+    {
+        if (hooks.is_stopped && hooks.is_stopped())
+        {
+            loop_.stop();
+        }
+        const std::uint64_t done = loop_.frames_done();
+        if (done > seen)
+        {
+            manager.alive(PosixClock().now());
+        }
+        seen = done;
+        if (progress)
+        {
+            progress(done, parts_.options.frames());
+        }
+        if (!time_.is_virtual())
+        {
+            take_events();
+            tell_of_strangers();
+            tell_of_guardian();
+        }
+        std::this_thread::sleep_for(kLook);
+    }
+    manager.stopping();
+}
+
+/// What loop and supervisor have noted since the last time.
+void SessionRun::take_events()
+{
+    std::vector<SafetyEvent> events;
+    loop_.safety_log().take_into(events);
+    supervisor_.log().take_into(events);
+    for (const SafetyEvent& event : events)
+    {
+        done_.safety.add(event);
+        tell_of_device(event);
+    }
+    tell_of_first_places();
+}
+
+/// A line for each tool that begins where it most likely shouldn't.
+void SessionRun::tell_of_first_places()
+{
+    const std::span<const Vec3> places_m = loop_.first_places_m();
+    if (places_m.empty() || !done_.begins_inside.empty())
+    {
+        return;
+    }
+    done_.begins_inside.resize(places_m.size());
+    for (std::size_t tool = 0; tool < places_m.size(); ++tool)
+    {
+        const DeviceInfo& device = parts_.controller.tools()[tool].device->info();
+        const auto& centre_m = device.workspace_centre_world_m;
+        const double away_m = (places_m[tool] - Vec3(centre_m[0], centre_m[1], centre_m[2])).norm();
+        if (away_m > kFarOutside * device.workspace_radius_m)
+        {
+            log_line(fmt::format("tool {}: its device is {:.3g} m from the middle of its workspace "
+                                 "of {:.3g} m: does it send m?",
+                                 tool, away_m, device.workspace_radius_m));
+        }
+    }
+    tell_of_insides(places_m);
+}
+
+/// Of closed objects, where they stood at the start.
+void SessionRun::tell_of_insides(std::span<const Vec3> places_m)
+{
+    const Controller& controller = parts_.controller;
+    for (std::size_t object = 0; object < controller.objects().size(); ++object)
+    {
+        const ServedModel& model = controller.models()[controller.objects()[object].model.value];
+        const ModelHeader header = ModelHeader::parse(model.header).value();
+        const ObjectPose pose = model_pose(controller.poses()[object], header.origin_m());
+        const auto is_near = [&](const Vec3& place_m)
+        { return is_in_box(header, to_model(pose, place_m)); };
+        if (std::ranges::none_of(places_m, is_near)) // A scene may have thousands of objects.
+        {
+            continue;
+        }
+        const InsideTest inside(header, model.base);
+        for (std::size_t tool = 0; tool < places_m.size(); ++tool)
+        {
+            if (inside.holds(to_model(pose, places_m[tool])))
+            {
+                done_.begins_inside[tool] = model.name;
+                if (parts_.topics != nullptr)
+                {
+                    parts_.topics->tell_begins_inside(tool);
+                }
+                log_line(fmt::format("tool {} begins inside {}, a closed surface, which holds it "
+                                     "from within and pulls back a hand that leaves: begin outside",
+                                     tool, model.name));
+            }
+        }
+    }
+}
+
+/// A line when a tool's device goes, and when it is back.
+void SessionRun::tell_of_device(const SafetyEvent& event)
+{
+    const bool is_gone = has_cause(event.causes, ForceOff::disconnect);
+    if (event.by_supervisor || is_gone == devices_gone_[event.tool])
+    {
+        return;
+    }
+    devices_gone_[event.tool] = is_gone;
+    const std::string& name = parts_.controller.tools()[event.tool].device->info().name;
+    device_log_.write(is_gone
+                          ? fmt::format("tool {}: its device, {}, is gone; no force until it is "
+                                        "back",
+                                        event.tool, name)
+                          : fmt::format("tool {}: its device, {}, is back", event.tool, name));
+}
+
+/// A line when the first datagram to a device's port was refused, at ten, at a hundred, and so on.
+void SessionRun::tell_of_strangers()
+{
+    for (std::size_t tool = 0; tool < strangers_.size(); ++tool)
+    {
+        const auto* udp =
+            dynamic_cast<const UdpDevice*>(parts_.controller.tools()[tool].device.get());
+        if (udp == nullptr)
+        {
+            continue;
+        }
+        const UdpTraffic traffic = udp->traffic();
+        const auto& refused = traffic.refused;
+        if (traffic.others >= kOthersMax && !std::exchange(done_.has_other_device, true))
+        {
+            loop_.stop();
+            device_log_.write(
+                fmt::format("tool {}: its device, {}, is gone, and another one describes itself at "
+                            "its port; a run keeps the limits of its first device, so it ends",
+                            tool, udp->info().name));
+        }
+        const auto all = std::accumulate(refused.begin(), refused.end(), std::uint64_t{0});
+        if (all >= std::max<std::uint64_t>(10 * strangers_[tool], 1))
+        {
+            strangers_[tool] = all;
+            const auto most = std::ranges::max_element(refused) - refused.begin();
+            const auto fault = static_cast<udp::DatagramFault>(most);
+            const bool has_value =
+                fault == udp::DatagramFault::content && traffic.wrong_value != nullptr;
+            device_log_.write(
+                fmt::format("tool {}: {} to its device's port refused, most of them: {}{}{}", tool,
+                            counted(all, "datagram"), udp::text_of(fault), has_value ? ": " : "",
+                            has_value ? traffic.wrong_value : ""));
+        }
+    }
+}
+
+/// A line when it is gone: the run goes on, and fades as long as this process lives.
+void SessionRun::tell_of_guardian()
+{
+    if (parts_.guardian != nullptr && parts_.guardian->has_died())
+    {
+        log_line("the guardian is gone; when hrtc is killed, nothing brakes its devices");
+        parts_.guardian = nullptr;
+    }
+}
+
+/// No effect when nothing has failed.
+void SessionRun::end_after_failure()
+{
+    if (loop_.has_failed() || AssertionBrake::has_failed())
+    {
+        const std::string advice = keep_failed_frame();
+        finish_trace();
+        std::fflush(nullptr);
+        AssertionBrake::end_process(advice);
+    }
+}
+
+/// Of a recording all up to the frame that failed, and that one where it is the haptic thread's.
+/// Returns how it fails again; empty where frames have nothing to do with it.
+std::string SessionRun::keep_failed_frame()
+{
+    const bool is_frames = loop_.has_failed() && loop_.has_failed_itself();
+    const std::optional<GivenFrame> failed = is_frames ? loop_.failed_frame() : std::nullopt;
+    if (parts_.recorder != nullptr)
+    {
+        if (failed)
+        {
+            parts_.recorder->add_failed(*failed);
+        }
+        finish_recording();
+        return failed && done_.recording && done_.recording->lost_from == kNoFrame
+                   ? fmt::format("'hrtc --replay {}' runs it again", parts_.options.record_path)
+                   : std::string();
+    }
+    if (!is_frames)
+    {
+        return {};
+    }
+    const auto kept = write_last_inputs(*last_inputs_, failed, parts_.controller.setup());
+    if (!kept)
+    {
+        return kept.error().text;
+    }
+    return fmt::format(
+        "'--device replay:{}' gives the hand's last {} frames again; only a run with "
+        "--record can be replayed as it was",
+        kept.value().path, kept.value().frames);
+}
+
+FinishedRun SessionRun::finish()
+{
+    haptic_thread_->join();
+    done_.statistics.deadlines.compare_work();
+    brake_.reset();
+    supervisor_.stop();
+    const bool is_supervised = supervisor_thread_.has_value();
+    if (is_supervised)
+    {
+        supervisor_thread_->join();
+    }
+    take_events();
+    done_.safety.finish(supervisor_.brakes(), loop_.safety_log().lost() + supervisor_.log().lost());
+    transport_thread_.reset();
+    finish_recording();
+    finish_trace();
+    done_.thread = haptic_thread_->report();
+    done_.supervisor_fifo = is_supervised && supervisor_thread_->report().fifo;
+    done_.timer = time_.timer().counts();
+    done_.host_was_lost = transport_.host_was_lost();
+    note_topics();
+    for (const std::string& line : done_.thread.refused)
+    {
+        log_line("without " + line);
+    }
+    return std::move(done_);
+}
+
+/// After a run that ended well or not; a refusal is logged.
+void SessionRun::finish_recording()
+{
+    if (parts_.recorder == nullptr)
+    {
+        return;
+    }
+    const auto recording = parts_.recorder->finish();
+    if (!recording)
+    {
+        done_.recording_error = recording.error().text;
+        log_error("--record: " + *done_.recording_error);
+        return;
+    }
+    done_.recording = recording.value();
+}
+
+/// Likewise.
+void SessionRun::finish_trace()
+{
+    if (parts_.trace == nullptr)
+    {
+        return;
+    }
+    const auto trace = parts_.trace->finish();
+    if (!trace)
+    {
+        done_.trace_error = trace.error().text;
+        log_error("--trace: " + *done_.trace_error);
+        return;
+    }
+    done_.trace = trace.value();
+}
+
+/// What hosts and controller told each other; the threads between which it went have ended.
+void SessionRun::note_topics()
+{
+    if (parts_.topics != nullptr)
+    {
+        done_.pose_uses.assign(door_.uses().begin(), door_.uses().end());
+        done_.pose_counts = parts_.topics->pose_counts();
+        done_.scene_news = parts_.topics->scene_news();
+        done_.refused = parts_.topics->refused();
+        done_.server_events = parts_.topics->server_events();
+        done_.telemetry_sent = parts_.topics->telemetry_sent();
+        done_.fronts_sent = parts_.topics->fronts_sent();
+    }
+}
+
+} // namespace tactus::hrtc

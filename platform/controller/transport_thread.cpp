@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/controller/transport_thread.hpp"
+
+#include "platform/machine/posix/posix_clock.hpp"
+
+#include <chrono>
+#include <cstddef>
+
+namespace tactus::hrtc
+{
+
+void TransportRounds::run(MonotonicTime now)
+{
+    run_courier(now);
+    watch_models();
+    if (topics_ != nullptr)
+    {
+        topics_->step(now);
+    }
+}
+
+void TransportRounds::run_courier(MonotonicTime now)
+{
+    courier_.step(now.ns);
+    if (trace_ == nullptr)
+    {
+        return;
+    }
+    TracedRound sums;
+    for (std::uint32_t model = 0; model < courier_.model_count(); ++model)
+    {
+        const CourierCounters& counters = courier_.counters(model);
+        sums.wishes += counters.wishes;
+        sums.pieces += counters.pieces;
+        sums.bytes += counters.coded_bytes;
+        sums.delivered += counters.delivered;
+        sums.refused += counters.refused();
+    }
+    if (sums.wishes != told_.wishes || sums.pieces != told_.pieces)
+    {
+        trace_->add(TracedRound{now, PosixClock().now(), sums.wishes - told_.wishes,
+                                sums.pieces - told_.pieces, sums.bytes - told_.bytes,
+                                sums.delivered - told_.delivered, sums.refused - told_.refused});
+        told_ = sums;
+    }
+}
+
+void TransportRounds::watch_models()
+{
+    for (std::size_t i = 0; i < models_.size(); ++i)
+    {
+        const bool is_gone = models_[i].link->state() == LinkState::host_gone;
+        hosts_gone_.set(i, is_gone);
+        starved_.set(i, courier_.is_starved(static_cast<std::uint32_t>(i)));
+        host_was_lost_.store(host_was_lost_.load() || is_gone);
+    }
+}
+
+TransportThread::TransportThread(TransportRounds& rounds)
+    : rounds_(rounds), thread_([this] { run(); })
+{
+}
+
+/// Waits for the present round to end.
+TransportThread::~TransportThread()
+{
+    stopped_.store(true);
+    thread_.join();
+}
+
+void TransportThread::run()
+{
+    const PosixClock clock;
+    while (!stopped_.load())
+    {
+        rounds_.run(clock.now());
+        std::this_thread::sleep_for(std::chrono::nanoseconds(kRoundPause.ns));
+    }
+}
+
+} // namespace tactus::hrtc

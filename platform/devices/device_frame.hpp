@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/devices/haptic_device.hpp"
+#include "rt_core/base/result.hpp"
+#include "rt_core/math/rotation.hpp"
+#include "rt_core/math/similarity.hpp"
+#include "transport/base/refusal.hpp"
+
+// Any thread: values. The conversions of places and forces, of a frame, neither wait nor allocate;
+// create() and to_world(DeviceInfo) may allocate and are called before the loop.
+namespace tactus
+{
+
+/// How a device stands in the world:
+///
+///     position_world = translation_m + scale x rotation x position_device
+///     rotation_world = rotation x rotation_device
+///     force_device   = rotation^T x force_world, and so the torque
+///
+/// A scale of 10 makes 1 cm of the hand's way 10 cm of the world. Forces are not scaled: a newton
+/// of the world is a newton on the hand, and angles stay what they are. A device that moves s times
+/// as far for the same force is, seen from the world, one of a s-th of its mass, damping and
+/// stiffness; to_world(DeviceInfo) says so, and the cap of docs/stability.md holds unchanged. The
+/// default is no change at all.
+class DeviceFrame
+{
+public:
+    DeviceFrame() = default;
+
+    /// Refuses a translation beyond kPoseReachMax_m on an axis, a scale out
+    /// of [kPoseScaleMin, kPoseScaleMax], and a matrix that is no right-handed rotation; what is
+    /// one within kRotationTolerance is made orthonormal to rounding.
+    [[nodiscard]] static Result<DeviceFrame, Refusal> create(const Similarity& in_world);
+
+    [[nodiscard]] Vec3 position_to_world(const Vec3& device_m) const noexcept
+    {
+        return frame_.to_there(device_m);
+    }
+    /// In metres per second.
+    [[nodiscard]] Vec3 velocity_to_world(const Vec3& device_m_per_s) const noexcept
+    {
+        return frame_.scale * (frame_.rotation * device_m_per_s);
+    }
+    [[nodiscard]] Vec3 force_to_device(const Vec3& world_n) const noexcept
+    {
+        return frame_.rotation.transpose() * world_n;
+    }
+    [[nodiscard]] Quaternion rotation_to_world(const Quaternion& device) const noexcept
+    {
+        return to_quaternion(frame_.rotation * to_rotation(device));
+    }
+    /// In radians per second.
+    [[nodiscard]] Vec3 turning_to_world(const Vec3& device_rad_per_s) const noexcept
+    {
+        return frame_.rotation * device_rad_per_s;
+    }
+    [[nodiscard]] Vec3 torque_to_device(const Vec3& world_nm) const noexcept
+    {
+        return frame_.rotation.transpose() * world_nm;
+    }
+    /// What the device is in the world, from what it says of itself; rates and delay stay.
+    [[nodiscard]] DeviceInfo to_world(const DeviceInfo& device) const;
+
+private:
+    Similarity frame_;
+};
+
+} // namespace tactus

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/result.hpp"
+#include "transport/base/refusal.hpp"
+
+#include <string>
+
+namespace tactus
+{
+
+/// The functions of Force Dimension's SDK (3.x) that we use, by their public C names; written from
+/// its documentation, none of its files is needed to build this. Those that return an int give a
+/// negative one when they fail; 0 and small positive ones are success with or without a remark.
+/// `id` is what dhdOpenID() gave. One thread, the I/O thread: they wait for the device's bus. In
+/// the device's coordinates.
+struct DhdFunctions
+{
+    int (*dhdGetDeviceCount)();
+    int (*dhdOpenID)(char index);
+    int (*dhdClose)(char id);
+    const char* (*dhdGetSystemName)(char id); ///< Null when it doesn't know.
+    int (*dhdGetPosition)(double* x_m, double* y_m, double* z_m, char id);
+    int (*dhdGetLinearVelocity)(double* x_m_per_s, double* y_m_per_s, double* z_m_per_s, char id);
+    /// By rows; the identity where the device has no wrist.
+    int (*dhdGetOrientationFrame)(double matrix[3][3], char id);
+    int (*dhdGetAngularVelocityRad)(double* x_rad_per_s, double* y_rad_per_s, double* z_rad_per_s,
+                                    char id);
+    int (*dhdGetGripperGap)(double* gap_m, char id);
+    bool (*dhdHasWrist)(char id);
+    bool (*dhdHasActiveWrist)(char id);
+    bool (*dhdHasGripper)(char id);
+    bool (*dhdHasActiveGripper)(char id);
+    int (*dhdGetButton)(int index, char id); ///< 1 while it is pressed.
+    unsigned (*dhdGetButtonMask)(char id);   ///< A bit a button.
+    /// Torque and the gripper's force count for nothing where the device makes none.
+    int (*dhdSetForceAndTorqueAndGripperForce)(double fx_n, double fy_n, double fz_n, double tx_nm,
+                                               double ty_nm, double tz_nm, double grip_n, char id);
+    int (*dhdSetBrakes)(int on, char id);
+    int (*dhdEnableForce)(unsigned char on, char id);
+    const char* (*dhdErrorGetLastStr)(); ///< Of the last failure.
+    /// Null in SDKs before 3.3.2. After that time without a force, in steps of 125 us, the device
+    /// itself disables its forces, even when the program is dead; 0: never.
+    int (*dhdSetWatchdog)(unsigned char steps, char id);
+};
+
+/// The SDK, loaded when it is asked for and given back at the end of its life.
+class DhdLibrary
+{
+public:
+    /// `path` is a file, or a name for the system's loader to look up; empty: the names that the
+    /// SDK is installed by. A library that isn't there or lacks a function is refused in one line.
+    [[nodiscard]] static Result<DhdLibrary, Refusal> load(const std::string& path);
+
+    DhdLibrary(DhdLibrary&& other) noexcept;
+    DhdLibrary& operator=(DhdLibrary&&) = delete;
+    ~DhdLibrary();
+
+    [[nodiscard]] const DhdFunctions& operator*() const noexcept { return functions_; }
+    [[nodiscard]] const DhdFunctions* operator->() const noexcept { return &functions_; }
+
+private:
+    explicit DhdLibrary(void* handle) noexcept : handle_(handle) {}
+
+    /// Null, or the name of a function that the library lacks.
+    [[nodiscard]] const char* find_functions() noexcept;
+
+    void* handle_;
+    DhdFunctions functions_{};
+};
+
+} // namespace tactus

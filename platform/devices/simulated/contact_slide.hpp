@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/devices/simulated/hand_motion.hpp"
+#include "rt_core/math/vec3.hpp"
+
+#include <cstdint>
+
+namespace tactus
+{
+
+/// How a hand strokes a surface it knows only by feeling it: it moves across the felt force, turns
+/// slowly, and presses so that the felt force follows a set value.
+///
+///     felt force ^   heading -->            pressing: an integrating controller on |force|;
+///                |  /                       its output is a speed, and the speed is limited,
+///       ---------(o)--------- surface       so nothing winds up while nothing resists.
+///                 |  pressing
+///                 v
+///
+/// On a curved surface the hand, being deeper, runs on another radius than the device; a slow
+/// correction of its speed keeps the device's speed at what was asked.
+class ContactSlide
+{
+public:
+    ContactSlide(double diagonal_m, double period_s) noexcept;
+
+    /// From the first felt force; `heading` is a wish that need not lie in the surface.
+    void begin(const HandSense& sense, const Vec3& heading_wish) noexcept;
+
+    /// The hand's velocity for this frame, in m/s.
+    [[nodiscard]] Vec3 next_velocity(const HandSense& sense) noexcept;
+
+    void turn_round() noexcept;
+
+    [[nodiscard]] bool is_touching(const HandSense& sense) const noexcept;
+    /// More than damping makes at the speeds of a landing.
+    [[nodiscard]] bool is_firm(const HandSense& sense) const noexcept;
+    /// Unit length, out of the surface.
+    [[nodiscard]] const Vec3& normal() const noexcept { return normal_; }
+    [[nodiscard]] const Vec3& heading() const noexcept { return heading_; }
+    /// How long nothing has been felt; 0 while in contact.
+    [[nodiscard]] double untouched_s() const noexcept { return untouched_s_; }
+    /// How long something has been felt since begin(), without a gap.
+    [[nodiscard]] double touched_s() const noexcept { return touched_s_; }
+
+private:
+    [[nodiscard]] double wanted_force_n() const noexcept;
+    [[nodiscard]] Vec3 press(double force_n) const noexcept;
+    void follow_surface(const HandSense& sense, double force_n) noexcept;
+    void correct_speed(const HandSense& sense) noexcept;
+    void turn_round_when_stuck() noexcept;
+
+    double period_s_;
+    double speed_m_per_s_;
+    double force_n_;
+    double press_speed_max_m_per_s_;
+
+    Vec3 normal_{Vec3::UnitZ()};
+    Vec3 heading_{Vec3::UnitX()};
+    Vec3 last_device_world_m_{Vec3::Zero()};
+    double device_speed_m_per_s_{0.0};
+    double speed_factor_{1.0};
+    double untouched_s_{0.0};
+    double touched_s_{0.0};
+    double stuck_s_{0.0};
+    std::uint64_t frames_{0};
+};
+
+} // namespace tactus

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/devices/simulated/contact_slide.hpp"
+#include "platform/devices/simulated/hand_motion.hpp"
+#include "platform/devices/simulated/hand_pace.hpp"
+#include "platform/devices/simulated/phasor.hpp"
+#include "platform/devices/simulated/scripted_hand.hpp"
+
+#include <cstdint>
+
+namespace tactus
+{
+
+/// Comes straight down from a gate to the place below it and from the first touch on moves about
+/// that place, along axes of its own. Where there is nothing to touch it stops half a diagonal past
+/// the place. A scene that ScriptedHand takes.
+class LandedHand : public HandMotion
+{
+public:
+    [[nodiscard]] Vec3 start_world_m() const noexcept override { return start_world_m_; }
+    [[nodiscard]] Vec3 next_world_m(const HandSense& sense) noexcept override;
+
+protected:
+    explicit LandedHand(const HandScene& scene);
+
+    /// From the place of the first touch, `seconds` later: x and y along the surface, z into it.
+    /// Continuous, and 0 at 0 s. Once a frame.
+    [[nodiscard]] virtual Vec3 offset_m(double seconds) noexcept = 0;
+    /// So deep that the default device and hand make about 1 N on a wall of 500 N/m.
+    [[nodiscard]] double press_m() const noexcept { return press_m_; }
+
+private:
+    [[nodiscard]] bool has_met_something(const HandSense& sense, double left_m,
+                                         double speed_m_per_s) noexcept;
+
+    double period_s_;
+    double diagonal_m_;
+    double tool_radius_m_;
+    double press_m_;
+    HandPace pace_;
+    ContactSlide feeling_; ///< Knows what counts as a touch.
+    Vec3 last_device_world_m_;
+    double device_speed_m_per_s_{0.0}; ///< Downwards, over the last 10 ms or so.
+    Vec3 start_world_m_;
+    Vec3 down_;
+    Vec3 across_;
+    double length_m_; ///< From the start to the place.
+    double way_m_{0.0};
+    Vec3 touched_world_m_{Vec3::Zero()};
+    bool has_landed_{false};
+    std::uint64_t frames_since_{0};
+};
+
+/// Presses within 0.3 s and rests.
+class PressingHand final : public LandedHand
+{
+public:
+    explicit PressingHand(const HandScene& scene) : LandedHand(scene) {}
+
+private:
+    [[nodiscard]] Vec3 offset_m(double seconds) noexcept override;
+};
+
+/// Two taps a second, between them three tool radii off the surface.
+class TappingHand final : public LandedHand
+{
+public:
+    explicit TappingHand(const HandScene& scene);
+
+private:
+    [[nodiscard]] Vec3 offset_m(double seconds) noexcept override;
+
+    double height_m_;
+};
+
+/// Presses and circles twice a second, a tenth of a diagonal wide.
+class SpinningHand final : public LandedHand
+{
+public:
+    explicit SpinningHand(const HandScene& scene);
+
+private:
+    [[nodiscard]] Vec3 offset_m(double seconds) noexcept override;
+
+    double radius_m_;
+    Phasor phasor_;
+};
+
+} // namespace tactus

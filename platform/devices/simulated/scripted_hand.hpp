@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/devices/simulated/contact_slide.hpp"
+#include "platform/devices/simulated/hand_motion.hpp"
+#include "platform/devices/simulated/hand_pace.hpp"
+#include "platform/devices/simulated/hand_schedule.hpp"
+#include "platform/devices/simulated/landing_sites.hpp"
+#include "platform/machine/time.hpp"
+#include "rt_core/base/result.hpp"
+#include "transport/base/refusal.hpp"
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+// create() allocates, before the loop; the rest is the haptic thread's, as HandMotion says.
+namespace tactus
+{
+
+/// What the default script needs to know about a model, whatever its shape.
+struct HandScene
+{
+    /// Points on the surface, for instance the vertices of the coarse mesh; world frame, metres.
+    std::vector<Vec3> anchors_world_m;
+    double diagonal_m{0.0};        ///< Of the model's bounding box, in the world.
+    double tool_radius_m{0.0};     ///< Above 0, up to the diagonal.
+    Duration period;               ///< From one decision to the next.
+    std::uint64_t frames_total{0}; ///< Of the run; the script retreats for the last of them.
+    bool lifts_off{true};          ///< Now and then while it slides.
+    std::size_t hands_before{0};   ///< On the same model; each begins at another place.
+};
+
+enum class HandPhase
+{
+    flight,    ///< Round the model, at up to two diagonals a second.
+    approach,  ///< Straight to a landing site, slowly towards its end.
+    slide,     ///< In contact, at a tenth of a diagonal a second.
+    lift,      ///< Off the surface along the last normal, for three tool radii.
+    come_back, ///< To above the last place of contact, after an edge was slid over.
+    descend,   ///< Along the last normal down to the last place of contact.
+    back_off,  ///< Nothing was found where it was looked for: out again, to the next site.
+    retreat    ///< Away, for the last moments of the run.
+};
+
+/// The default script: free flight, approach, slide with lift-offs in between, retreat. It finds
+/// its way by what it feels and works on any model. For runs of 3 s or more at 1 kHz it lifts off
+/// at least three times and is in contact in about two thirds of all frames or more.
+///
+/// Every phase is a wish for a velocity; the hand follows it with a limited acceleration, so its
+/// path is smooth everywhere. A state machine over frame indices with arithmetic and square roots
+/// only: the same senses give the same bits.
+class ScriptedHand final : public HandMotion
+{
+public:
+    /// Refuses a scene without anchors, with values that are not finite, with a diagonal or a tool
+    /// radius that is not positive, a tool larger than the model, a period that is not positive.
+    [[nodiscard]] static Result<std::unique_ptr<ScriptedHand>, Refusal>
+    create(const HandScene& scene);
+
+    [[nodiscard]] Vec3 start_world_m() const noexcept override { return start_world_m_; }
+    [[nodiscard]] Vec3 next_world_m(const HandSense& sense) noexcept override;
+
+    [[nodiscard]] HandPhase phase() const noexcept { return phase_; }
+    /// Complete ones: the surface was left and the full height reached.
+    [[nodiscard]] std::uint32_t lift_offs() const noexcept { return lift_offs_; }
+    /// A workspace round this centre with this radius holds the whole script.
+    [[nodiscard]] const Vec3& centre_world_m() const noexcept { return centre_world_m_; }
+    [[nodiscard]] double reach_m() const noexcept;
+
+private:
+    explicit ScriptedHand(const HandScene& scene);
+
+    [[nodiscard]] Vec3 wish(const HandSense& sense) noexcept;
+    [[nodiscard]] Vec3 fly() noexcept;
+    [[nodiscard]] Vec3 approach(const HandSense& sense) noexcept;
+    [[nodiscard]] Vec3 slide(const HandSense& sense) noexcept;
+    [[nodiscard]] Vec3 lift(const HandSense& sense) noexcept;
+    [[nodiscard]] Vec3 come_back() noexcept;
+    [[nodiscard]] Vec3 descend(const HandSense& sense) noexcept;
+    [[nodiscard]] Vec3 back_off() noexcept;
+    [[nodiscard]] Vec3 retreat() noexcept;
+
+    /// Where the surface was felt, a moment before it may have been lost.
+    struct Place
+    {
+        Vec3 point_world_m{Vec3::Zero()};
+        Vec3 normal{Vec3::UnitZ()};
+        Vec3 heading{Vec3::UnitX()};
+    };
+
+    void enter(HandPhase phase) noexcept;
+    void lose_contact() noexcept;
+    void feel(const HandSense& sense) noexcept;
+    [[nodiscard]] bool meets(const HandSense& sense, const Vec3& way) const noexcept;
+    void land(const HandSense& sense, const Vec3& heading_wish) noexcept;
+    void remember_place(const HandSense& sense) noexcept;
+    [[nodiscard]] Place place_here(const HandSense& sense) const noexcept;
+    void move_towards(const Vec3& wished_m_per_s) noexcept;
+    void stay_near_device(const HandSense& sense) noexcept;
+    [[nodiscard]] const LandingSite& site() const noexcept { return sites_[site_]; }
+    [[nodiscard]] double seconds_in_phase() const noexcept;
+
+    double diagonal_m_;
+    double tool_radius_m_;
+    double period_s_;
+    HandPace pace_;
+    HandSchedule schedule_;
+    std::uint64_t place_spacing_frames_;
+    Vec3 centre_world_m_;
+    std::vector<LandingSite> sites_;
+    Vec3 start_world_m_;
+
+    HandPhase phase_{HandPhase::flight};
+    std::uint64_t frames_in_phase_{0};
+    Vec3 position_world_m_;
+    Vec3 velocity_m_per_s_{Vec3::Zero()};
+    std::size_t site_{0};
+    Vec3 approach_direction_{Vec3::Zero()};
+    double felt_s_{0.0}; ///< How long there has been a force, in this phase.
+    ContactSlide slide_;
+    Place place_;        ///< 64 to 128 ms old; from before a landing until that is sure.
+    Place newest_place_; ///< Up to 64 ms old.
+    HandPhase landed_from_{HandPhase::approach};
+    bool is_landing_sure_{false};
+    Vec3 released_world_m_{Vec3::Zero()};
+    bool released_{false};
+    std::uint32_t lift_offs_{0};
+    std::uint32_t losses_{0};
+    bool landed_{false};
+};
+
+} // namespace tactus

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/devices/simulated/contact_slide.hpp"
+#include "platform/devices/simulated/hand_motion.hpp"
+#include "platform/devices/simulated/landed_hand.hpp"
+#include "platform/devices/simulated/scripted_hand.hpp"
+#include "platform/devices/simulated/wrist_swings.hpp"
+
+#include <cstdint>
+#include <memory>
+
+namespace tactus
+{
+
+/// Presses as PressingHand does and turns the tool about the world's x, y and z, 30 degrees to and
+/// fro, an axis every 2 s.
+class TurningHand final : public LandedHand
+{
+public:
+    explicit TurningHand(const HandScene& scene);
+    [[nodiscard]] HandGrip grip() const noexcept override;
+
+private:
+    [[nodiscard]] Vec3 offset_m(double seconds) noexcept override;
+
+    WristSwings swings_;
+};
+
+/// Another hand's way, on which it turns the tool with the surface: as the felt force turns, over
+/// an edge or round the model, so does the tool, at up to 4 rad/s.
+class EdgeHand final : public HandMotion
+{
+public:
+    EdgeHand(std::unique_ptr<HandMotion> way, const HandScene& scene);
+    [[nodiscard]] Vec3 start_world_m() const noexcept override { return way_->start_world_m(); }
+    [[nodiscard]] Vec3 next_world_m(const HandSense& sense) noexcept override;
+    [[nodiscard]] HandGrip grip() const noexcept override;
+
+private:
+    void turn_with(const Vec3& felt) noexcept;
+
+    std::unique_ptr<HandMotion> way_;
+    ContactSlide feeling_; ///< Knows what counts as a touch.
+    double period_s_;
+    bool has_touched_{false};
+    Vec3 normal_{Vec3::UnitZ()}; ///< Of the surface; the tool stands on it as it did at first.
+    Mat3 rotation_{Mat3::Identity()};
+};
+
+/// Comes down along the world's z through the middle of the model, as a peg goes into a hole, until
+/// it is pressed with about 1 N; tilts the tool by 2 degrees about x and y; draws it out again by
+/// a sixth of a diagonal; and there, for 0.6 s, presses button 0, opens the gripper, and moves up
+/// and back. Then in again. Where there is nothing to touch it turns round half a diagonal below
+/// the middle.
+class PegHand final : public HandMotion
+{
+public:
+    explicit PegHand(const HandScene& scene);
+    [[nodiscard]] Vec3 start_world_m() const noexcept override { return start_world_m_; }
+    [[nodiscard]] Vec3 next_world_m(const HandSense& sense) noexcept override;
+    [[nodiscard]] HandGrip grip() const noexcept override;
+
+private:
+    enum class Phase : std::uint8_t
+    {
+        in,
+        tilt,
+        out,
+        change_grip,
+    };
+
+    void enter(Phase phase) noexcept;
+    void go_in(const HandSense& sense) noexcept;
+    [[nodiscard]] bool is_over(double seconds) const noexcept;
+
+    double period_s_;
+    double diagonal_m_;
+    double press_n_;
+    double speed_m_per_s_;
+    Vec3 start_world_m_;
+    double way_max_m_;
+    WristSwings swings_;
+    Phase phase_{Phase::in};
+    double in_phase_s_{0.0};
+    double pressed_s_{0.0};
+    double way_m_{0.0};     ///< Downwards from the start.
+    double deepest_m_{0.0}; ///< Of this time in.
+};
+
+} // namespace tactus

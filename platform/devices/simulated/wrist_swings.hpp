@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/devices/simulated/phasor.hpp"
+#include "rt_core/math/rotation.hpp"
+
+namespace tactus
+{
+
+/// How a wrist turns what it holds to and fro about the axes of the world, one after the other: a
+/// swing is from rest one way, back, the other way, and to rest again. Arithmetic and square roots
+/// only.
+class WristSwings
+{
+public:
+    /// About x, y and so on, `axes` of them. The farthest it turns is twice the arc tangent of
+    /// `half_tangent`.
+    WristSwings(double half_tangent, double swings_per_s, int axes, double period_s) noexcept
+        : half_tangent_(half_tangent), axes_(axes), phasor_(swings_per_s, period_s)
+    {
+    }
+
+    /// By one period.
+    void step() noexcept
+    {
+        const bool was_back = phasor_.sin() < 0.0;
+        phasor_.turn();
+        axis_ = was_back && phasor_.sin() >= 0.0 ? (axis_ + 1) % axes_ : axis_;
+    }
+
+    /// The third power begins and ends at rest.
+    [[nodiscard]] Mat3 rotation() const noexcept
+    {
+        const double sine = phasor_.sin();
+        return turned_by(Vec3::Unit(axis_) * (2.0 * half_tangent_ * sine * sine * sine),
+                         Mat3::Identity());
+    }
+
+private:
+    double half_tangent_;
+    int axes_;
+    int axis_{0};
+    Phasor phasor_;
+};
+
+} // namespace tactus

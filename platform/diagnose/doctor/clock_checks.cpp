@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/diagnose/doctor/clock_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+
+namespace tactus::doctor
+{
+
+namespace
+{
+
+constexpr const char* kCurrentSource =
+    "/sys/devices/system/clocksource/clocksource0/current_clocksource";
+constexpr const char* kSources =
+    "/sys/devices/system/clocksource/clocksource0/available_clocksource";
+
+/// Those that every kernel of the last years reads in user space, the best first. Others may be,
+/// such as xen: there only counting the calls tells.
+constexpr std::array<std::string_view, 4> kReadInUserSpace{"tsc", "arch_sys_counter", "kvm-clock",
+                                                           "hyperv_clocksource_tsc_page"};
+constexpr std::array<std::string_view, 6> kReadByCall{
+    "hpet", "acpi_pm", "jiffies", "refined-jiffies", "pit", "hyperv_clocksource_msr"};
+
+std::string take_better_source(const SystemFiles& files, const std::string& current,
+                               const std::string& machine)
+{
+    const std::string list = files.text(kSources).value_or("");
+    for (const std::string_view source : kReadInUserSpace)
+    {
+        if (source != current && has_word(list, source))
+        {
+            return fmt::format("echo {} | sudo tee {}", source, kCurrentSource);
+        }
+    }
+    return machine == "x86_64" ? add_to_kernel_line("clocksource=tsc tsc=reliable")
+                               : "dmesg | grep -i clocksource # Why there is no better one.";
+}
+
+} // namespace
+
+Finding check_clock_source(const MachineView& view)
+{
+    Finding finding{"clock-source",
+                    Verdict::good,
+                    "",
+                    "The loop reads the clock several times a frame. Through the vDSO that takes "
+                    "20 ns; otherwise it is a system call, which frames must not make.",
+                    {}};
+    const auto source = view.files.text(kCurrentSource);
+    const auto calls = view.measured.clock_calls;
+    if (!calls && !source)
+    {
+        return unreadable(std::move(finding), view.files, kCurrentSource);
+    }
+    const bool by_call = calls ? *calls > 0 : std::ranges::count(kReadByCall, *source) > 0;
+    if (!calls && !by_call && std::ranges::count(kReadInUserSpace, *source) == 0)
+    {
+        return unreadable(std::move(finding), view.files, kCurrentSource);
+    }
+    finding.found = fmt::format(
+        "{}, {}", source ? shown(*source) : "source not told",
+        calls     ? fmt::format("{} system calls in {} reads", *calls, Measured::kClockReads)
+        : by_call ? "read by a system call"
+                  : "read without a system call");
+    if (by_call)
+    {
+        finding.verdict = Verdict::critical;
+        finding.remedy = {
+            take_better_source(view.files, source.value_or(""), view.measured.machine)};
+    }
+    return finding;
+}
+
+Finding check_timer(const MachineView& view)
+{
+    Finding finding{"timer",
+                    Verdict::good,
+                    "",
+                    "Without high-resolution timers a thread wakes with the kernel's tick, 1 to "
+                    "10 ms apart: there is no period of 1 ms.",
+                    {}};
+    const auto resolution_ns = view.measured.clock_resolution_ns;
+    if (!resolution_ns || *resolution_ns <= 0)
+    {
+        finding.verdict = Verdict::unknown;
+        finding.found = "the resolution of CLOCK_MONOTONIC is not told";
+        finding.remedy = {"grep -m 1 resolution /proc/timer_list"};
+        return finding;
+    }
+    finding.found = fmt::format("timers of {} ns", *resolution_ns);
+    if (*resolution_ns <= kMostResolution_ns)
+    {
+        return finding;
+    }
+    finding.verdict = Verdict::critical;
+    const bool is_off = has_word(view.files.text("/proc/cmdline").value_or(""), "highres=off");
+    finding.remedy = {is_off ? "sudo sed -i 's/highres=off//' /etc/default/grub && "
+                               "sudo update-grub && sudo reboot"
+                             : "grep HIGH_RES_TIMERS /boot/config-$(uname -r) # Must be y."};
+    return finding;
+}
+
+Finding check_float_control(const MachineView& view)
+{
+    Finding finding{"float-control",
+                    Verdict::good,
+                    "new threads keep denormals and round to nearest",
+                    "Some library, one built with fast maths for instance, or a preloaded one "
+                    "changes it for all threads (FTZ, DAZ, rounding): results are no longer the "
+                    "same bits, proven bounds no longer proven.",
+                    {}};
+    if (view.measured.float_control_is_default)
+    {
+        return finding;
+    }
+    finding.verdict = Verdict::critical;
+    finding.found = "new threads flush denormals (FTZ, DAZ), round otherwise or trap";
+    if (view.measured.preloaded.empty())
+    {
+        finding.remedy = {
+            "for l in $(ldd \"$(command -v hrtc)\" | grep -o '/[^ ]*'); do objdump -d "
+            "$l | grep -q ldmxcsr && echo $l; done # Rebuild without -ffast-math."};
+        return finding;
+    }
+    finding.found += fmt::format("; LD_PRELOAD is {}", shown(view.measured.preloaded));
+    finding.remedy = {"unset LD_PRELOAD"};
+    return finding;
+}
+
+} // namespace tactus::doctor

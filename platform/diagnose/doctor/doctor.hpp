@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/diagnose/doctor/machine_view.hpp"
+
+#include <cstddef>
+#include <vector>
+
+namespace tactus::doctor
+{
+
+/// All checks, in the order in which they are shown. Each gives one finding, whatever it reads.
+[[nodiscard]] std::vector<Finding> examine(const MachineView& view);
+
+[[nodiscard]] std::size_t count_of(const std::vector<Finding>& findings, Verdict verdict);
+
+} // namespace tactus::doctor

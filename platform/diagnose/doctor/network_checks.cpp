@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/diagnose/doctor/network_checks.hpp"
+
+#include "platform/diagnose/doctor/dds_configuration.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace tactus::doctor
+{
+
+namespace
+{
+
+constexpr std::uint64_t kUp = 0x1; // Flags of net/if.h.
+constexpr std::uint64_t kLoopback = 0x8;
+
+struct Interface
+{
+    std::string name;
+    bool is_there{false};
+    bool is_told{false}; ///< Flags and state could be read.
+    bool is_loopback{false};
+    bool is_up{false};    ///< Switched on.
+    bool has_link{false}; ///< And somebody is at the other end, or it has no such notion.
+};
+
+Interface look_at(const SystemFiles& files, const std::string& name)
+{
+    const std::string folder = fmt::format("/sys/class/net/{}", name);
+    Interface interface {
+        name, files.is_folder(folder)
+    };
+    const auto flags = parse_hexadecimal(files.text(folder + "/flags").value_or(""));
+    const auto state = files.text(folder + "/operstate");
+    if (flags && state)
+    {
+        const std::uint64_t bits = flags.value_or(0);
+        interface.is_told = true;
+        interface.is_loopback = (bits & kLoopback) != 0;
+        interface.is_up = (bits & kUp) != 0;
+        interface.has_link = interface.is_up && (*state == "up" || *state == "unknown");
+    }
+    return interface;
+}
+
+std::string state_in_words(const Interface& interface)
+{
+    const std::string name = shown(interface.name);
+    if (!interface.is_there)
+    {
+        return name + " is not there";
+    }
+    if (!interface.is_told)
+    {
+        return name + " does not tell its state";
+    }
+    if (!interface.is_up)
+    {
+        return name + " is down";
+    }
+    return name + (interface.has_link ? " is up" : " is up without a link");
+}
+
+std::string mend(const Interface& interface)
+{
+    const std::string name = shell_word(interface.name);
+    if (!interface.is_there)
+    {
+        return "ip -brief link # Then name one of these to DDS.";
+    }
+    return interface.is_up ? fmt::format("ip link show dev {} # No carrier: the cable?", name)
+                           : fmt::format("sudo ip link set dev {} up", name);
+}
+
+/// Worst first: missing or off, then no link, then untold.
+Finding judge_named(Finding finding, const SystemFiles& files,
+                    const std::vector<std::string>& names)
+{
+    finding.verdict = Verdict::good;
+    for (const std::string& name : names)
+    {
+        const Interface interface = look_at(files, name);
+        finding.found += (finding.found.empty() ? "" : "; ") + state_in_words(interface);
+        if (interface.has_link)
+        {
+            continue;
+        }
+        if (interface.is_there && !interface.is_told)
+        {
+            finding.verdict = finding.verdict == Verdict::good ? Verdict::unknown : finding.verdict;
+            finding.remedy.push_back(fmt::format("ip link show dev {}", shell_word(name)));
+            continue;
+        }
+        finding.verdict = Verdict::critical;
+        finding.remedy.push_back(mend(interface));
+    }
+    return finding;
+}
+
+/// DDS takes one by itself: one that is up, and one with a network when there is such a one.
+Finding judge_any(Finding finding, const SystemFiles& files)
+{
+    std::string loopback;
+    std::string off;
+    for (const std::string& name : files.names("/sys/class/net"))
+    {
+        const Interface interface = look_at(files, name);
+        if (interface.has_link && !interface.is_loopback)
+        {
+            finding.verdict = Verdict::good;
+            finding.found = fmt::format("no interface is named; {}", state_in_words(interface));
+            return finding;
+        }
+        loopback = interface.has_link ? name : loopback;
+        off = interface.is_told && !interface.is_loopback ? name : off;
+    }
+    finding.verdict = loopback.empty() ? Verdict::critical : Verdict::advice;
+    finding.found = loopback.empty()
+                        ? "no interface is up"
+                        : fmt::format("no interface is named, and only {} is up", shown(loopback));
+    finding.remedy = {off.empty() ? "ip -brief link # None but the loopback is there."
+                                  : fmt::format("sudo ip link set dev {} up", shell_word(off))};
+    return finding;
+}
+
+} // namespace
+
+Finding check_dds_configuration(const MachineView& view)
+{
+    Finding finding{"dds-configuration",
+                    Verdict::good,
+                    "",
+                    "Without CYCLONEDDS_URI hrtc finds models on this machine alone (interface lo, "
+                    "no multicast); with it, what it says is used as it is.",
+                    {}};
+    if (view.measured.dds_uri.empty())
+    {
+        finding.found = "CYCLONEDDS_URI is not set";
+        return finding;
+    }
+    const DdsConfiguration configuration =
+        read_dds_configuration(view.measured.dds_uri, view.files);
+    finding.found = fmt::format("CYCLONEDDS_URI is {}", shown(view.measured.dds_uri));
+    if (!configuration.unreadable_file.empty())
+    {
+        finding.verdict = Verdict::critical;
+        finding.found += fmt::format("; {} can't be read", shown(configuration.unreadable_file));
+        finding.remedy = {"unset CYCLONEDDS_URI # Or have it name a file that is there."};
+    }
+    return finding;
+}
+
+Finding check_dds_interface(const MachineView& view)
+{
+    Finding finding{
+        "dds-interface",
+        Verdict::unknown,
+        "",
+        "Over an interface that is not there, down or without a link hrtc gets no model, "
+        "except from files.",
+        {}};
+    if (view.files.names("/sys/class/net").empty())
+    {
+        return unreadable(std::move(finding), view.files, "/sys/class/net");
+    }
+    if (view.measured.dds_uri.empty())
+    {
+        return judge_named(std::move(finding), view.files, {"lo"});
+    }
+    const DdsConfiguration configuration =
+        read_dds_configuration(view.measured.dds_uri, view.files);
+    return configuration.interfaces.empty()
+               ? judge_any(std::move(finding), view.files)
+               : judge_named(std::move(finding), view.files, configuration.interfaces);
+}
+
+Finding check_dds_buffers(const MachineView& view)
+{
+    Finding finding{"dds-buffers",
+                    Verdict::good,
+                    "",
+                    "A burst of chunks that does not fit the socket's buffer is lost and sent "
+                    "again, and the answers stay brackets meanwhile. DDS asks for 1 MiB to receive "
+                    "and 64 KiB to send.",
+                    {}};
+    for (const auto& [name, least] :
+         {std::pair("rmem_max", kReceiveBytes), std::pair("wmem_max", kSendBytes)})
+    {
+        const std::string path = fmt::format("/proc/sys/net/core/{}", name);
+        const auto text = view.files.text(path);
+        const auto bytes = text ? parse_integer(*text) : std::nullopt;
+        if (!bytes || *bytes < 0)
+        {
+            return unreadable(std::move(finding), view.files, path);
+        }
+        finding.found +=
+            fmt::format("{}{} {} bytes", finding.found.empty() ? "" : ", ", name, *bytes);
+        if (*bytes < least)
+        {
+            finding.verdict = Verdict::advice;
+            finding.remedy.push_back(fmt::format(
+                "echo net.core.{}={} | sudo tee -a /etc/sysctl.d/60-tactus.conf", name, least));
+        }
+    }
+    if (finding.verdict == Verdict::advice)
+    {
+        finding.remedy.emplace_back("sudo sysctl --system");
+    }
+    return finding;
+}
+
+} // namespace tactus::doctor

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/diagnose/doctor_command.hpp"
+
+#include "platform/diagnose/doctor/doctor.hpp"
+#include "platform/diagnose/doctor/doctor_report.hpp"
+#include "platform/diagnose/domain_check.hpp"
+#include "platform/machine/rt_thread.hpp"
+#include "platform/program/command_line.hpp"
+#include "transport/dds/domain.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tactus::hrtc
+{
+
+namespace
+{
+
+/// Why the loop could not be pinned there, as hrtc itself would say; empty when it could.
+std::string why_not_on(int cpu)
+{
+    RtThreadOptions options;
+    options.cpu = cpu;
+    options.lock_memory = false;
+    const auto probed = probe_realtime(options);
+    return probed ? "" : probed.error().text;
+}
+
+} // namespace
+
+int run_doctor(int argc, char** argv)
+{
+    CommandLine line("hrtc doctor",
+                     "Says what of this machine is in the way of the haptic loop: what was found, "
+                     "why it matters, and the command that mends it. Exit code 1 when something "
+                     "critical is missing.");
+    std::optional<int> cpu;
+    std::optional<std::uint32_t> domain;
+    double wait_s = 3.0;
+    bool as_json = false;
+    bool shows_good = false;
+    line.add_option("--cpu", cpu, "Processor that the haptic thread is to have [not chosen]")
+        .integer_between(0, 1'023);
+    const CommandOption of_domain =
+        line.add_option("--domain", domain,
+                        "DDS domain to join, too: who is heard there, and which models are "
+                        "published [none]")
+            .integer_between(0U, dds::kMaxDomain);
+    line.add_option("--wait", wait_s, "Seconds to listen there")
+        .number_between(0.1, 3'600.0)
+        .show_default()
+        .needs(of_domain);
+    line.add_flag("--all", shows_good,
+                  "Say of what is good, too, what was found and why it matters");
+    line.add_flag("--json", as_json, "Print one JSON object");
+    if (const std::optional<int> code = line.parse(argc, argv))
+    {
+        return *code;
+    }
+    if (const std::string fault = cpu ? why_not_on(*cpu) : ""; !fault.empty())
+    {
+        return line.fail("--cpu: " + fault, kExitUsage);
+    }
+    const doctor::SystemFiles files("/");
+    const doctor::Measured measured = doctor::measure();
+    std::vector<doctor::Finding> findings = doctor::examine({files, measured, cpu});
+    if (domain)
+    {
+        findings.push_back(check_domain(
+            *domain, std::chrono::milliseconds(static_cast<std::int64_t>(wait_s * 1e3))));
+    }
+    fmt::print("{}", as_json ? doctor::make_report(findings, cpu).dump(2) + '\n'
+                             : doctor::make_text(findings, shows_good));
+    if (std::fflush(stdout) != 0)
+    {
+        return line.fail("the findings can't be written");
+    }
+    return doctor::count_of(findings, doctor::Verdict::critical) == 0 ? kExitDone
+                                                                      : kExitCriterionNotMet;
+}
+
+} // namespace tactus::hrtc

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/loop/assertion_brake.hpp"
+
+#include "rt_core/base/assert.hpp"
+#include "transport/base/exit_codes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <poll.h>
+#include <thread>
+#include <unistd.h>
+
+namespace tactus::hrtc
+{
+
+namespace
+{
+
+/// A reader of stderr that is alive reads within this time.
+constexpr std::chrono::seconds kPrintPatience{5};
+/// To finish a recording.
+constexpr std::chrono::seconds kMainPatience{10};
+/// A device behind a bus obeys brake() in the next turn of its I/O thread, which takes less.
+constexpr std::chrono::milliseconds kBrakeTime{50};
+constexpr std::size_t kLineBytes = 1'024; ///< Below PIPE_BUF, so a pipe takes it as a whole.
+
+struct Failure
+{
+    const char* condition{nullptr};
+    const char* file{nullptr};
+    int line{0};
+};
+
+enum class Report : std::uint8_t
+{
+    none,
+    noted,
+    printing,
+    printed,
+};
+
+// All sequentially consistent: they are used once in a process.
+std::atomic<HapticLoop*> running_loop{nullptr};
+std::atomic<std::thread::id> main_thread{};
+std::atomic<bool> has_any_failed{false};
+/// The first failure of the process. Its thread may fail again while the forces fade, and then
+/// never comes back to print the first.
+Failure first_failure;
+std::atomic<Report> first_report{Report::none};
+
+/// Returns whether there was none before.
+bool note(const Failure& failure) noexcept
+{
+    if (has_any_failed.exchange(true))
+    {
+        return false;
+    }
+    first_failure = failure;
+    first_report.store(Report::noted);
+    return true;
+}
+
+/// Waits until stderr can take a line at once, so that the write itself never waits.
+bool has_room_on_stderr() noexcept
+{
+    pollfd out{STDERR_FILENO, POLLOUT, 0};
+    const auto patience = std::chrono::milliseconds(kPrintPatience);
+    int ready = 0;
+    do
+    {
+        ready = poll(&out, 1, static_cast<int>(patience.count()));
+    } while (ready < 0 && errno == EINTR);
+    return ready > 0 && out.revents == POLLOUT; // Not with POLLERR: that write would be SIGPIPE.
+}
+
+using Line = std::array<char, kLineBytes>;
+
+/// What snprintf made, of that length. Neither allocates nor uses stdio's stream, whose lock a
+/// waiting thread may hold.
+void put(const Line& line, int length) noexcept
+{
+    if (length > 0 && has_room_on_stderr())
+    {
+        const std::size_t bytes = std::min(static_cast<std::size_t>(length), line.size() - 1);
+        // Whether it worked cannot be told to anybody.
+        [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, line.data(), bytes);
+    }
+}
+
+void print(const Failure& failure) noexcept
+{
+    Line line{};
+    put(line, std::snprintf(line.data(), line.size(), "hrtc: internal error: %.600s (%.300s:%d)\n",
+                            failure.condition, failure.file, failure.line));
+}
+
+void print_first() noexcept
+{
+    Report noted = Report::noted;
+    if (first_report.compare_exchange_strong(noted, Report::printing))
+    {
+        print(first_failure);
+        first_report.store(Report::printed);
+    }
+}
+
+/// Any thread.
+void on_assertion(const char* condition, const char* file, int line) noexcept
+{
+    const Failure failure{condition, file, line};
+    const bool is_first = note(failure); // Before the loop is looked up: see ~AssertionBrake().
+    HapticLoop* loop = running_loop.load();
+    if (loop != nullptr)
+    {
+        loop->fail();
+    }
+    print_first();
+    if (!is_first)
+    {
+        print(failure);
+    }
+    if (loop != nullptr)
+    {
+        const bool is_main = main_thread.load() == std::this_thread::get_id();
+        std::this_thread::sleep_for(is_main ? kBrakeTime : kMainPatience);
+    }
+    std::_Exit(kExitFailed);
+}
+
+} // namespace
+
+void install_assertion_brake() noexcept
+{
+    set_assert_handler(on_assertion);
+}
+
+AssertionBrake::AssertionBrake(HapticLoop& loop) noexcept
+{
+    main_thread.store(std::this_thread::get_id());
+    running_loop.store(&loop);
+}
+
+/// A thread that fails notes that before it looks up the loop. So either it is seen here and the
+/// loop lives on, or that thread finds no loop.
+AssertionBrake::~AssertionBrake()
+{
+    running_loop.store(nullptr);
+    if (has_failed())
+    {
+        end_process();
+    }
+}
+
+bool AssertionBrake::has_failed() noexcept
+{
+    return has_any_failed.load();
+}
+
+void AssertionBrake::end_process(std::string_view advice) noexcept
+{
+    while (has_failed() && first_report.load() != Report::printed)
+    {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    if (!advice.empty())
+    {
+        Line line{};
+        put(line, std::snprintf(line.data(), line.size(), "hrtc: %.*s\n",
+                                static_cast<int>(advice.size()), advice.data()));
+    }
+    std::this_thread::sleep_for(kBrakeTime);
+    std::_Exit(kExitFailed);
+}
+
+} // namespace tactus::hrtc

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/loop/run_statistics.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::hrtc
+{
+
+namespace
+{
+
+/// How bad an answer is; a frame is as bad as its worst pair.
+int badness(AnswerKind kind) noexcept
+{
+    switch (kind)
+    {
+    case AnswerKind::decided:
+        return 0;
+    case AnswerKind::exact:
+        return 1;
+    case AnswerKind::within_tolerance:
+        return 2;
+    case AnswerKind::bracket:
+        return 3;
+    case AnswerKind::stale:
+        return 4;
+    }
+    return 4;
+}
+
+bool is_felt(const ToolOutput& output, const ToolForce& force) noexcept
+{
+    return output.in_contact && force.push.force_n.squaredNorm() > 0.0;
+}
+
+} // namespace
+
+void AnswerCounts::add(AnswerKind kind, double width_m, double tolerated_m) noexcept
+{
+    const bool is_inexact = kind == AnswerKind::bracket || kind == AnswerKind::stale;
+    exact += kind == AnswerKind::exact ? 1 : 0;
+    decided += kind == AnswerKind::decided ? 1 : 0;
+    within_tolerance += kind == AnswerKind::within_tolerance ? 1 : 0;
+    bracket += kind == AnswerKind::bracket ? 1 : 0;
+    stale += kind == AnswerKind::stale ? 1 : 0;
+    inexact_run_ = is_inexact ? inexact_run_ + 1 : 0;
+    longest_inexact_run = std::max(longest_inexact_run, inexact_run_);
+    tolerated_max_m = std::max(tolerated_max_m, tolerated_m);
+    width_max_m = is_inexact ? std::max(width_max_m, width_m) : width_max_m;
+}
+
+void ForceCounts::add(const ToolOutput& output, const ToolForce& force) noexcept
+{
+    add_sent(force, output.in_contact);
+    contact_frames += output.in_contact ? 1 : 0;
+    force_frames += is_felt(output, force) ? 1U : 0U;
+    frozen_frames += output.frozen ? 1 : 0;
+    held_back_frames += output.held_back ? 1 : 0;
+    lag_max_m = std::max(lag_max_m, output.lag_m);
+    twist_max_rad = std::max(twist_max_rad, force.twist_rad);
+    guide_max_n = std::max(guide_max_n, force.own_n);
+    load_max_n = std::max(load_max_n, force.load_n.norm());
+    load_max_nm = std::max(load_max_nm, force.load_nm.norm());
+    if (has_action(force.push.actions, ForceAction::stiffness_capped))
+    {
+        softest_wall_n_per_m = std::min(softest_wall_n_per_m, force.push.stiffness_n_per_m);
+    }
+    surplus_max_j = std::max({surplus_max_j, force.push.surplus_j, force.turn.surplus_j});
+    for (std::size_t bit = 0; bit < kForceActions; ++bit)
+    {
+        const auto action = static_cast<ForceAction>(1U << bit);
+        const ForceAction actions = force.push.actions | force.turn.actions;
+        conditioned[bit] += has_action(actions, action) ? 1U : 0U;
+    }
+}
+
+/// The end of a run, and a force that goes off, damp the motion, in the air too: that is no force
+/// of what was touched, and going there and back no step of one.
+void ForceCounts::add_sent(const ToolForce& force, bool in_contact) noexcept
+{
+    const bool is_damping_air = force.causes != ForceOff::none && !in_contact;
+    if (!is_damping_air && !has_cause(force.causes, ForceOff::software))
+    {
+        max_n = std::max(max_n, force.push.force_n.norm());
+        torque_max_nm = std::max(torque_max_nm, force.turn.force_n.norm());
+        if (!damped_air_)
+        {
+            max_step_n = std::max(max_step_n, (force.push.force_n - last_n_).norm());
+            torque_max_step_nm =
+                std::max(torque_max_step_nm, (force.turn.force_n - last_nm_).norm());
+        }
+    }
+    damped_air_ = is_damping_air;
+    last_n_ = force.push.force_n;
+    last_nm_ = force.turn.force_n;
+}
+
+void WorkRange::add(std::uint32_t work, bool is_first) noexcept
+{
+    min = is_first ? work : std::min(min, work);
+    max = std::max(max, work);
+    sum += work;
+}
+
+RunStatistics::RunStatistics(std::size_t tool_count, std::size_t object_count,
+                             std::size_t model_count, Duration period)
+    : paths(tool_count)
+    , deadlines(period)
+    , objects(object_count)
+    , pairs(tool_count * object_count)
+    , tools(tool_count)
+    , models(model_count)
+{
+}
+
+void RunStatistics::add(const FrameOutput& output, std::span<const ToolForce> forces,
+                        const CycleMeasures& measures) noexcept
+{
+    const std::uint64_t index = frames++;
+    for (std::size_t i = 0; i < kStages; ++i)
+    {
+        stages[i].record(measures.stage[i]);
+    }
+    frame.record(measures.frame);
+    cpu.record(measures.cpu);
+    wake.record(measures.cycle.wake_lateness);
+    add_point(measures, forces, add_answers(output));
+    add_work(output);
+    add_scene(output);
+    add_work_budget(output.work, measures);
+    deadlines.add(index, measures, output.work.budget.used(),
+                  is_over_budget(output.work, measures.budgets));
+    bool any_contact = false;
+    bool any_force = false;
+    bool any_held_back = false;
+    for (std::size_t i = 0; i < tools.size(); ++i)
+    {
+        tools[i].add(output.tools[i], forces[i]);
+        const Vec3& place_m = output.tools[i].proxy_m;
+        paths[i].add({{static_cast<float>(place_m.x()), static_cast<float>(place_m.y()),
+                       static_cast<float>(place_m.z())},
+                      static_cast<float>(forces[i].push.force_n.norm())});
+        any_contact = any_contact || output.tools[i].in_contact;
+        any_force = any_force || is_felt(output.tools[i], forces[i]);
+        any_held_back = any_held_back || output.tools[i].held_back;
+    }
+    contact_frames += any_contact ? 1 : 0;
+    force_frames += any_force ? 1 : 0;
+    held_back_frames += any_held_back ? 1 : 0;
+    std::copy(output.models.begin(), output.models.end(), models.begin());
+}
+
+double RunStatistics::add_answers(const FrameOutput& output) noexcept
+{
+    AnswerKind worst = AnswerKind::decided;
+    double widest_m = 0.0;
+    double tolerated_m = 0.0;
+    for (const PairOutput& pair : output.pairs)
+    {
+        const double width_m = pair.upper_m - pair.lower_m;
+        const double here_m = pair.kind == AnswerKind::within_tolerance ? pair.tolerated_m : 0.0;
+        pairs[pair.tool * objects + pair.object].add(pair.kind, width_m, here_m);
+        tolerated_m = std::max(tolerated_m, here_m);
+        if (badness(pair.kind) > badness(worst))
+        {
+            worst = pair.kind;
+        }
+        if (badness(pair.kind) > badness(AnswerKind::within_tolerance))
+        {
+            widest_m = std::max(widest_m, width_m);
+        }
+    }
+    answers.add(worst, widest_m, tolerated_m);
+    return widest_m;
+}
+
+void RunStatistics::add_point(const CycleMeasures& measures, std::span<const ToolForce> forces,
+                              double width_m) noexcept
+{
+    SeriesPoint point;
+    for (const ToolForce& force : forces)
+    {
+        point.force_n = std::max(point.force_n, static_cast<float>(force.push.force_n.norm()));
+    }
+    point.width_m = static_cast<float>(width_m);
+    point.frame_us = static_cast<float>(to_us(measures.frame));
+    for (std::size_t i = 0; i < kStages; ++i)
+    {
+        point.stage_us[i] = static_cast<float>(to_us(measures.stage[i]));
+    }
+    series.add(point);
+}
+
+void RunStatistics::add_work(const FrameOutput& output) noexcept
+{
+    splits += output.work.splits;
+    merges += output.work.merges;
+    nodes_visited += output.work.nodes_visited;
+    pages_adopted += output.work.pages_adopted;
+    cache_hits += output.work.cache_hits;
+    cache_misses += output.work.cache_misses;
+    evictions += output.work.evictions;
+    for (std::size_t i = 0; i < kSkips; ++i)
+    {
+        skipped[i] += output.work.skipped.times()[i];
+    }
+    for (std::size_t bit = 0; bit < faults.size(); ++bit)
+    {
+        faults[bit] += (static_cast<std::uint32_t>(output.faults) >> bit) & 1U;
+    }
+}
+
+void RunStatistics::add_scene(const FrameOutput& output) noexcept
+{
+    const SceneOutput& scene = output.scene;
+    objects_now = scene.objects;
+    objects_max = std::max(objects_max, scene.objects);
+    pairs_awake_max = std::max(pairs_awake_max, scene.pairs);
+    crowded_frames += scene.crowded_tools > 0 ? 1 : 0;
+    invisible_wall_frames += scene.walled_tools > 0 ? 1 : 0;
+    scene_walks += scene.walks;
+    shed_pairs += static_cast<std::uint64_t>(
+        std::ranges::count_if(output.pairs, [](const PairOutput& pair) { return pair.is_shed; }));
+    for (std::size_t i = 0; i < kChangeRefusals; ++i)
+    {
+        changes_refused[i] += scene.refused[i];
+    }
+}
+
+void RunStatistics::add_work_budget(const WorkCounters& work,
+                                    const CycleMeasures& measures) noexcept
+{
+    work_allowed.add(measures.budgets.work, frames == 1);
+    work_done.add(work.budget.used(), frames == 1);
+    work_at_floor += measures.is_work_at_floor ? 1 : 0;
+}
+
+bool RunStatistics::is_over_budget(const WorkCounters& work, const Budgets& limits) const noexcept
+{
+    constexpr std::uint32_t kWalks = 2 * kFrameWalks;
+    return work.splits > limits.splits || work.merges > limits.merges ||
+           work.scanned > limits.scanned || work.nodes_visited > kWalks * limits.nodes ||
+           work.triangles_tested > kWalks * limits.triangles ||
+           work.planes_looked_at > kFrameWalks * limits.planes ||
+           work.pages_adopted > limits.pages || work.requests > limits.requests + limits.regions ||
+           work.regions_searched > limits.regions ||
+           work.budget.used() > WorkBudget::most_of(limits.work);
+}
+
+std::vector<std::pair<const char*, LatencyHistogram>> RunStatistics::times() const
+{
+    std::vector<std::pair<const char*, LatencyHistogram>> all;
+    for (std::size_t i = 0; i < kStages; ++i)
+    {
+        all.emplace_back(kStageNames[i], stages[i]);
+    }
+    all.emplace_back("frame", frame);
+    all.emplace_back("cpu", cpu);
+    all.emplace_back("wake", wake);
+    all.emplace_back("response", deadlines.response());
+    return all;
+}
+
+} // namespace tactus::hrtc

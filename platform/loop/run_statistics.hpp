@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/loop/cycle_measures.hpp"
+#include "platform/loop/deadline_account.hpp"
+#include "platform/loop/run_series.hpp"
+#include "platform/machine/latency_histogram.hpp"
+#include "rt_core/math/infinity.hpp"
+#include "rt_core/records/frame_input.hpp"
+#include "rt_core/records/frame_output.hpp"
+#include "rt_core/records/tool_force.hpp"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace tactus::hrtc
+{
+
+/// Answers of frames or of one pair.
+struct AnswerCounts
+{
+    std::uint64_t exact{0};
+    std::uint64_t decided{0};
+    std::uint64_t bracket{0};
+    std::uint64_t stale{0};
+    std::uint64_t within_tolerance{0};
+    std::uint64_t longest_inexact_run{0};
+    double width_max_m{0.0};     ///< Widest bracket of a frame that was open or stale.
+    double tolerated_max_m{0.0}; ///< Of answers within the tolerance.
+
+    void add(AnswerKind kind, double width_m, double tolerated_m) noexcept;
+    [[nodiscard]] std::uint64_t in_all() const noexcept
+    {
+        return exact + decided + within_tolerance + bracket + stale;
+    }
+
+private:
+    std::uint64_t inexact_run_{0};
+};
+
+/// One tool's forces over the run. The largest ones are those before its end, in which forces fade.
+struct ForceCounts
+{
+    double max_n{0.0};
+    double max_step_n{0.0}; ///< Largest |F(k) - F(k - 1)|.
+    double torque_max_nm{0.0};
+    double torque_max_step_nm{0.0}; ///< Likewise.
+    double twist_max_rad{0.0};      ///< Largest angle between device and proxy, in contact.
+    double guide_max_n{0.0};        ///< Largest force that --guide wanted, before it was limited.
+    double load_max_n{0.0};         ///< Largest force that carried a load, not in the others.
+    double load_max_nm{0.0};        ///< Largest torque, likewise.
+    std::uint64_t contact_frames{0};
+    std::uint64_t force_frames{0}; ///< Of those, with a force that went out.
+    std::uint64_t frozen_frames{0};
+    std::uint64_t held_back_frames{0};
+    double lag_max_m{0.0}; ///< ToolOutput::lag_m.
+    /// Of the walls that were softened to what the device may have; infinite when none was.
+    double softest_wall_n_per_m{kInfinity};
+    double surplus_max_j{0.0}; ///< SpringForce::surplus_j, of force or torque.
+    std::array<std::uint64_t, kForceActions> conditioned{}; ///< Frames with each ForceAction.
+
+    void add(const ToolOutput& output, const ToolForce& force) noexcept;
+
+private:
+    void add_sent(const ToolForce& force, bool in_contact) noexcept;
+
+    Vec3 last_n_{0.0, 0.0, 0.0};
+    Vec3 last_nm_{0.0, 0.0, 0.0};
+    bool damped_air_{false}; ///< In the last frame.
+};
+
+/// A number of each frame over the run.
+struct WorkRange
+{
+    std::uint32_t min{0};
+    std::uint32_t max{0};
+    std::uint64_t sum{0};
+
+    void add(std::uint32_t work, bool is_first) noexcept;
+};
+
+/// Everything a run's report is made of. Filled by the haptic thread without allocating; read by
+/// others once the loop has ended.
+class RunStatistics
+{
+public:
+    RunStatistics(std::size_t tools, std::size_t objects, std::size_t models, Duration period);
+
+    /// `forces`: one a tool.
+    void add(const FrameOutput& output, std::span<const ToolForce> forces,
+             const CycleMeasures& measures) noexcept;
+
+    /// All that were measured, by the report's names. Allocates; for once the loop has ended.
+    [[nodiscard]] std::vector<std::pair<const char*, LatencyHistogram>> times() const;
+
+    std::uint64_t frames{0};
+    std::array<LatencyHistogram, kStages> stages;
+    LatencyHistogram frame;
+    LatencyHistogram cpu; ///< Processor time of a frame.
+    LatencyHistogram wake;
+    RunSeries series;
+    std::vector<ToolPath> paths; ///< One a tool.
+    DeadlineAccount deadlines;
+    AnswerCounts answers; ///< By each frame's worst pair.
+    std::size_t objects;  ///< Places for them: one more than their largest number.
+    /// Tool by tool, in each the objects by their numbers; counts while they are near.
+    std::vector<AnswerCounts> pairs;
+    std::vector<ForceCounts> tools;
+    std::vector<ModelOutput> models; ///< Of the last frame; `used_max` covers the run.
+
+    std::uint64_t contact_frames{0};   ///< Frames with some tool in contact.
+    std::uint64_t force_frames{0};     ///< Of those, with a force of it that went out.
+    std::uint64_t held_back_frames{0}; ///< Frames with some tool held back.
+    std::uint64_t splits{0};
+    std::uint64_t merges{0};
+    std::uint64_t nodes_visited{0};
+    std::uint64_t pages_adopted{0};
+    std::uint64_t cache_hits{0};
+    std::uint64_t cache_misses{0};
+    std::uint64_t evictions{0};
+    std::array<std::uint64_t, kSkips> skipped{}; ///< In the order of Skip.
+    std::array<std::uint64_t, 32> faults{};      ///< Frames with each FrameFault bit.
+
+    std::uint32_t objects_now{0}; ///< In the last frame.
+    std::uint32_t objects_max{0};
+    std::uint32_t pairs_awake_max{0};
+    std::uint64_t crowded_frames{0}; ///< With some tool that is not clear as far as it asks.
+    /// With one of them held where it is proven clear.
+    std::uint64_t invisible_wall_frames{0};
+    std::uint64_t shed_pairs{0};  ///< Pairs that were shed, summed over the frames.
+    std::uint64_t scene_walks{0}; ///< BroadPhase's.
+    /// Changes that were not made, in the order of ChangeRefusal.
+    std::array<std::uint64_t, kChangeRefusals> changes_refused{};
+
+    WorkRange work_allowed;         ///< Budgets::work,
+    WorkRange work_done;            ///< and WorkBudget::used().
+    std::uint64_t work_at_floor{0}; ///< Frames for which the least work is more than fits.
+
+private:
+    /// The width of the widest bracket, in m.
+    double add_answers(const FrameOutput& output) noexcept;
+    void add_point(const CycleMeasures& measures, std::span<const ToolForce> forces,
+                   double width_m) noexcept;
+    void add_work(const FrameOutput& output) noexcept;
+    void add_scene(const FrameOutput& output) noexcept;
+    void add_work_budget(const WorkCounters& work, const CycleMeasures& measures) noexcept;
+    [[nodiscard]] bool is_over_budget(const WorkCounters& work,
+                                      const Budgets& limits) const noexcept;
+};
+
+} // namespace tactus::hrtc

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/loop/telemetry_tap.hpp"
+
+#include "platform/loop/touch_forces.hpp"
+#include "rt_core/base/assert.hpp"
+#include "transport/told_frame.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace tactus::hrtc
+{
+
+void TelemetryTap::show(const ShownFrame& frame, const RunStatistics& statistics) noexcept
+{
+    TACTUS_ASSERT(frame.tools.size() <= kMaxTools);
+    TACTUS_ASSERT(frame.output.pairs.size() <= kMaxPairs);
+    news_.frame = statistics.frames;
+    news_.time_ns = frame.start.ns;
+    news_.exact = statistics.answers.exact;
+    news_.decided = statistics.answers.decided;
+    news_.bracket = statistics.answers.bracket;
+    news_.stale = statistics.answers.stale;
+    news_.within_tolerance = statistics.answers.within_tolerance;
+    news_.missed = statistics.deadlines.missed;
+    news_.own_faults = statistics.deadlines.own_faults;
+    news_.machine_late = statistics.deadlines.machine_late;
+    news_.faults_now = static_cast<std::uint32_t>(frame.output.faults);
+    news_.faults_seen |= news_.faults_now;
+    news_.tool_count = static_cast<std::uint32_t>(frame.tools.size());
+    news_.pair_count = static_cast<std::uint32_t>(frame.output.pairs.size());
+    news_.model_count = static_cast<std::uint32_t>(
+        std::min<std::size_t>(frame.output.models.size(), kMaxShownModels));
+    for (std::size_t i = 0; i < frame.tools.size(); ++i)
+    {
+        news_.tools[i] = telemetry_of(frame.tools[i], frame.devices[i], frame.output.tools[i]);
+    }
+    for (std::size_t i = 0; i < news_.model_count; ++i)
+    {
+        news_.models[i] = telemetry_of(frame.output.models[i]);
+    }
+    show_pairs(frame);
+    mailbox_.write(news_);
+}
+
+void TelemetryTap::show_pairs(const ShownFrame& frame) noexcept
+{
+    const std::span<const PairOutput> pairs = frame.output.pairs;
+    std::array<Vec3, kMaxPairs> pushes_n;
+    for (std::size_t begin = 0; begin < pairs.size();) // They are sorted by tools.
+    {
+        const std::uint32_t tool = pairs[begin].tool;
+        std::size_t end = begin + 1;
+        while (end < pairs.size() && pairs[end].tool == tool)
+        {
+            ++end;
+        }
+        const Vec3 push_n = frame.output.tools[tool].in_contact ? Vec3(-frame.devices[tool].sent_n)
+                                                                : Vec3(0.0, 0.0, 0.0);
+        share_push(pairs.subspan(begin, end - begin), frame.radii_m[tool], push_n,
+                   std::span(pushes_n).subspan(begin, end - begin));
+        begin = end;
+    }
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+    {
+        news_.pairs[i] = telemetry_of(pairs[i]);
+        news_.pairs[i].force_n = parts_of(pushes_n[i]);
+    }
+}
+
+} // namespace tactus::hrtc

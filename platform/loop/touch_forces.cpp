@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/loop/touch_forces.hpp"
+
+#include "rt_core/base/assert.hpp"
+#include "rt_core/base/static_vector.hpp"
+#include "rt_core/limits.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace tactus::hrtc
+{
+
+namespace
+{
+
+/// Pairs are measured at the proxy as the frame found it, forces made where it went.
+constexpr double kTouchSlack_m = 1e-3;
+/// More than three planes never hold a proxy; more objects are touched in corners only.
+constexpr std::size_t kMaxTouched = 8;
+constexpr int kRounds = 32;
+
+struct Touched
+{
+    std::size_t pair{0};
+    Vec3 inward{0.0, 0.0, 0.0}; ///< From the tool into the object, of length 1.
+    double push_n{0.0};
+};
+
+using TouchedList = StaticVector<Touched, kMaxTouched>;
+
+/// Where tool and surface are one point nothing tells the normal but the push itself.
+Vec3 inward_of(const PairOutput& pair, const Vec3& push_n) noexcept
+{
+    const Vec3 way_m = pair.nearest_point_m - pair.point_m;
+    const double length_m = way_m.norm();
+    return length_m > kTouchSlack_m * 1e-3 ? Vec3(way_m / length_m) : Vec3(push_n.normalized());
+}
+
+/// Least squares without negative shares, one share at a time (Gauss and Seidel).
+void fit(TouchedList& touched, const Vec3& push_n) noexcept
+{
+    Vec3 left_n = push_n;
+    for (int round = 0; round < kRounds; ++round)
+    {
+        for (Touched& each : touched)
+        {
+            const double better_n = std::max(each.push_n + each.inward.dot(left_n), 0.0);
+            left_n -= (better_n - each.push_n) * each.inward;
+            each.push_n = better_n;
+        }
+    }
+}
+
+} // namespace
+
+void share_push(std::span<const PairOutput> pairs, double radius_m, const Vec3& push_n,
+                std::span<Vec3> pushes_n) noexcept
+{
+    TACTUS_ASSERT(pushes_n.size() == pairs.size());
+    std::ranges::fill(pushes_n, Vec3(0.0, 0.0, 0.0));
+    if (pairs.empty() || push_n == Vec3(0.0, 0.0, 0.0))
+    {
+        return;
+    }
+    TouchedList touched;
+    std::size_t nearest = 0;
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+    {
+        nearest = pairs[i].upper_m < pairs[nearest].upper_m ? i : nearest;
+        const Vec3 inward = inward_of(pairs[i], push_n);
+        if (pairs[i].upper_m <= radius_m + kTouchSlack_m && inward.dot(push_n) > 0.0)
+        {
+            static_cast<void>(touched.try_push_back({i, inward}));
+        }
+    }
+    fit(touched, push_n);
+    double sum_n = 0.0;
+    Vec3 explained_n(0.0, 0.0, 0.0);
+    for (const Touched& each : touched)
+    {
+        sum_n += each.push_n;
+        explained_n += each.push_n * each.inward;
+    }
+    if (!(sum_n > 0.0))
+    {
+        pushes_n[nearest] = push_n;
+        return;
+    }
+    const Vec3 left_n = push_n - explained_n;
+    for (const Touched& each : touched)
+    {
+        pushes_n[each.pair] = each.push_n * each.inward + (each.push_n / sum_n) * left_n;
+    }
+}
+
+} // namespace tactus::hrtc

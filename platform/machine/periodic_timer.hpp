@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/machine/time.hpp"
+#include "rt_core/base/result.hpp"
+#include "transport/base/refusal.hpp"
+
+#include <cstdint>
+
+namespace tactus
+{
+
+/// What the loop knows at the start of a frame.
+struct Cycle
+{
+    /// The grid point this frame belongs to: start + a whole number of periods.
+    MonotonicTime deadline;
+    /// How much later than asked the machine woke us, the worst of this cycle's sleeps and of the
+    /// wait for the deadline. Zero when there was no time for either, so a frame that took too long
+    /// never looks like a late machine.
+    Duration wake_lateness;
+    /// How long after the deadline the frame starts; below one period unless the clock itself
+    /// jumps.
+    Duration start_lateness;
+    /// Whole periods since the last cycle: 1 normally, more after a stall. The frame that follows
+    /// must use it as the true elapsed time.
+    std::uint32_t periods{1};
+};
+
+/// Sums over the timer's life. One stall of k periods is one episode and k missed periods, however
+/// many frames it would have held: count episodes when judging a machine.
+struct TimerCounts
+{
+    std::uint64_t cycles{0};
+    std::uint64_t missed_periods{0};
+    std::uint64_t episodes{0};
+};
+
+/// The beat of the haptic loop, in two steps so that the loop can rehearse its query just before it
+/// is needed:
+///
+///     timer.start(period, margin)
+///     for (;;)
+///         timer.sleep_until_margin()      wakes at deadline - margin, by absolute time
+///         frame.rehearse()
+///         cycle = timer.spin_until_deadline()
+///         frame.run(...)
+///
+/// All deadlines lie on one grid, so lateness never adds up. A frame that starts less than a period
+/// late runs at once; after a longer stall the timer moves to the next grid point, tells how many
+/// periods went by, and never runs the lost frames in a burst.
+///
+/// One thread uses a timer; nothing allocates. The rules live here and a backend gives only three
+/// primitives, so no two machines can differ in them.
+class PeriodicTimer
+{
+public:
+    static constexpr Duration kPeriodMin = microseconds(50); ///< 20 kHz.
+    static constexpr Duration kPeriodMax = milliseconds(1'000);
+
+    virtual ~PeriodicTimer() = default;
+
+    /// The first deadline is one period from now. Starting again forgets the counts.
+    /// `period` must be in [kPeriodMin, kPeriodMax], `margin` in [0, period); others are refused.
+    /// The two calls below come after it (asserted).
+    Result<Done, Refusal> start(Duration period, Duration margin);
+
+    /// Sleeps until `margin` before the deadline. Returns at once when that has passed.
+    void sleep_until_margin() noexcept;
+
+    /// Waits out the margin without giving up the processor. After a stall it sleeps to the new
+    /// grid point first.
+    [[nodiscard]] Cycle spin_until_deadline() noexcept;
+
+    [[nodiscard]] const TimerCounts& counts() const noexcept { return counts_; }
+    [[nodiscard]] Duration period() const noexcept { return period_; }
+
+protected:
+    PeriodicTimer() = default;
+    PeriodicTimer(const PeriodicTimer&) = default;
+    PeriodicTimer& operator=(const PeriodicTimer&) = default;
+
+private:
+    [[nodiscard]] virtual MonotonicTime now() noexcept = 0;
+    /// Returns at `wake` or later, never earlier.
+    virtual void sleep_until(MonotonicTime wake) noexcept = 0;
+    /// As sleep_until(), but keeps the processor; returns the time it stopped at.
+    [[nodiscard]] virtual MonotonicTime spin_until(MonotonicTime deadline) noexcept = 0;
+
+    [[nodiscard]] MonotonicTime wait_out() noexcept;
+    void skip_lost_periods(MonotonicTime time) noexcept;
+    void count_cycle() noexcept;
+
+    Duration period_{};
+    Duration margin_{};
+    MonotonicTime deadline_{};
+    Duration wake_lateness_{};
+    std::uint32_t periods_{1};
+    bool in_episode_{false};
+    TimerCounts counts_{};
+};
+
+} // namespace tactus

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/machine/posix/linux_extras.hpp"
+#include "platform/machine/posix/posix_error.hpp"
+
+#include <cerrno>
+#include <fcntl.h>
+#include <unistd.h>
+
+/// For systems of which nothing is known but that they are POSIX, with /dev/urandom: each thing
+/// else is refused or left out, in the way that callers know from Linux.
+namespace tactus::linux_extras
+{
+
+int pin_calling_thread(int /*cpu*/) noexcept
+{
+    return ENOTSUP;
+}
+
+void keep_calling_thread_off(int /*cpu*/) noexcept {}
+
+void let_calling_thread_use_all() noexcept {}
+
+std::string explain_pin_refusal(int cpu)
+{
+    return "processor " + std::to_string(cpu) +
+           " can't be asked for: this build can't pin threads on this system; leave the choice to "
+           "the system";
+}
+
+std::optional<int> another_cpu(int /*cpu*/) noexcept
+{
+    return std::nullopt;
+}
+
+std::string explain_fifo_refusal(int priority, int error)
+{
+    return "SCHED_FIFO " + std::to_string(priority) + " refused (" + posix::name_of_error(error) +
+           "): " + posix::user_name() + " lacks this system's right to real-time priorities";
+}
+
+int try_to_exceed_lock_limit() noexcept
+{
+    return 0;
+}
+
+std::string explain_lock_refusal(int error)
+{
+    return "mlockall refused (" + posix::name_of_error(error) + "): " + posix::user_name() +
+           " lacks this system's right to lock memory, or there is not enough of it";
+}
+
+void read_fault_and_switch_counts(ThreadUsage& /*usage*/) noexcept {}
+
+void ask_for_huge_pages(std::span<std::byte> /*memory*/) noexcept {}
+
+bool draw_random(std::span<std::byte> bytes) noexcept
+{
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): the C library has no other.
+    const int file = open("/dev/urandom", O_RDONLY | O_CLOEXEC);
+    if (file < 0)
+    {
+        return false;
+    }
+    const ssize_t drawn = read(file, bytes.data(), bytes.size());
+    close(file);
+    return drawn == static_cast<ssize_t>(bytes.size());
+}
+
+AwakeProcessors::AwakeProcessors() noexcept = default;
+AwakeProcessors::~AwakeProcessors() = default;
+
+} // namespace tactus::linux_extras

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/options/file_choice.hpp"
+
+#include "platform/choices/tool_choice.hpp"
+#include "transport/base/files_near.hpp"
+#include "transport/base/printable.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+#include <vector>
+
+namespace tactus::hrtc
+{
+
+namespace
+{
+
+/// A name, and the option that has it.
+struct Named
+{
+    std::string option;
+    std::string name;
+};
+
+std::vector<Named> names_of(const Options& options, const RawOptions& raw)
+{
+    std::vector<Named> all;
+    for (const std::string& model : raw.models)
+    {
+        all.push_back({"--model", model});
+    }
+    if (!options.scene.empty())
+    {
+        all.push_back({"--scene", options.scene});
+    }
+    for (const std::string& text : raw.tools)
+    {
+        const auto tool = parse_tool(text); // What is no tool is refused later.
+        if (tool && !tool.value().mesh_model.empty())
+        {
+            all.push_back({"--tool", tool.value().mesh_model});
+        }
+    }
+    return all;
+}
+
+std::string place_file(const std::string& file, Options& options, RawOptions& raw,
+                       const std::string& commands)
+{
+    if (!is_file_name(file, options.readers))
+    {
+        const std::string shown = printable(file);
+        if (std::error_code code; std::filesystem::is_directory(file, code))
+        {
+            return fmt::format("'{}' is a folder; it has {}", shown, files_in(file, ".spm"));
+        }
+        if (file.ends_with(".rec"))
+        {
+            return fmt::format("'{}' is a recording: --replay {} runs it again", shown, shown);
+        }
+        return std::filesystem::exists(file + ".spm")
+                   ? fmt::format("'{}': the file is called '{}.spm'", shown, shown)
+                   : fmt::format("'{}' is no command ({}) and no model's or scene's file (.spm, "
+                                 ".gltf, .glb); a published model is --model NAME",
+                                 shown, commands);
+    }
+    if (!options.readers.is_scene_name(file))
+    {
+        raw.models.push_back(file);
+        return {};
+    }
+    if (!options.scene.empty())
+    {
+        return fmt::format("'{}': a second scene; one can be touched", printable(file));
+    }
+    options.scene = file;
+    return {};
+}
+
+} // namespace
+
+bool is_file_name(const std::string& text, const FileReaders& readers)
+{
+    return text.find('/') != std::string::npos || text.ends_with(".spm") ||
+           readers.is_mesh_name(text) || readers.is_scene_name(text);
+}
+
+std::string take_files(Options& options, RawOptions& raw, const std::string& commands)
+{
+    for (const std::string& file : raw.files)
+    {
+        if (std::string fault = place_file(file, options, raw, commands); !fault.empty())
+        {
+            return fault;
+        }
+    }
+    const std::vector<Named> all = names_of(options, raw);
+    for (const Named& named : all)
+    {
+        if (options.readers.is_mesh_name(named.name))
+        {
+            return fmt::format("{}: {}", named.option,
+                               options.readers.mesh_is_no_model(named.name));
+        }
+    }
+    const bool are_files = raw.transport == "file";
+    const auto pinned = std::ranges::find_if(
+        all, [](const Named& named) { return named.name.find(".spm@") != std::string::npos; });
+    if (are_files && pinned != all.end())
+    {
+        return fmt::format("{}: '{}': a hash is of published models; a file is given without",
+                           pinned->option, printable(pinned->name));
+    }
+    if (raw.transport)
+    {
+        return {};
+    }
+    const auto is_file = [&options](const Named& named)
+    { return is_file_name(named.name, options.readers); };
+    const auto file = std::ranges::find_if(all, is_file);
+    const auto published = std::ranges::find_if_not(all, is_file);
+    if (file != all.end() && published != all.end())
+    {
+        return fmt::format(
+            "{}: '{}' is a file and '{}' a published name; all come from files ('{}' "
+            "as '{}.spm') or by their names",
+            file->option, printable(file->name), printable(published->name),
+            printable(published->name), printable(published->name));
+    }
+    raw.transport = file != all.end() ? "file" : "dds";
+    return {};
+}
+
+} // namespace tactus::hrtc

@@ -1,0 +1,718 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/options/options.hpp"
+
+#include "platform/export/frame_export.hpp"
+#include "platform/options/device_key.hpp"
+#include "platform/options/device_limits_text.hpp"
+#include "platform/options/file_choice.hpp"
+#include "platform/options/kernel_choice.hpp"
+#include "platform/options/option_table.hpp"
+#include "platform/program/command_line.hpp"
+#include "rt_core/limits.hpp"
+#include "transport/base/counted.hpp"
+#include "transport/base/printable.hpp"
+#include "transport/base/program_log.hpp"
+#include "transport/material_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <sstream>
+
+namespace tactus::hrtc
+{
+
+namespace
+{
+
+constexpr std::size_t kDeviceFaultsMax = 64; ///< Each reading looks at all of them.
+
+/// As an option file. Options without a value are shown as comments: no file could set them to
+/// nothing. Files that stand alone on the command line are what they came to.
+std::string option_file(const CommandLine& line, const Options& options, const RawOptions& raw)
+{
+    std::istringstream lines(line.option_file_text());
+    std::string text;
+    for (std::string entry; std::getline(lines, entry);)
+    {
+        if (entry.starts_with("model=") && !raw.models.empty())
+        {
+            entry = fmt::format("model=[\"{}\"]", fmt::join(raw.models, "\", \""));
+        }
+        else if (entry.starts_with("scene=") && !options.scene.empty())
+        {
+            entry = fmt::format("scene=\"{}\"", options.scene);
+        }
+        text += (entry.ends_with("=\"\"") ? "# " : "") + entry + '\n';
+    }
+    return text;
+}
+
+/// Everything that a run could be told is in the recording. Empty when all is well.
+std::string check_replay(const CommandLine& line)
+{
+    for (const std::string& name : line.given())
+    {
+        if (name != "--replay" && name != "--kernels" && name != "--export" &&
+            name != "--log-level" && name != "--json-log")
+        {
+            return "--replay: takes --kernels, --export and no other option; " + name +
+                   " was given";
+        }
+    }
+    return {};
+}
+
+std::string check_exports(const Options& options)
+{
+    for (const std::string& path : options.export_paths)
+    {
+        if (options.replay_path.empty())
+        {
+            return "--export: needs --replay";
+        }
+        if (!is_export_name(path))
+        {
+            return fmt::format("--export: '{}' ends neither in .csv nor in .jsonl or .mcap",
+                               printable(path));
+        }
+        if (std::ranges::count(options.export_paths, path) > 1)
+        {
+            return fmt::format("--export: '{}' is given twice", printable(path));
+        }
+        if (path == options.replay_path)
+        {
+            return "--export: must be another file than --replay";
+        }
+    }
+    return "";
+}
+
+std::string check_files(const CommandLine& line, const Options& options)
+{
+    for (const auto& [name, path] :
+         {std::pair("--record", &options.record_path), std::pair("--replay", &options.replay_path),
+          std::pair("--trace", &options.trace_path),
+          std::pair("--histograms", &options.histograms_folder)})
+    {
+        if (line.is_given(name) && path->empty())
+        {
+            return std::string(name) + ": a file's name is needed";
+        }
+    }
+    if (const std::string fault = check_exports(options); !fault.empty())
+    {
+        return fault;
+    }
+    for (const std::string& path : options.report_paths)
+    {
+        if (path.empty())
+        {
+            return "--report: a file's name is needed";
+        }
+        if (!path.ends_with(".json") && !is_page_name(path))
+        {
+            return fmt::format("--report: '{}' ends neither in .json nor, for a page, in .html",
+                               printable(path));
+        }
+        if (std::ranges::count(options.report_paths, path) > 1)
+        {
+            return fmt::format("--report: '{}' is given twice", printable(path));
+        }
+        for (const auto& [name, other] : {std::pair("--record", &options.record_path),
+                                          std::pair("--trace", &options.trace_path)})
+        {
+            if (path == *other)
+            {
+                return fmt::format("{}: must be another file than --report", name);
+            }
+        }
+    }
+    if (!options.trace_path.empty() && options.trace_path == options.record_path)
+    {
+        return "--trace: must be another file than --record";
+    }
+    return "";
+}
+
+/// Each --model is an object; what is placed beyond them shows the last one again. A model that is
+/// named twice is one model of two objects. Empty when all is well.
+std::string check_models(Options& options, const RawOptions& raw)
+{
+    if (!options.scene.empty())
+    {
+        if (!raw.models.empty() || !raw.places.empty())
+        {
+            return "--scene: takes the place of --model and --place";
+        }
+        if (std::string fault = options.scene_materials.take(raw.materials); !fault.empty())
+        {
+            return fault;
+        }
+        if (raw.transport == "file")
+        {
+            return "";
+        }
+        const auto selector = parse_selector(options.scene);
+        return !selector               ? "--scene: " + selector.error().text
+               : selector.value().hash ? "--scene: a hash is of models; a scene has a NAME or "
+                                         "NAME@SERVER"
+                                       : "";
+    }
+    if (raw.models.empty())
+    {
+        return "a model is required: hrtc FILE.spm, or --model NAME of one that is published; see "
+               "--help";
+    }
+    const std::size_t objects = std::max(raw.models.size(), raw.places.size());
+    if (objects > kMaxObjects)
+    {
+        return fmt::format("--place: {} objects; at most {}", objects, kMaxObjects);
+    }
+    if (raw.materials.size() > objects)
+    {
+        return fmt::format("--material: {} given for {}", raw.materials.size(),
+                           counted(objects, "object"));
+    }
+    for (std::size_t i = 0; i < objects; ++i)
+    {
+        const std::string& name = raw.models[std::min(i, raw.models.size() - 1)];
+        const auto known = std::ranges::find(options.models, name);
+        options.objects.emplace_back().model =
+            static_cast<std::size_t>(known - options.models.begin());
+        if (known == options.models.end())
+        {
+            options.models.push_back(name);
+        }
+    }
+    if (options.models.size() > kMaxModels)
+    {
+        return fmt::format("--model: {} models; at most {}", options.models.size(), kMaxModels);
+    }
+    if (options.objects_max != 0 && options.objects_max < objects)
+    {
+        return fmt::format("--objects: {}; {} are there from the start", options.objects_max,
+                           objects);
+    }
+    return {};
+}
+
+/// Where the objects stand. Empty when all is well.
+std::string check_places(Options& options, const RawOptions& raw)
+{
+    for (std::size_t i = 0; i < raw.places.size(); ++i)
+    {
+        const auto place = parse_placement(raw.places[i]);
+        if (!place)
+        {
+            return "--place: " + place.error().text;
+        }
+        options.objects[i].place = place.value();
+        options.objects[i].has_place = true;
+    }
+    return {};
+}
+
+/// How they feel. Empty when all is well.
+std::string check_materials(Options& options, const RawOptions& raw)
+{
+    for (std::size_t i = 0; i < raw.materials.size() && options.scene.empty(); ++i)
+    {
+        const auto material = parse_material(raw.materials[i]);
+        if (const std::size_t colon = raw.materials[i].find(':'); colon != std::string::npos)
+        {
+            return fmt::format("--material: '{}': only a --scene's objects have names; here "
+                               "materials are in the objects' order: '{}'?",
+                               printable(raw.materials[i]),
+                               printable(raw.materials[i].substr(colon + 1)));
+        }
+        if (!material)
+        {
+            return "--material: " + material.error().text;
+        }
+        options.objects[i].material = material.value();
+        options.objects[i].has_material = true;
+    }
+    for (std::size_t i = raw.models.size(); i < options.objects.size(); ++i)
+    {
+        if (i >= raw.materials.size())
+        {
+            const PlacedObject& last = options.objects[raw.models.size() - 1];
+            options.objects[i].material = last.material;
+            options.objects[i].has_material = last.has_material;
+        }
+    }
+    return {};
+}
+
+/// Empty when all is well.
+std::string check_tools(Options& options, const RawOptions& raw)
+{
+    if (raw.tools.size() > kMaxTools)
+    {
+        return fmt::format("--tool: at most {} tools", kMaxTools);
+    }
+    if (raw.tool_count && !raw.tools.empty() && *raw.tool_count != raw.tools.size())
+    {
+        return fmt::format("--tools: {}, but --tool is given {}", *raw.tool_count,
+                           counted(raw.tools.size(), "time"));
+    }
+    options.tools = raw.tools.empty() ? raw.tool_count.value_or(1) : raw.tools.size();
+    for (const std::string& text : raw.tools)
+    {
+        auto tool = parse_tool(text);
+        if (!tool)
+        {
+            return "--tool: " + tool.error().text;
+        }
+        options.tool_choices.push_back(std::move(tool).value());
+    }
+    const auto is_ball = [](const ToolChoice& tool)
+    { return std::holds_alternative<PointCore>(tool.core) && tool.hull_file.empty(); };
+    if (options.smooth_m > 0.0 && !options.tool_choices.empty() &&
+        std::ranges::none_of(options.tool_choices, is_ball))
+    {
+        return "--smooth: no --tool is a point or a sphere, and others feel each facet";
+    }
+    return {};
+}
+
+/// After the tools. Empty when all is well.
+std::string check_tool_masses(Options& options, const RawOptions& raw)
+{
+    if (raw.tool_masses.size() > options.tools)
+    {
+        return fmt::format("--tool-mass: {} given for {}", raw.tool_masses.size(),
+                           counted(options.tools, "tool"));
+    }
+    for (const std::string& text : raw.tool_masses)
+    {
+        const auto load = parse_tool_mass(text);
+        if (!load)
+        {
+            return "--tool-mass: " + load.error().text;
+        }
+        options.tool_loads.push_back(load.value());
+    }
+    return {};
+}
+
+/// After the tools. Empty when all is well.
+std::string check_guides(Options& options, const RawOptions& raw)
+{
+    if (raw.guides.size() > options.tools)
+    {
+        return fmt::format("--guide: {} given for {}", raw.guides.size(),
+                           counted(options.tools, "tool"));
+    }
+    for (const std::string& text : raw.guides)
+    {
+        if (text == "none")
+        {
+            options.guides.emplace_back();
+            continue;
+        }
+        auto guide = parse_guide(text);
+        if (!guide)
+        {
+            return "--guide: " + guide.error().text;
+        }
+        options.guides.emplace_back(std::move(guide).value());
+    }
+    return {};
+}
+
+/// Where the devices are in the world. Empty when all is well.
+std::string check_device_frames(Options& options, const RawOptions& raw)
+{
+    for (std::size_t i = 0; i < raw.device_frames.size(); ++i)
+    {
+        const auto frame = parse_placement(raw.device_frames[i]);
+        if (!frame)
+        {
+            return "--device-frame: " + frame.error().text;
+        }
+        if (options.devices[i].kind == DeviceKind::simulated ||
+            options.devices[i].kind == DeviceKind::replay)
+        {
+            return "--device-frame: a simulated or recorded hand is in the world already";
+        }
+        options.devices[i].frame = frame.value();
+    }
+    return {};
+}
+
+/// Of those that don't tell them: tools without a --device have a simulated one. Empty when all is
+/// well.
+std::string check_device_limits(Options& options, const RawOptions& raw)
+{
+    std::size_t device = 0;
+    for (const std::string& text : raw.device_limits)
+    {
+        while (device < options.devices.size() &&
+               options.devices[device].kind != DeviceKind::simulated &&
+               options.devices[device].kind != DeviceKind::dhd)
+        {
+            ++device;
+        }
+        if (device == options.devices.size() && device < options.tools)
+        {
+            options.devices.emplace_back();
+        }
+        if (device == options.devices.size())
+        {
+            return fmt::format("--device-limits: '{}': no sim or dhd device is left; others tell "
+                               "their own",
+                               printable(text));
+        }
+        if (const std::string fault = set_device_limits(text, options.devices[device].limits);
+            !fault.empty())
+        {
+            return "--device-limits: " + fault;
+        }
+        ++device;
+    }
+    return {};
+}
+
+/// Empty when all is well.
+std::string check_device_key(Options& options, const RawOptions& raw)
+{
+    const bool is_of_use =
+        !raw.device_key || std::ranges::any_of(options.devices, [](const DeviceChoice& device)
+                                               { return device.kind == DeviceKind::udp; });
+    return is_of_use ? "" : "--device-key: there is no udp device";
+}
+
+/// For all devices that are driven over datagrams. Once the options are right: a file that isn't is
+/// no wrong usage. Empty when all is well.
+std::string take_device_key(Options& options, const RawOptions& raw)
+{
+    if (!raw.device_key)
+    {
+        return {};
+    }
+    const auto seal = read_device_key(*raw.device_key);
+    if (!seal)
+    {
+        return seal.error().text;
+    }
+    for (DeviceChoice& device : options.devices)
+    {
+        device.seal = device.kind == DeviceKind::udp ? seal.value() : nullptr;
+    }
+    return {};
+}
+
+/// After the tools: each device moves one. Empty when all is well.
+std::string check_devices(Options& options, const RawOptions& raw)
+{
+    if (raw.devices.size() > options.tools)
+    {
+        return fmt::format("--device: {} given for {}", raw.devices.size(),
+                           counted(options.tools, "tool"));
+    }
+    if (raw.device_frames.size() > raw.devices.size())
+    {
+        return fmt::format("--device-frame: {} given for {} of --device", raw.device_frames.size(),
+                           raw.devices.size());
+    }
+    for (const std::string& text : raw.devices)
+    {
+        auto device = parse_device(text);
+        if (!device)
+        {
+            return "--device: " + device.error().text;
+        }
+        options.devices.push_back(std::move(device).value());
+    }
+    for (const auto check : {check_device_limits, check_device_key, check_device_frames})
+    {
+        if (std::string fault = check(options, raw); !fault.empty())
+        {
+            return fault;
+        }
+    }
+    return {};
+}
+
+/// What is said of simulated devices only. Empty when all is well.
+std::string check_simulated(Options& options, const RawOptions& raw)
+{
+    if (raw.device_faults.size() > kDeviceFaultsMax)
+    {
+        return fmt::format("--device-fault: at most {} faults", kDeviceFaultsMax);
+    }
+    for (const std::string& text : raw.device_faults)
+    {
+        const std::optional<DeviceFault> fault = parse_device_fault(text);
+        if (!fault)
+        {
+            return fmt::format("--device-fault: '{}' is not {}", printable(text),
+                               kDeviceFaultForms);
+        }
+        options.device_faults.push_back(*fault);
+    }
+    if (raw.motions.size() > options.tools)
+    {
+        return fmt::format("--motion: {} given for {}", raw.motions.size(),
+                           counted(options.tools, "tool"));
+    }
+    for (const std::string& text : raw.motions)
+    {
+        const std::size_t colon = std::min(text.find(':'), text.size());
+        const std::optional<MotionKind> motion = motion_named(text.substr(0, colon));
+        if (!motion || colon + 1 == text.size())
+        {
+            return fmt::format("--motion: '{}' is not {}, perhaps with :OBJECT behind it",
+                               printable(text), kMotionNames);
+        }
+        options.hands.push_back(
+            {*motion, colon < text.size() ? text.substr(colon + 1) : std::string()});
+    }
+    const bool has_others_only =
+        options.devices.size() == options.tools &&
+        std::ranges::none_of(options.devices, [](const DeviceChoice& device)
+                             { return device.kind == DeviceKind::simulated; });
+    if (has_others_only && (!raw.motions.empty() || !raw.device_faults.empty()))
+    {
+        return fmt::format("{}: there is no simulated device",
+                           !raw.motions.empty() ? "--motion" : "--device-fault");
+    }
+    return {};
+}
+
+/// Whether our name can be that of a controller, and the models' those of published ones. Empty
+/// when all is well.
+std::string check_names(const CommandLine& line, const Options& options)
+{
+    if (line.is_given("--name") && !is_valid_name(options.name))
+    {
+        return fmt::format("--name: '{}' is not {}", printable(options.name), kNameForm);
+    }
+    if (options.transport == TransportKind::file)
+    {
+        return {};
+    }
+    for (const std::string& model : options.models)
+    {
+        if (const auto selector = parse_selector(model); !selector)
+        {
+            return "--model: " + selector.error().text;
+        }
+    }
+    for (const ToolChoice& tool : options.tool_choices)
+    {
+        if (const auto selector = parse_selector(tool.mesh_model);
+            !tool.mesh_model.empty() && !selector)
+        {
+            return "--tool: " + selector.error().text;
+        }
+    }
+    return {};
+}
+
+/// Empty when all is well.
+std::string take_failover(Options& options, const RawOptions& raw)
+{
+    if (!raw.failover.empty() && options.transport == TransportKind::file)
+    {
+        return "--failover: files have no server that could be gone";
+    }
+    for (const std::string& server : raw.failover)
+    {
+        if (!is_valid_server(server))
+        {
+            return fmt::format("--failover: '{}' is no server, MACHINE[:PROCESS] or cert: and 12 "
+                               "digits of 0-9 a-f, nor any",
+                               printable(server));
+        }
+        if (server == "any")
+        {
+            options.failover.any = true;
+        }
+        else
+        {
+            options.failover.servers.push_back(server);
+        }
+    }
+    return {};
+}
+
+/// Memory and work of a frame. Empty when all is well.
+std::string check_budgets(const CommandLine& line, Options& options)
+{
+    if (line.is_given("--cache-mib") && options.cache_mib >= options.pool_mib)
+    {
+        return "--cache-mib: must be less than --pool-mib";
+    }
+    const double period_us = 1e6 / static_cast<double>(options.rate_hz);
+    if (options.frame_budget_us && *options.frame_budget_us >= period_us)
+    {
+        return fmt::format("--frame-budget-us: must be less than the period of {} us", period_us);
+    }
+    const std::uint32_t times = options.work_times();
+    const double least_us = 1e-3 * Budgets::least_work(times) / times;
+    if (options.frame_budget_us && *options.frame_budget_us < least_us)
+    {
+        return fmt::format(
+            "--frame-budget-us: a tool that is a hull or a mesh needs at least {} us", least_us);
+    }
+    if (options.frame_budget_us && !line.is_given("--splits"))
+    {
+        options.splits = kMaxSplitsPerFrame;
+    }
+    return {};
+}
+
+/// Only what the program itself moves and reads can wait for it. Empty when all is well.
+std::string check_virtual_time(Options& options, const RawOptions& raw)
+{
+    if (!options.virtual_time)
+    {
+        return {};
+    }
+    if (options.transport != TransportKind::file)
+    {
+        return "--virtual-time: takes models from files; hosts keep to the time of day";
+    }
+    if (std::ranges::any_of(
+            options.devices, [](const DeviceChoice& device)
+            { return device.kind != DeviceKind::simulated && device.kind != DeviceKind::replay; }))
+    {
+        return "--virtual-time: takes devices that are simulated or recorded; others keep to the "
+               "time of day";
+    }
+    if (!options.trace_path.empty() || !options.histograms_folder.empty())
+    {
+        return fmt::format("--virtual-time: takes no time that {} could tell of",
+                           options.trace_path.empty() ? "--histograms" : "--trace");
+    }
+    // What --print-config shows of --priority is no wish.
+    const char* of_real_time = raw.cpu                      ? "--cpu"
+                               : options.supervisor_periods ? "--supervisor-periods"
+                               : options.thread.priority != RtThreadOptions{}.priority
+                                   ? "--priority"
+                                   : nullptr;
+    if (of_real_time != nullptr)
+    {
+        return fmt::format("--virtual-time: there is no real-time thread that {} could be for",
+                           of_real_time);
+    }
+    options.thread.is_realtime = false;
+    options.thread.lock_memory = false;
+    options.thread.processors_awake = false;
+    return {};
+}
+
+/// Empty when all is well.
+std::string check_kernels(Options& options, const RawOptions& raw)
+{
+    if (!raw.kernels)
+    {
+        return {};
+    }
+    const auto chosen = choose_kernels(*raw.kernels, available_kernels());
+    if (!chosen)
+    {
+        return chosen.error().text;
+    }
+    options.kernels = chosen.value();
+    return {};
+}
+
+/// What one option alone can't tell. Empty when all is well.
+std::string check_together(const CommandLine& line, Options& options, RawOptions& raw,
+                           const std::string& commands)
+{
+    if (const std::string fault = check_files(line, options); !fault.empty())
+    {
+        return fault;
+    }
+    if (const std::string fault = check_kernels(options, raw); !fault.empty())
+    {
+        return fault;
+    }
+    if (!options.replay_path.empty())
+    {
+        return check_replay(line);
+    }
+    if (const std::string fault = take_files(options, raw, commands); !fault.empty())
+    {
+        return fault;
+    }
+    for (const auto check : {check_models, check_places, check_materials, check_tools,
+                             check_tool_masses, check_guides, check_devices, check_simulated})
+    {
+        if (const std::string fault = check(options, raw); !fault.empty())
+        {
+            return fault;
+        }
+    }
+    if (const std::string fault = check_budgets(line, options); !fault.empty())
+    {
+        return fault;
+    }
+    options.prediction = static_cast<Prediction>(
+        std::ranges::find(kPredictionNames, raw.prediction) - kPredictionNames.begin());
+    options.transport = raw.transport == "file" ? TransportKind::file : TransportKind::dds;
+    const bool is_shown = line.is_given("--domain") && !options.virtual_time;
+    options.is_watched = options.transport == TransportKind::dds || is_shown;
+    if (line.is_given("--domain") && !options.is_watched)
+    {
+        log_message(LogLevel::info, "hrtc", "note: --domain has no use in virtual time");
+    }
+    if (const std::string fault = check_virtual_time(options, raw); !fault.empty())
+    {
+        return fault;
+    }
+    if (std::string fault = take_failover(options, raw); !fault.empty())
+    {
+        return fault;
+    }
+    return options.is_watched ? check_names(line, options) : "";
+}
+
+} // namespace
+
+bool is_page_name(const std::string& path)
+{
+    return path.ends_with(".html");
+}
+
+std::variant<Options, int> parse_options(int argc, char** argv, const CommandForm& form)
+{
+    CommandLine line(form.name, form.description);
+    Options options;
+    options.duration_s = form.duration_s;
+    options.readers = form.readers;
+    RawOptions raw;
+    declare_options(line, options, raw, form);
+    if (const std::optional<int> code = line.parse(argc, argv))
+    {
+        return *code;
+    }
+    if (const std::string fault = check_together(line, options, raw, form.commands); !fault.empty())
+    {
+        return line.fail(fault, kExitUsage);
+    }
+    if (const std::string fault = take_device_key(options, raw); !fault.empty())
+    {
+        return line.fail(fault);
+    }
+    options.thread.cpu = raw.cpu;
+    options.follows_poses = !raw.ignores_poses;
+    options.shows_front = !raw.hides_front;
+    options.static_when_it_fits = !raw.refines_always;
+    options.as_file = option_file(line, options, raw);
+    if (raw.prints_config)
+    {
+        fmt::print("{}", options.as_file);
+        return std::fflush(stdout) == 0 ? kExitDone : line.fail("the options can't be written");
+    }
+    return options;
+}
+
+} // namespace tactus::hrtc

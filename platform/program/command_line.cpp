@@ -1,0 +1,542 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/program/command_line.hpp"
+
+#include "transport/base/nearest_word.hpp"
+#include "transport/base/program_log.hpp"
+#include "transport/base/read_file.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace tactus
+{
+
+namespace
+{
+
+/// The library ends some messages with a line end and uses several lines for lists.
+std::string on_one_line(std::string text)
+{
+    while (!text.empty() && text.back() == '\n')
+    {
+        text.pop_back();
+    }
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    return text;
+}
+
+std::string trimmed(const std::string& text)
+{
+    const std::size_t first = text.find_first_not_of(" \t");
+    return first == std::string::npos
+               ? ""
+               : text.substr(first, text.find_last_not_of(" \t\r") + 1 - first);
+}
+
+/// A file of options has no more bytes.
+constexpr std::uintmax_t kOptionFileMost = 1ULL << 20;
+
+/// Before the library opens it: a pipe or a device may never end. Throws the reason.
+std::string check_option_file(const std::string& path)
+{
+    if (const auto bytes = read_file(path, kOptionFileMost); !bytes)
+    {
+        throw CLI::FileError(fmt::format("--config: {}: {}", path, bytes.error().text));
+    }
+    return {};
+}
+
+struct FilePlace
+{
+    std::string text;    ///< FILE:LINE, or FILE where no line was found.
+    bool is_pair{false}; ///< The line is KEY = VALUE.
+};
+
+/// The first line that has this key, or all of whose text ends in it.
+FilePlace place_of(const std::string& key, const std::string& path)
+{
+    std::ifstream file(path);
+    int number = 0;
+    for (std::string line; std::getline(file, line);)
+    {
+        ++number;
+        const std::size_t equals = line.find('=');
+        const std::string name = trimmed(line.substr(0, equals));
+        if (name == key || name == "[" + key + "]" || name.ends_with(" " + key))
+        {
+            return {fmt::format("{}:{}", path, number), name == key && equals != line.npos};
+        }
+    }
+    return {path};
+}
+
+/// A key that is shown: another file's line, a password's for instance, is none.
+bool is_like_a_name(const std::string& key)
+{
+    constexpr std::size_t kLongest = 32;
+    const auto is_part = [](char c)
+    { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' || c == '_'; };
+    return key.size() <= kLongest && std::ranges::all_of(key, is_part);
+}
+
+/// The text without the value that it quotes, which a file may hold by mistake.
+std::string without_value(const std::string& text)
+{
+    const std::size_t first = text.find('\'');
+    const std::size_t last = text.rfind('\'');
+    return first == last ? text : text.substr(0, first + 1) + "..." + text.substr(last);
+}
+
+/// The option's name, without its dashes, that is most like the key; empty when none is.
+std::string nearest_name(const CLI::App& app, const std::string& key, bool is_in_file)
+{
+    std::vector<std::string_view> names;
+    for (const CLI::Option* option : app.get_options())
+    {
+        if (option->get_configurable() || !is_in_file)
+        {
+            names.insert(names.end(), option->get_lnames().begin(), option->get_lnames().end());
+        }
+    }
+    return nearest_word(key, names);
+}
+
+/// The library's own words for a key that no option has end in the key, and in "++" behind the name
+/// of a section.
+std::string unknown_key(const CLI::App& app, const CLI::ConfigError& error)
+{
+    std::string key = error.what();
+    key = on_one_line(key.substr(key.rfind(' ') + 1));
+    const auto path = app.get_config_ptr()->as<std::string>();
+    const std::size_t section = key.find(".++");
+    if (section != std::string::npos)
+    {
+        key.resize(section);
+        return fmt::format("--config: {}: begins a section; there are none",
+                           place_of(key, path).text);
+    }
+    const FilePlace place = place_of(key, path);
+    if (!place.is_pair || !is_like_a_name(key))
+    {
+        return fmt::format("--config: {}: a line is KEY = VALUE", place.text);
+    }
+    const std::string nearest = nearest_name(app, key, true);
+    return fmt::format("--config: {}: no option is called '{}'; {}", place.text, key,
+                       nearest.empty() ? "see --help" : "'" + nearest + "'?");
+}
+
+/// The first word that no option took, an option's before others.
+std::string unknown_word(const CLI::App& app)
+{
+    const std::vector<std::string> words = app.remaining();
+    const auto option = std::ranges::find_if(words, [](const std::string& word)
+                                             { return word.size() > 1 && word[0] == '-'; });
+    if (option == words.end())
+    {
+        return fmt::format("'{}': nothing takes this word; see --help", words.front());
+    }
+    const std::string name = option->substr(0, option->find('='));
+    const std::string letters = name.substr(std::min(name.find_first_not_of('-'), name.size()));
+    const std::string nearest = letters.empty() ? "" : nearest_name(app, letters, false);
+    return fmt::format("{}: no option is called so; {}", name,
+                       nearest.empty() ? "see --help" : "--" + nearest + "?");
+}
+
+/// The library's own words begin with the option's name, and go on with how many values it had.
+std::string wrong_count(const CLI::ArgumentMismatch& error)
+{
+    const std::string_view text = error.what();
+    const std::string_view name = text.substr(0, text.find(':'));
+    return fmt::format("{}: {}; see --help", name,
+                       text.find("At Most") == std::string_view::npos ? "a value is missing"
+                                                                      : "is given twice");
+}
+
+/// The library's own words have the name behind a colon, and the value behind a '='.
+std::string wrong_form(const CLI::ConversionError& error)
+{
+    const std::string_view text = error.what();
+    const std::size_t name = text.find("--");
+    return fmt::format("{}: a value isn't what it takes; see --help",
+                       text.substr(std::min(name, text.size()), text.find(' ', name) - name));
+}
+
+/// "a, b or c".
+std::string either(const std::vector<std::string>& names)
+{
+    std::string text;
+    for (std::size_t i = 0; i < names.size(); ++i)
+    {
+        text += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i];
+    }
+    return text;
+}
+
+/// Breaks lines between words, where they would be longer.
+std::string wrapped(const std::string& text, std::size_t longest)
+{
+    std::istringstream words(text);
+    std::string lines;
+    std::size_t length = 0;
+    for (std::string word; words >> word;)
+    {
+        const bool fits = length + 1 + word.size() <= longest;
+        lines += (lines.empty() ? "" : fits ? " " : "\n") + word;
+        length = fits ? length + 1 + word.size() : word.size();
+    }
+    return lines;
+}
+
+/// --help in lines of a terminal's width, each task with its example.
+class TaskFormatter : public CLI::Formatter
+{
+public:
+    std::map<std::string, std::string> examples; ///< By the tasks' names.
+
+    [[nodiscard]] std::string make_option_desc(const CLI::Option* option) const override
+    {
+        return wrapped(option->get_description(), kWidth - get_column_width());
+    }
+
+    [[nodiscard]] std::string make_group(std::string task, bool is_positional,
+                                         std::vector<const CLI::Option*> options) const override
+    {
+        const auto example = examples.find(task);
+        if (example == examples.end())
+        {
+            return CLI::Formatter::make_group(std::move(task), is_positional, std::move(options));
+        }
+        task += ", as in  " + example->second;
+        const std::string text =
+            CLI::Formatter::make_group(std::move(task), is_positional, std::move(options));
+        return text.substr(1); // The library has put a blank line before it already.
+    }
+
+    [[nodiscard]] std::string make_footer(const CLI::App* app) const override
+    {
+        std::istringstream lines(app->get_footer());
+        std::string text;
+        for (std::string line; std::getline(lines, line);)
+        {
+            text += (line.starts_with(' ') ? line : wrapped(line, kWidth)) + '\n';
+        }
+        return text;
+    }
+
+private:
+    static constexpr std::size_t kWidth = 100;
+};
+
+} // namespace
+
+CommandOption CommandOption::required() const
+{
+    option_->required();
+    return *this;
+}
+
+CommandOption CommandOption::needs(CommandOption other) const
+{
+    option_->needs(other.option_);
+    return *this;
+}
+
+CommandOption CommandOption::excludes(CommandOption other) const
+{
+    option_->excludes(other.option_);
+    return *this;
+}
+
+CommandOption CommandOption::show_default() const
+{
+    option_->capture_default_str();
+    return *this;
+}
+
+CommandOption CommandOption::number_between(double least, double most) const
+{
+    const std::string range = fmt::format("{} .. {}", least, most);
+    return check(
+        [=](const std::string& text)
+        {
+            double number = 0.0;
+            const bool fits =
+                CLI::detail::lexical_cast(text, number) && number >= least && number <= most;
+            return fits ? std::string() : fmt::format("'{}' is not a number in {}", text, range);
+        },
+        range);
+}
+
+template <typename T>
+CommandOption CommandOption::integer_between(T least, T most) const
+{
+    const std::string range = fmt::format("{} .. {}", least, most);
+    return check(
+        [=](const std::string& text)
+        {
+            T number{};
+            const bool fits =
+                CLI::detail::lexical_cast(text, number) && number >= least && number <= most;
+            return fits ? std::string()
+                        : fmt::format("'{}' is not a whole number in {}", text, range);
+        },
+        range);
+}
+template CommandOption CommandOption::integer_between(int, int) const;
+template CommandOption CommandOption::integer_between(std::uint32_t, std::uint32_t) const;
+template CommandOption CommandOption::integer_between(std::int64_t, std::int64_t) const;
+
+CommandOption CommandOption::one_of(std::vector<std::string> names) const
+{
+    const std::string choices = fmt::format("{{{}}}", fmt::join(names, ","));
+    return check(
+        [names = std::move(names)](const std::string& text)
+        {
+            return std::ranges::count(names, text) > 0
+                       ? std::string()
+                       : fmt::format("'{}' is not {}", text, either(names));
+        },
+        choices);
+}
+
+CommandOption CommandOption::existing_directory() const
+{
+    option_->check(CLI::ExistingDirectory);
+    return *this;
+}
+
+CommandOption CommandOption::check(std::function<std::string(const std::string&)> fault_in,
+                                   const std::string& form) const
+{
+    option_->check(CLI::Validator(std::move(fault_in), form));
+    return *this;
+}
+
+CommandOption CommandOption::repeatable() const
+{
+    option_->expected(1)->allow_extra_args(false)->take_all();
+    return *this;
+}
+
+CommandOption CommandOption::repeatable_with_more() const
+{
+    option_->expected(1)->take_all();
+    return *this;
+}
+
+CommandOption CommandOption::separated_by(char delimiter) const
+{
+    option_->delimiter(delimiter);
+    return *this;
+}
+
+CommandOption CommandOption::not_in_file() const
+{
+    option_->configurable(false);
+    return *this;
+}
+
+CommandLine::CommandLine(const std::string& name, const std::string& description)
+    : app_(std::make_unique<CLI::App>(description, name))
+{
+    app_->formatter(std::make_shared<TaskFormatter>());
+}
+
+CommandLine::~CommandLine() = default;
+
+void CommandLine::add_version(const std::string& version)
+{
+    app_->set_version_flag("--version", version);
+}
+
+template <typename T>
+CommandOption CommandLine::add_option(const std::string& names, T& value,
+                                      const std::string& description)
+{
+    return CommandOption(*app_->add_option(names, value, description));
+}
+#define TACTUS_OPTION_VALUE(T)                                                                     \
+    template CommandOption CommandLine::add_option(const std::string&, T&, const std::string&)
+TACTUS_OPTION_VALUE(int);
+TACTUS_OPTION_VALUE(std::uint32_t);
+TACTUS_OPTION_VALUE(std::int64_t);
+TACTUS_OPTION_VALUE(double);
+TACTUS_OPTION_VALUE(std::string);
+TACTUS_OPTION_VALUE(std::filesystem::path);
+TACTUS_OPTION_VALUE(std::vector<std::string>);
+TACTUS_OPTION_VALUE(std::optional<int>);
+TACTUS_OPTION_VALUE(std::optional<std::uint32_t>);
+TACTUS_OPTION_VALUE(std::optional<double>);
+TACTUS_OPTION_VALUE(std::optional<std::string>);
+#undef TACTUS_OPTION_VALUE
+
+CommandOption CommandLine::add_flag(const std::string& name, bool& value,
+                                    const std::string& description)
+{
+    return CommandOption(*app_->add_flag(name, value, description));
+}
+
+void CommandLine::add_option_file(const std::string& name, const std::string& description)
+{
+    app_->set_config(name, "", description)
+        ->configurable(false)
+        ->check(CLI::Validator(check_option_file, ""));
+    app_->allow_config_extras(CLI::config_extras_mode::error);
+}
+
+void CommandLine::begin_task(const std::string& task, const std::string& example)
+{
+    app_->option_defaults()->group(task);
+    std::dynamic_pointer_cast<TaskFormatter>(app_->get_formatter())->examples[task] = example;
+}
+
+void CommandLine::set_footer(const std::string& text)
+{
+    app_->footer(text);
+}
+
+void CommandLine::add_log_options()
+{
+    begin_task("What is told on stderr", app_->get_name() + " ... --log-level warning --json-log");
+    add_option("--log-level", log_level_, "Only what matters as much as this")
+        .one_of({kLogLevelNames.begin(), kLogLevelNames.end()})
+        .show_default();
+    add_flag("--json-log", logs_json_,
+             "Each line as a JSON object with the keys time (UTC), level, program and text");
+}
+
+void CommandLine::choose_log_style()
+{
+    const auto level = std::ranges::find(kLogLevelNames, log_level_) - kLogLevelNames.begin();
+    set_log_style({static_cast<LogLevel>(level), logs_json_});
+}
+
+std::optional<int> CommandLine::parse(int argc, char** argv)
+{
+    words_.assign(argv + std::min(argc, 1), argv + argc);
+    // Already for what is wrong with the others.
+    set_log_style({LogLevel::info, app_->get_option_no_throw("--json-log") != nullptr &&
+                                       std::ranges::count(words_, "--json-log") > 0});
+    if (const std::string name = option_without_value(); !name.empty())
+    {
+        return fail(fmt::format("{}: a value is missing; see --help", name), kExitUsage);
+    }
+    try
+    {
+        app_->parse(argc, argv);
+        choose_log_style();
+        return std::nullopt;
+    }
+    catch (const CLI::ConfigError& error)
+    {
+        const bool is_extra = std::string_view(error.what()).find("parse") != std::string::npos;
+        return fail(is_extra ? unknown_key(*app_, error) : on_one_line(error.what()), kExitUsage);
+    }
+    catch (const CLI::FileError& error)
+    {
+        return fail(error.what());
+    }
+    catch (const CLI::ExtrasError&)
+    {
+        return fail(unknown_word(*app_), kExitUsage);
+    }
+    catch (const CLI::ArgumentMismatch& error)
+    {
+        return fail(wrong_count(error), kExitUsage);
+    }
+    catch (const CLI::ConversionError& error)
+    {
+        return fail(wrong_form(error), kExitUsage);
+    }
+    catch (const CLI::ParseError& error)
+    {
+        if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success))
+        {
+            return app_->exit(error); // Prints the help or the version.
+        }
+        return fail(on_one_line(error.what()) + "; see --help", kExitUsage);
+    }
+}
+
+/// The library would take the option that follows for the value, behind '--option=', too.
+std::string CommandLine::option_without_value() const
+{
+    const auto named = [this](const std::string& word)
+    { return word.starts_with("--") ? app_->get_option_no_throw(word) : nullptr; };
+    for (std::size_t i = 0; i < words_.size(); ++i)
+    {
+        const bool is_empty = words_[i].ends_with('=');
+        const std::string name = words_[i].substr(0, words_[i].size() - (is_empty ? 1 : 0));
+        const CLI::Option* option = named(name);
+        const bool is_followed = i + 1 < words_.size() && named(words_[i + 1]) != nullptr;
+        if (option != nullptr && option->get_items_expected_min() > 0 && (is_empty || is_followed))
+        {
+            return name;
+        }
+    }
+    return {};
+}
+
+std::vector<std::string> CommandLine::given() const
+{
+    std::vector<std::string> names;
+    for (const CLI::Option* option : std::as_const(*app_).get_options())
+    {
+        if (option->count() > 0)
+        {
+            names.push_back(option->get_name());
+        }
+    }
+    return names;
+}
+
+bool CommandLine::is_given(const std::string& name) const
+{
+    const CLI::Option* option = app_->get_option_no_throw(name);
+    return option != nullptr && option->count() > 0;
+}
+
+std::string CommandLine::option_file_text() const
+{
+    return app_->config_to_str(true, true);
+}
+
+int CommandLine::fail(const std::string& text, int code) const
+{
+    const std::string place = code == kExitUsage ? place_in_file(text) : "";
+    log_message(LogLevel::error, app_->get_name(),
+                place.empty() ? text : place + without_value(text));
+    return code;
+}
+
+std::string CommandLine::place_in_file(const std::string& text) const
+{
+    const std::string name = text.substr(0, text.find(':'));
+    const CLI::Option* file = app_->get_config_ptr();
+    const CLI::Option* option = app_->get_option_no_throw(name);
+    const bool is_on_the_line =
+        std::ranges::any_of(words_, [&](const std::string& word)
+                            { return word == name || word.starts_with(name + "="); });
+    if (option == nullptr || !option->get_configurable() || file == nullptr || file->count() == 0 ||
+        !name.starts_with("--") || is_on_the_line)
+    {
+        return {};
+    }
+    const auto path = file->as<std::string>();
+    const std::string place = place_of(name.substr(2), path).text;
+    return place == path ? "" : place + ": "; // Else it is no line of the file.
+}
+
+} // namespace tactus

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/report/limit_words.hpp"
+
+#include "rt_core/limits.hpp"
+#include "transport/base/counted.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+
+namespace tactus::hrtc
+{
+
+namespace
+{
+
+using Json = nlohmann::ordered_json;
+
+/// What helps where a limit is met.
+enum class Remedy : std::uint8_t
+{
+    pool,    ///< More --pool-mib.
+    splits,  ///< More --splits, or more work a frame.
+    work,    ///< More of it, or a tool that needs less.
+    tool,    ///< No memory does.
+    host,    ///< A faster network.
+    objects, ///< Fewer of them.
+};
+
+/// A limit by the flag that frames have which meet it.
+struct Limit
+{
+    const char* flag;
+    const char* words;
+    Remedy remedy;
+};
+/// Of two that as many frames met, the one above counts.
+constexpr Limit kLimits[] = {
+    {"surface_truncated", "more triangles are in reach of the tool than a frame looks at",
+     Remedy::tool},
+    {"node_budget_spent", "a search reached the most work, nodes or triangles of a frame",
+     Remedy::work},
+    {"refine_heap_full", "more coarse faces are in reach of the tool than a frame ranks",
+     Remedy::tool},
+    {"tool_crowded", "more holds the tool than is followed", Remedy::tool},
+    {"forest_full", "no room for faces", Remedy::pool},
+    {"tree_full", "no room for the tree", Remedy::pool},
+    {"cache_full", "no room for pages", Remedy::pool},
+    {"pair_shed", "no room for a tool and an object", Remedy::pool},
+    {"split_budget_spent", "not enough splits a frame", Remedy::splits},
+    {"held_records_full", "not enough splits a frame", Remedy::splits},
+    {"ranking_full", "more is to be loaded than is ranked", Remedy::objects},
+    {"chunk_late", "pieces came too late", Remedy::host},
+};
+
+/// More time for a frame; empty where its work has no limit.
+std::string more_time(const Json& report)
+{
+    const Json& frame_us = report["budgets"]["frame_us"];
+    return frame_us.is_null() ? std::string()
+                              : fmt::format("--frame-budget-us above {:g}", frame_us.get<double>());
+}
+
+std::string remedy_text(Remedy remedy, const Json& report)
+{
+    constexpr const char* kOtherTool =
+        "a smaller --tool, or a model of fewer faces; no memory helps";
+    const std::string longer = more_time(report);
+    switch (remedy)
+    {
+    case Remedy::pool:
+    {
+        const double now_mib = report["pools"]["total_bytes"].get<double>() / 0x1p20;
+        return fmt::format("--pool-mib {:g}, 4 times as much", 4.0 * std::ceil(now_mib));
+    }
+    case Remedy::splits:
+        return longer.empty() ||
+                       report["budgets"]["splits"].get<std::uint32_t>() < kMaxSplitsPerFrame
+                   ? fmt::format("--splits {}, the most", kMaxSplitsPerFrame)
+                   : longer;
+    case Remedy::work:
+        return longer.empty() ? kOtherTool : longer + ", " + kOtherTool;
+    case Remedy::tool:
+        return kOtherTool;
+    case Remedy::host:
+        return "a nearer host, or more --pool-mib, so that more stays here";
+    case Remedy::objects:
+        return "fewer objects in one place";
+    }
+    return {};
+}
+
+} // namespace
+
+std::string limit_text(const Json& report)
+{
+    const Json& faults = report["faults"];
+    const auto frames_of = [&faults](const Limit& limit)
+    { return faults.value(limit.flag, std::uint64_t{0}); };
+    const auto* const met = std::ranges::max_element(kLimits, [&](const Limit& a, const Limit& b)
+                                                     { return frames_of(a) < frames_of(b); });
+    return frames_of(*met) == 0
+               ? std::string()
+               : fmt::format("{} ({} in {}): {}", met->words, met->flag,
+                             counted(frames_of(*met), "frame"), remedy_text(met->remedy, report));
+}
+
+} // namespace tactus::hrtc

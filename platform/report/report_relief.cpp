@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/report/report_relief.hpp"
+
+#include "rt_core/spm/base_mesh.hpp"
+#include "transport/base/counted.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace tactus::hrtc
+{
+
+namespace
+{
+
+/// More make the page large and no picture better.
+constexpr std::size_t kFacesMax = 8'000;
+
+plot::Place to_place(const Vec3& place_m)
+{
+    return {static_cast<float>(place_m.x()), static_cast<float>(place_m.y()),
+            static_cast<float>(place_m.z())};
+}
+
+/// In the world; none of a model whose base mesh isn't here.
+std::vector<std::array<plot::Place, 3>> faces_of(const Controller& controller, std::size_t object)
+{
+    const ServedModel& model = controller.models()[controller.objects()[object].model.value];
+    const ModelHeader header = ModelHeader::parse(model.header).value();
+    const ObjectPose pose = model_pose(controller.poses()[object], header.origin_m());
+    const ModelCounts counts = header.counts();
+    std::vector<Vec3f> positions_m(counts.base_vertices);
+    std::vector<BaseFace> base(counts.base_faces);
+    std::vector<std::uint32_t> next(counts.base_faces);
+    std::vector<std::array<plot::Place, 3>> faces;
+    if (!parse_base_mesh(model.base, header, {positions_m, base, next}))
+    {
+        return faces;
+    }
+    for (const BaseFace& face : base)
+    {
+        const auto corner = [&](std::size_t i)
+        { return to_place(to_world(pose, to_vec3(positions_m[face.corners[i].value]))); };
+        faces.push_back({corner(0), corner(1), corner(2)});
+    }
+    return faces;
+}
+
+/// Numbers of the objects, those first whose origin is nearest to the middle of the ways.
+std::vector<std::size_t> nearest_first(const Controller& controller,
+                                       const std::vector<std::vector<plot::WayPoint>>& ways)
+{
+    Vec3 sum_m = Vec3::Zero();
+    std::size_t count = 0;
+    for (const std::vector<plot::WayPoint>& way : ways)
+    {
+        for (const plot::WayPoint& point : way)
+        {
+            sum_m += to_vec3(point.at);
+            ++count;
+        }
+    }
+    const Vec3 middle_m = sum_m / static_cast<double>(std::max<std::size_t>(count, 1));
+    std::vector<std::size_t> order(controller.objects().size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(
+        order, {},
+        [&](std::size_t object)
+        { return (controller.poses()[object].translation_m - middle_m).squaredNorm(); });
+    return order;
+}
+
+} // namespace
+
+plot::Relief relief_of(const Controller& controller, const RunStatistics& statistics)
+{
+    plot::Relief relief{.title = "Where the tool was, and the force on the device",
+                        .faces = {},
+                        .ways = {},
+                        .unit = "N",
+                        .note = {}};
+    for (const ToolPath& path : statistics.paths)
+    {
+        std::vector<plot::WayPoint> way;
+        for (const PathPoint& point : path.points())
+        {
+            way.push_back({point.place_m, point.force_n});
+        }
+        relief.ways.push_back(std::move(way));
+    }
+    std::size_t drawn = 0;
+    for (const std::size_t object : nearest_first(controller, relief.ways))
+    {
+        const auto faces = faces_of(controller, object);
+        if (relief.faces.size() + faces.size() > kFacesMax)
+        {
+            break;
+        }
+        relief.faces.insert(relief.faces.end(), faces.begin(), faces.end());
+        drawn += faces.empty() ? 0U : 1U;
+    }
+    const std::size_t objects = controller.objects().size();
+    relief.note =
+        fmt::format("The surface is the coarsest that the controller has, of {}{}, where "
+                    "{} stood at the start; at the tool it is finer.",
+                    counted(drawn, "object"), drawn < objects ? fmt::format(" of {}", objects) : "",
+                    drawn == 1 ? "it" : "they");
+    return relief;
+}
+
+} // namespace tactus::hrtc

@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/report/verdict.hpp"
+
+#include "platform/report/limit_words.hpp"
+#include "platform/scene/material_limits.hpp"
+#include "transport/base/counted.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <utility>
+
+namespace tactus::hrtc
+{
+
+namespace
+{
+
+using Json = nlohmann::ordered_json;
+
+/// Less of a run is held back by the way that data takes.
+constexpr double kHeldBackShare = 0.25;
+
+/// Collects what there is to be said.
+class Judge
+{
+public:
+    explicit Judge(const Json& report) : report_(report) {}
+
+    void judge_scene();
+    void judge_controller();
+    void judge_machine();
+
+    [[nodiscard]] std::vector<Complaint> take() { return std::move(complaints_); }
+
+private:
+    void say(RunPart part, std::string words)
+    {
+        complaints_.push_back({part, std::move(words), false});
+    }
+    void say_loss(RunPart part, std::string words)
+    {
+        complaints_.push_back({part, std::move(words), true});
+    }
+    [[nodiscard]] std::uint64_t begun(const char* cause) const
+    {
+        return report_["safety"]["begun"].value(cause, std::uint64_t{0});
+    }
+    /// Whether the loop came late, and for the machine's sake. A watchdog alone may be the
+    /// device's.
+    [[nodiscard]] bool is_machine_late() const
+    {
+        return begun("stall") > 0 && report_["deadline"]["own_fault"].get<std::uint64_t>() == 0;
+    }
+    [[nodiscard]] std::string why_untouched() const;
+
+    void judge_models();
+    void judge_answers();
+    void judge_walls();
+    void judge_forces();
+
+    const Json& report_;
+    std::vector<Complaint> complaints_;
+};
+
+void Judge::judge_scene()
+{
+    if (report_["wire"]["host_lost"].get<bool>())
+    {
+        say_loss(RunPart::scene, "the host went away");
+    }
+    judge_models();
+    if (const auto limited = report_["scene"]["limited"].get<std::uint64_t>(); limited > 0)
+    {
+        say_loss(RunPart::scene,
+                 counted(limited, "material was limited", "materials were limited"));
+    }
+    judge_answers();
+    for (std::size_t i = 0; i < report_["tools"].size(); ++i)
+    {
+        if (const Json& inside = report_["tools"][i]["begins_inside"]; !inside.is_null())
+        {
+            say(RunPart::scene,
+                fmt::format("tool {} began inside {}, whose surface then holds it from within", i,
+                            inside.get<std::string>()));
+        }
+    }
+    if (report_["force"]["contact_share"].get<double>() == 0.0)
+    {
+        say_loss(RunPart::scene, "nothing was touched: " + why_untouched());
+    }
+}
+
+void Judge::judge_models()
+{
+    for (const Json& model : report_["models"])
+    {
+        const auto name = model["name"].get<std::string>();
+        if (const auto refused = model["pieces_refused"].get<std::uint64_t>(); refused > 0)
+        {
+            say_loss(RunPart::scene, counted(refused, "damaged piece") + " of " + name);
+        }
+        if (const auto overdue = model["pieces_overdue"].get<std::uint64_t>(); overdue > 0)
+        {
+            say_loss(RunPart::scene, fmt::format("{} of {} that didn't come within 1 s, {} never",
+                                                 counted(overdue, "piece"), name,
+                                                 model["pieces_missing"].get<std::uint64_t>()));
+        }
+    }
+}
+
+/// What is known of the surface, and what keeps it from being known.
+void Judge::judge_answers()
+{
+    const Json& answers = report_["answers"];
+    if (const auto brackets = answers["bracket"].get<std::uint64_t>();
+        brackets > 0 && answers["exact"].get<std::uint64_t>() == 0 &&
+        answers["within_tolerance"].get<std::uint64_t>() == 0)
+    {
+        say_loss(RunPart::scene,
+                 "no answer was exact, " + counted(brackets, "was a bracket", "were brackets"));
+    }
+    const auto stale = answers["stale"].get<std::uint64_t>();
+    if (stale > 0)
+    {
+        say(RunPart::scene, counted(stale, "frame") + " with a stale answer");
+    }
+    const std::uint64_t frozen = begun("frozen");
+    const auto held_back = report_["force"]["held_back_share"].get<double>();
+    if (frozen > 0 || held_back >= kHeldBackShare)
+    {
+        const std::string limit = limit_text(report_);
+        say_loss(RunPart::scene,
+                 fmt::format("held back for {:.1f} % of the time{}: {}", 100.0 * held_back,
+                             frozen > 0 ? ", and the force faded " + counted(frozen, "time") : "",
+                             limit.empty() ? "the surface at the tool wasn't known" : limit));
+    }
+}
+
+std::string Judge::why_untouched() const
+{
+    const Json& tools = report_["tools"];
+    if (std::ranges::any_of(tools,
+                            [](const Json& tool) { return !tool["begins_inside"].is_null(); }))
+    {
+        return "the tool began inside";
+    }
+    const Json& answers = report_["answers"];
+    if (answers["exact"].get<std::uint64_t>() + answers["bracket"].get<std::uint64_t>() +
+            answers["within_tolerance"].get<std::uint64_t>() ==
+        0)
+    {
+        return "no tool came near an object; the lines at the start say where they are";
+    }
+    for (const auto& [cause, times] : report_["safety"]["begun"].items())
+    {
+        const bool is_moment = cause == "software" || cause == "stall" || cause == "watchdog";
+        if (times.get<std::uint64_t>() > 0 && !is_moment)
+        {
+            return fmt::format("the force was off for {}", cause);
+        }
+    }
+    if (report_["force"]["held_back_share"].get<double>() > 0.0)
+    {
+        return "the tool was held back before the surface";
+    }
+    return "a tool came near, and the run ended before it reached the surface";
+}
+
+void Judge::judge_controller()
+{
+    const auto count = [&](const Json& value, std::string_view one, std::string_view many)
+    {
+        if (const auto number = value.get<std::uint64_t>(); number > 0)
+        {
+            say(RunPart::controller, counted(number, one, many));
+        }
+    };
+    const Json& realtime = report_["realtime"];
+    count(report_["deadline"]["own_fault"], "deadline missed by the loop's own fault",
+          "deadlines missed by the loop's own fault");
+    count(realtime["allocations"], "allocation in the loop", "allocations in the loop");
+    count(realtime["system_calls_in_frame"], "system call in frames", "system calls in frames");
+    judge_forces();
+    judge_walls();
+    if (const Json& recording = report_["recording"];
+        !recording.is_null() && !recording["lost_from"].is_null())
+    {
+        say(RunPart::controller, "the recording is incomplete");
+    }
+}
+
+/// Causes that are told with what they are about are not told here.
+void Judge::judge_forces()
+{
+    std::string causes;
+    for (const auto& [cause, times] : report_["safety"]["begun"].items())
+    {
+        const bool is_told = cause == "software" || cause == "frozen" ||
+                             (is_machine_late() && (cause == "stall" || cause == "watchdog"));
+        if (const auto number = times.get<std::uint64_t>(); number > 0 && !is_told)
+        {
+            causes += fmt::format("{}{} {}", causes.empty() ? "" : ", ", cause, number);
+        }
+    }
+    if (!causes.empty())
+    {
+        say(RunPart::controller, "force off for: " + causes);
+    }
+    if (const std::uint64_t gone = begun("disconnect"); gone > 0)
+    {
+        say_loss(RunPart::controller, fmt::format("devices gone: {}", gone));
+    }
+}
+
+void Judge::judge_walls()
+{
+    const Json& tools = report_["tools"];
+    for (std::size_t i = 0; i < tools.size(); ++i)
+    {
+        const Json& softest = tools[i]["softest_wall_n_per_m"]; // Null: none was softened.
+        if (!softest.is_null() && softest.get<double>() < kSoftestFelt_n_per_m)
+        {
+            say_loss(RunPart::controller,
+                     fmt::format("tool {}: a wall of {:.2g} N/m, which no hand feels", i,
+                                 softest.get<double>()));
+        }
+    }
+}
+
+/// A stall is a fade of some milliseconds, and no force that was off.
+void Judge::judge_machine()
+{
+    const auto stopped = report_["deadline"]["stopped"].get<std::uint64_t>();
+    if (stopped > 0)
+    {
+        say(RunPart::machine,
+            counted(stopped, "deadline") + " missed while the process was stopped from outside");
+    }
+    const std::uint64_t late = begun("stall") + begun("watchdog");
+    const auto brakes = report_["safety"]["supervisor_brakes"].get<std::uint64_t>();
+    if (is_machine_late())
+    {
+        say(RunPart::machine,
+            fmt::format("it woke the loop late, and the force faded for a moment {}{}: 'hrtc "
+                        "doctor' says why",
+                        counted(late, "time"),
+                        brakes > 0
+                            ? fmt::format(" ({} by the supervisor)", counted(brakes, "brake"))
+                            : ""));
+    }
+    else if (brakes > 0)
+    {
+        say(RunPart::controller, counted(brakes, "brake") + " by the supervisor");
+    }
+}
+
+} // namespace
+
+std::vector<Complaint> complaints_of(const Json& report)
+{
+    Judge judge(report);
+    judge.judge_scene();
+    judge.judge_controller();
+    judge.judge_machine();
+    return judge.take();
+}
+
+bool has_loss(std::span<const Complaint> complaints) noexcept
+{
+    return std::ranges::any_of(complaints, &Complaint::is_loss);
+}
+
+bool is_machine_alone(std::span<const Complaint> complaints) noexcept
+{
+    return std::ranges::all_of(complaints, [](const Complaint& complaint)
+                               { return complaint.part == RunPart::machine; });
+}
+
+std::string verdict_text(std::span<const Complaint> complaints)
+{
+    if (complaints.empty())
+    {
+        return "ok";
+    }
+    std::string text;
+    for (const auto& [part, name] :
+         {std::pair(RunPart::scene, "mesh and scene"), std::pair(RunPart::controller, "controller"),
+          std::pair(RunPart::machine, "machine")})
+    {
+        std::string words;
+        for (const Complaint& complaint : complaints)
+        {
+            words += complaint.part == part ? (words.empty() ? "" : "; ") + complaint.words : "";
+        }
+        text +=
+            fmt::format("{}{}: {}", text.empty() ? "" : " | ", name, words.empty() ? "ok" : words);
+    }
+    return text;
+}
+
+} // namespace tactus::hrtc

@@ -1,0 +1,427 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/scene/scene_keeper.hpp"
+
+#include "platform/scene/material_limits.hpp"
+#include "platform/scene/object_pose.hpp"
+#include "transport/content_hash.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace tactus::hrtc
+{
+
+SceneKeeper::SceneKeeper(std::span<const dds::Authority> authorities,
+                         std::unique_ptr<dds::SceneReader> reader, SceneParts parts,
+                         ShownScene scene, Log log)
+    : authorities_(authorities)
+    , reader_(std::move(reader))
+    , parts_(std::move(parts))
+    , scene_(std::move(scene.name))
+    , materials_(std::move(scene.materials))
+    , log_(std::move(log))
+    , model_hosts_(parts_.models.size())
+    , first_(parts_.first_objects)
+    , slots_(parts_.objects_max)
+    , counts_(parts_.models.size())
+    , heard_(parts_.models.size())
+{
+    for (const ServedModel& model : parts_.models)
+    {
+        headers_.push_back(ModelHeader::parse(model.header).value());
+    }
+    if (!scene_.empty())
+    {
+        hosts_.assign(1, scene.host_epoch);
+    }
+    for (std::uint32_t place = 0; place < slots_.size(); ++place)
+    {
+        Slot& slot = slots_[place];
+        if (place >= parts_.objects.size())
+        {
+            free_.insert(place);
+            continue;
+        }
+        slot.spec = parts_.objects[place];
+        slot.is_here = true;
+        slot.is_told = true;
+        if (!scene_.empty())
+        {
+            slot.bound = scene.objects[place];
+            places_[scene.objects[place]] = place;
+        }
+    }
+}
+
+void SceneKeeper::connect(PoseDoor& door, MonotonicTime now, NameSink names)
+{
+    door_ = &door;
+    names_ = std::move(names);
+    for (const auto& [name, place] : places_) // What has come since comes with the first step.
+    {
+        const auto& objects = reader_->objects(name.host_epoch);
+        if (const auto object = objects.find(name.number); object != objects.end())
+        {
+            move(place, object->second, now);
+            feel(place, object->second.shown);
+        }
+    }
+}
+
+void SceneKeeper::step(MonotonicTime now)
+{
+    if (scene_.empty())
+    {
+        follow_model_hosts(now);
+    }
+    else
+    {
+        follow_scene_host();
+    }
+    reader_->poll(hosts_, [&](dds::SceneNews news, const dds::SeenObject& object)
+                  { take_news(news, object, now); });
+    pass_on(now);
+    offer_left_out(now);
+    hear(now);
+}
+
+std::optional<HostObject> SceneKeeper::shown_as(std::uint32_t object) const
+{
+    return object < slots_.size() ? slots_[object].bound : std::nullopt;
+}
+
+/// What the one before showed goes when another takes its place.
+void SceneKeeper::follow_scene_host()
+{
+    const std::uint64_t epoch = authorities_.front().host();
+    if (hosts_.front() == epoch)
+    {
+        return;
+    }
+    while (!places_.empty())
+    {
+        leave(places_.begin()->second);
+    }
+    passed_over_.clear();
+    left_out_.clear();
+    limited_.clear();
+    hosts_.assign(1, epoch);
+}
+
+void SceneKeeper::follow_model_hosts(MonotonicTime now)
+{
+    hosts_.clear();
+    for (std::size_t i = 0; i < model_hosts_.size(); ++i)
+    {
+        const std::uint64_t epoch = authorities_[i].host();
+        if (model_hosts_[i] != epoch)
+        {
+            model_hosts_[i] = epoch;
+            find_first(i, now);
+        }
+        if (std::ranges::find(hosts_, epoch) == hosts_.end())
+        {
+            hosts_.push_back(epoch);
+        }
+    }
+}
+
+void SceneKeeper::take_news(dds::SceneNews news, const dds::SeenObject& object, MonotonicTime now)
+{
+    const HostObject name{object.host_epoch, object.number};
+    const auto bound = places_.find(name);
+    if (news == dds::SceneNews::moves && bound != places_.end())
+    {
+        move(bound->second, object, now);
+        return;
+    }
+    if (news == dds::SceneNews::feels)
+    {
+        if (!scene_.empty() && bound != places_.end())
+        {
+            feel(bound->second, object.shown);
+        }
+        return;
+    }
+    if (scene_.empty())
+    {
+        for (std::size_t i = 0; i < model_hosts_.size(); ++i)
+        {
+            const bool is_of_it =
+                model_hosts_[i] == object.host_epoch && parts_.models[i].hash == object.shown.model;
+            if (is_of_it && news != dds::SceneNews::moves)
+            {
+                find_first(i, now);
+            }
+        }
+        return;
+    }
+    if (news != dds::SceneNews::goes)
+    {
+        if (bound == places_.end())
+        {
+            offer(object, now);
+        }
+        return;
+    }
+    passed_over_.erase({name, object.generation});
+    left_out_.erase({name, object.generation});
+    if (bound != places_.end())
+    {
+        leave(bound->second);
+    }
+}
+
+/// The one with the least number of those with the model; nothing where none of ours shows it.
+void SceneKeeper::find_first(std::size_t model, MonotonicTime now)
+{
+    const std::uint32_t place = first_[model];
+    if (place == parts_.objects.size())
+    {
+        return;
+    }
+    const auto& objects = reader_->objects(model_hosts_[model]);
+    const auto first =
+        std::ranges::find_if(objects, [&](const auto& entry)
+                             { return entry.second.shown.model == parts_.models[model].hash; });
+    if (first == objects.end())
+    {
+        unbind(place);
+    }
+    else if (slots_[place].bound != HostObject{first->second.host_epoch, first->first})
+    {
+        bind(place, first->second, now);
+    }
+    else
+    {
+        move(place, first->second, now);
+    }
+}
+
+/// With a scene: an object that isn't ours yet.
+void SceneKeeper::offer(const dds::SeenObject& object, MonotonicTime now)
+{
+    const Generation name{{object.host_epoch, object.number}, object.generation};
+    if (passed_over_.contains(name) || left_out_.contains(name))
+    {
+        return;
+    }
+    const auto model = model_of(object.shown.model);
+    if (!model || is_of_tool(parts_.tools, *model))
+    {
+        passed_over_.insert(name);
+        ++news_.passed_over;
+        log_.write(
+            fmt::format("object '{}' is not touched: its model {} is {}", object.shown.name,
+                        hash_text(object.shown.model),
+                        model ? "that of a tool" : "none of those that were there at the start"));
+        return;
+    }
+    if (!free_.empty())
+    {
+        bind(*free_.begin(), object, now);
+        return;
+    }
+    left_out_.insert(name);
+    ++news_.passed_over;
+    log_.write(fmt::format("object '{}' is not touched: there are {} already; --objects makes room "
+                           "for more",
+                           object.shown.name, slots_.size()));
+}
+
+void SceneKeeper::bind(std::uint32_t place, const dds::SeenObject& object, MonotonicTime now)
+{
+    unbind(place);
+    Slot& slot = slots_[place];
+    const HostObject name{object.host_epoch, object.number};
+    places_[name] = place;
+    slot.bound = name;
+    slot.known = {};
+    if (!slot.is_here)
+    {
+        free_.erase(place);
+        slot.spec = {ModelId{static_cast<std::uint32_t>(*model_of(object.shown.model))},
+                     felt(name, object.shown)};
+        slot.is_here = true;
+        slot.name = object.shown.name;
+        untold_.push_back(place);
+    }
+    move(place, object, now);
+}
+
+void SceneKeeper::unbind(std::uint32_t place)
+{
+    if (slots_[place].bound)
+    {
+        places_.erase(*slots_[place].bound);
+        slots_[place].bound.reset();
+    }
+}
+
+void SceneKeeper::move(std::uint32_t place, const dds::SeenObject& object, MonotonicTime now)
+{
+    Slot& slot = slots_[place];
+    slot.pose = pose_of(slot.spec.model.value, object);
+    heard_[slot.spec.model.value] = now;
+    if (slot.is_told)
+    {
+        door_->put(place, slot.pose, now);
+    }
+}
+
+/// The newest counts, however many came while the door was full.
+void SceneKeeper::feel(std::uint32_t place, const ShownObject& shown)
+{
+    Slot& slot = slots_[place];
+    const Material material = felt(*slot.bound, shown);
+    if (material == slot.spec.material)
+    {
+        return;
+    }
+    slot.spec.material = material;
+    if (slot.is_told && !slot.owes_feel)
+    {
+        slot.owes_feel = true;
+        untold_.push_back(place);
+    }
+}
+
+/// Neither a server nor --material takes a wall from a device.
+Material SceneKeeper::felt(const HostObject& object, const ShownObject& shown)
+{
+    const Material& wanted = materials_.felt(shown.name, shown.material);
+    const Material material = limited(wanted, parts_.tools);
+    if (material != wanted)
+    {
+        ++news_.limited;
+        if (limited_.insert(object).second)
+        {
+            log_.write(fmt::format("the material of object '{}' is limited: {}", shown.name,
+                                   differences(wanted, material)));
+        }
+    }
+    return material;
+}
+
+void SceneKeeper::leave(std::uint32_t place)
+{
+    unbind(place);
+    slots_[place].is_here = false;
+    untold_.push_back(place);
+}
+
+/// What comes and goes, as far as the door takes it.
+void SceneKeeper::pass_on(MonotonicTime now)
+{
+    while (!untold_.empty())
+    {
+        const std::uint32_t place = untold_.front();
+        Slot& slot = slots_[place];
+        if (slot.is_here && !slot.is_told)
+        {
+            if (!door_->try_come(place, slot.generation + 1, slot.spec, slot.pose, now))
+            {
+                return;
+            }
+            ++slot.generation;
+            if (names_)
+            {
+                names_(place, slot.generation, slot.name);
+            }
+            ++news_.came;
+            slot.owes_feel = false; // It comes with the newest.
+        }
+        else if (!slot.is_here && slot.is_told)
+        {
+            if (!door_->try_go(place))
+            {
+                return;
+            }
+            ++news_.went;
+        }
+        else if (slot.is_here && slot.owes_feel)
+        {
+            if (!door_->try_feel(place, slot.spec.material))
+            {
+                return;
+            }
+            ++news_.feels;
+            slot.owes_feel = false;
+        }
+        slot.is_told = slot.is_here;
+        untold_.pop_front();
+        if (!slot.is_here)
+        {
+            free_.insert(place);
+        }
+    }
+}
+
+/// What had no room before, as far as there is some now.
+void SceneKeeper::offer_left_out(MonotonicTime now)
+{
+    while (!free_.empty() && !left_out_.empty())
+    {
+        const HostObject name = left_out_.begin()->first;
+        left_out_.erase(left_out_.begin());
+        const auto& objects = reader_->objects(name.host_epoch);
+        if (const auto object = objects.find(name.number); object != objects.end())
+        {
+            bind(*free_.begin(), object->second, now);
+        }
+    }
+}
+
+/// The hosts that were heard, and what they counted.
+void SceneKeeper::hear(MonotonicTime now)
+{
+    for (const std::uint64_t epoch : hosts_)
+    {
+        if (!reader_->was_heard(epoch))
+        {
+            continue;
+        }
+        const auto& objects = reader_->objects(epoch);
+        for (auto at = places_.lower_bound({epoch, 0});
+             at != places_.end() && at->first.host_epoch == epoch; ++at)
+        {
+            Slot& slot = slots_[at->second];
+            const std::size_t model = slot.spec.model.value;
+            heard_[model] = now;
+            door_->hear(at->second, now);
+            const auto object = objects.find(at->first.number);
+            if (object == objects.end())
+            {
+                continue;
+            }
+            const dds::PoseCounts& news = object->second.counts;
+            counts_[model].accepted += news.accepted - slot.known.accepted;
+            for (std::size_t k = 0; k < kPoseRefusals; ++k)
+            {
+                counts_[model].refused[k] += news.refused[k] - slot.known.refused[k];
+            }
+            slot.known = news;
+        }
+    }
+}
+
+/// Of the source mesh, as the controller's poses are.
+ObjectPose SceneKeeper::pose_of(std::size_t model, const dds::SeenObject& object) const
+{
+    ObjectPose pose = object_pose(to_similarity(object.shown.pose), headers_[model]);
+    pose.stamp_ns = object.host_time_ns;
+    return pose;
+}
+
+std::optional<std::size_t> SceneKeeper::model_of(const ContentHash& hash) const
+{
+    const auto at = std::ranges::find(parts_.models, hash, &ServedModel::hash);
+    return at == parts_.models.end()
+               ? std::nullopt
+               : std::optional(static_cast<std::size_t>(at - parts_.models.begin()));
+}
+
+} // namespace tactus::hrtc

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "transport/base/files_near.hpp"
+
+#include "transport/base/printable.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <system_error>
+#include <vector>
+
+namespace tactus
+{
+
+namespace
+{
+
+constexpr std::size_t kFilesShown = 5;
+constexpr std::size_t kEntriesMost = 10'000; ///< A folder may have millions.
+
+} // namespace
+
+std::string files_near(const std::filesystem::path& missing, std::string_view ending)
+{
+    std::error_code code;
+    const std::string whole = missing.string() + std::string(ending);
+    if (std::filesystem::is_regular_file(whole, code))
+    {
+        return "; " + printable_line(whole) + " is there";
+    }
+    const std::filesystem::path folder = missing.parent_path();
+    const std::string shown = printable_line(folder.string());
+    if (!folder.empty() && !std::filesystem::is_directory(folder, code))
+    {
+        return "; there is no folder " + shown;
+    }
+    return "; " + (folder.empty() ? "this folder" : shown) + " has " +
+           files_in(folder.empty() ? "." : folder, ending);
+}
+
+std::string files_in(const std::filesystem::path& folder, std::string_view ending)
+{
+    std::vector<std::string> names;
+    std::error_code code;
+    std::size_t entries = 0;
+    for (std::filesystem::directory_iterator at(folder, code), end;
+         !code && at != end && entries < kEntriesMost; at.increment(code), ++entries)
+    {
+        std::string name = at->path().filename().string();
+        if (name.size() > ending.size() && name.ends_with(ending))
+        {
+            names.push_back(std::move(name));
+        }
+    }
+    if (names.empty())
+    {
+        return "no " + std::string(ending);
+    }
+    std::ranges::sort(names);
+    std::string text;
+    for (std::size_t i = 0; i < std::min(names.size(), kFilesShown); ++i)
+    {
+        text += (i == 0 ? "" : ", ") + printable_line(names[i]);
+    }
+    return names.size() > kFilesShown
+               ? text + " and " + std::to_string(names.size() - kFilesShown) + " more"
+               : text;
+}
+
+} // namespace tactus

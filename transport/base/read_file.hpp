@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/result.hpp"
+#include "transport/base/refusal.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <string>
+
+namespace tactus
+{
+
+/// The bytes of a regular file that has 1 to `most` of them. The error says what is wrong with the
+/// file, without its name. Its size is looked at first: what is larger costs nothing.
+[[nodiscard]] Result<std::string, Refusal>
+read_file(const std::filesystem::path& path,
+          std::uintmax_t most = std::numeric_limits<std::uintmax_t>::max());
+
+} // namespace tactus
