@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""guards.py ROOT [--only NAME ...]: the guards over the text of the checkout ROOT.
+"""guards.py ROOT [--only NAME ... | --map]: the guards over the text of the checkout ROOT.
 
 Reads each file once and prints each fault as file:line: text. Exit codes: 0 no fault, 1 a fault,
 2 a file that cannot be read or understood, 3 wrong usage.
@@ -158,8 +158,11 @@ class Layers:
 
 # Each guard yields its faults as (path, line, text).
 
+INCLUDE = r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"\n]+)[>"]'
+
+
 def layers(tree):
-    """Every #include follows cmake/layers.cmake."""
+    """Every #include follows cmake/layers.cmake, and no modules include each other in a circle."""
     table = Layers(tree)
     files = tree.files(*(f'{top}/*.{end}' for top in (*PRODUCT, 'tests')
                          for end in ('hpp', 'cpp', 'h', 'c')))
@@ -167,13 +170,76 @@ def layers(tree):
         if not table.module_of(path):
             yield path, 1, f'in no module; give its folder a line in {LAYERS}'
     count = 0
-    include = r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"\n]+)[>"]'
-    for path, line, match in tree.matches(include, filter(table.module_of, files)):
+    for path, line, match in tree.matches(INCLUDE, filter(table.module_of, files)):
         count += 1
         if objection := table.objection_to(path, match[2], match[1] == '"'):
             yield path, line, f"includes '{match[2]}'; {objection}"
     if not count:
         yield LAYERS, 1, 'no file of a module has an #include'
+    arrows = arrows_of(tree, table)
+    if circle := circle_of(arrows):
+        yield *arrows[circle[0]][circle[1]], 'closes a circle: ' + ' -> '.join(circle)
+
+
+def arrows_of(tree, table):
+    """From module to module of the product: the first #include that makes the arrow."""
+    arrows = {module: {} for module in table.modules if not module.startswith('tests')}
+    files = tree.files(*(f'{top}/*.{end}' for top in PRODUCT for end in ('hpp', 'cpp', 'h', 'c')))
+    for path, line, match in tree.matches(INCLUDE, filter(table.module_of, files)):
+        target = table.module_of(match[2]) if match[1] == '"' else ''
+        if target and target != table.module_of(path):
+            arrows[table.module_of(path)].setdefault(target, (path, line))
+    return arrows
+
+
+def circle_of(arrows):
+    """The modules of a circle, the first one again at the end; none where no arrow goes back."""
+    done, way = set(), []
+
+    def search(module):
+        if module in way:
+            return [*way[way.index(module):], module]
+        if module in done:
+            return []
+        way.append(module)
+        found = next(filter(None, map(search, sorted(arrows.get(module, ())))), [])
+        done.add(way.pop())
+        return found
+
+    return next(filter(None, map(search, sorted(arrows))), [])
+
+
+def map_of(tree):
+    """The folders that are modules, in lines: each includes modules of the lines above alone."""
+    table = Layers(tree)
+    arrows = arrows_of(tree, table)
+    if circle_of(arrows):
+        raise Refusal('modules include each other in a circle')
+
+    @functools.cache
+    def line_of(module):
+        return 1 + max(map(line_of, arrows[module]), default=-1)
+
+    lines = {}
+    for module in sorted(module for module in arrows if '.' not in module):
+        lines.setdefault(line_of(module), []).append(module)
+    return [' '.join(modules) for _, modules in sorted(lines.items())]
+
+
+def module_map(tree):
+    """docs/architecture.md draws the modules as they include each other."""
+    page = 'docs/architecture.md'
+    if tree.exists(page) and '\n'.join(['```text', *map_of(tree), '```']) not in tree.text(page):
+        yield page, 1, "its map of the modules is another than 'guards.py . --map' prints"
+
+
+def modules_told(tree):
+    """A comment right above a module's line in cmake/layers.cmake says what lives there."""
+    for path, line, match in tree.matches(r'(^#.*\n)?^tactus_module\(([^ )\n]+)',
+                                          tree.files(LAYERS)):
+        if not match[1] or match[1].startswith('# ---'):
+            line += 1 if match[1] else 0
+            yield path, line, f'no comment right above says what lives in {match[2]}'
 
 
 def line_length(tree):
@@ -350,7 +416,7 @@ def named_tests(tree):
 
 
 GUARDS = {guard.__name__: guard for guard in (
-    layers, line_length, no_leftovers, machine_paths, licence, files_listed, limits_tested,
+    layers, modules_told, module_map, line_length, no_leftovers, machine_paths, licence, files_listed, limits_tested,
     own_header_first, threads_told, links, named_tests)}
 
 
@@ -366,11 +432,15 @@ def main(arguments):
     parser.add_argument('root', metavar='ROOT', help='the root of the checkout')
     parser.add_argument('--only', metavar='NAME', nargs='+', choices=GUARDS, default=list(GUARDS),
                         help='the guards to run [default: all]')
+    parser.add_argument('--map', action='store_true', help='print the map of the modules instead')
     options = parser.parse_args(arguments)
     try:
         tree = Tree(options.root)
         if 'CMakeLists.txt' not in tree.paths:
             parser.error(f"no CMakeLists.txt in '{options.root}'; is this the checkout?")
+        if options.map:
+            print('\n'.join(map_of(tree)))
+            return 0
         faults = [fault for name in options.only for fault in GUARDS[name](tree)]
     except (Refusal, OSError) as refusal:
         print(f'guards.py: {refusal}', file=sys.stderr)

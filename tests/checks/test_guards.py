@@ -41,7 +41,7 @@ class House(unittest.TestCase):
         self.source('tests/unit/test_good.cpp', '#include "rt_core/base/good.hpp"',
                     'static_assert(kMaxGood == 1);')
         # Its comments name pages that the house does not have.
-        self.script(guards.LAYERS, re.sub('#.*', '', (CHECKOUT / guards.LAYERS).read_text()))
+        self.script(guards.LAYERS, re.sub('#.*', '# A.', (CHECKOUT / guards.LAYERS).read_text()))
 
     def text(self, path, text):
         file = self.root / path
@@ -141,6 +141,10 @@ class Layers(House):
                  "includes 'dds/dds.h'; only these may include dds: transport/dds tests"),
                 ('transport/link.hpp', '#include "chunks.h"',
                  "includes 'chunks.h'; not a path of a module from the repository root"),
+                ('platform/controller/run.cpp', '#include "platform/report/words.hpp"',
+                 "includes 'platform/report/words.hpp'; platform/controller may include: "),
+                ('platform/report/words.cpp', '#include "host_tools/mesh/mesh.hpp"',
+                 "includes 'host_tools/mesh/mesh.hpp'; platform/report may include: "),
                 ('platform/machine/posix/clock.cpp', '#include "platform/hrtc/loop.hpp"',
                  "includes 'platform/hrtc/loop.hpp'; platform/machine may include: ")):
             with self.subTest(path=path, line=line):
@@ -160,6 +164,34 @@ class Layers(House):
         self.source('rt_core/basement/old.hpp', '')
         self.refuse('layers', 'host_tools/attic/old.hpp:1: in no module',
                     'rt_core/basement/old.hpp:1: in no module')
+
+    def test_modules_in_a_circle_are_refused(self):
+        self.source('platform/devices/udp/link.hpp', '#include "platform/devices/dhd/door.hpp"')
+        self.source('platform/devices/dhd/door.hpp', '#include "platform/devices/device.hpp"')
+        self.accept('layers')
+        self.source('platform/devices/dhd/key.hpp', '#include "platform/devices/udp/link.hpp"')
+        self.refuse('layers', 'platform/devices/dhd/key.hpp:4: closes a circle: '
+                    'platform/devices/dhd -> platform/devices/udp -> platform/devices/dhd')
+
+    def test_a_module_of_which_nothing_is_said_is_refused(self):
+        table = (self.root / guards.LAYERS).read_text()
+        self.accept('modules_told')
+        line = table.count('\n') + 1
+        for above, at in (('', 0), ('# --- A heading.\n', 1), ('# A.\n\n', 2)):
+            with self.subTest(above):
+                self.text(guards.LAYERS, f'{table}{above}tactus_module(rt_core/attic)\n')
+                self.refuse('modules_told', f'{guards.LAYERS}:{line + at}: no comment right above')
+
+    def test_a_map_that_the_includes_do_not_make_is_refused(self):
+        self.source('platform/hrtc/main.cpp', '#include "platform/loop/loop.hpp"')
+        code, drawn = self.run_guards(self.root, '--map')
+        self.assertEqual(code, 0, drawn)
+        self.assertIn('platform/loop', drawn.splitlines()[0].split())
+        self.assertEqual(drawn.splitlines()[1], 'platform/hrtc')
+        self.text('docs/architecture.md', f'```text\n{drawn}```\n')
+        self.accept('module_map')
+        self.text('docs/architecture.md', f'```text\nrt_core\n{drawn}```\n')
+        self.refuse('module_map', "docs/architecture.md:1: its map of the modules is another")
 
     def test_a_house_without_includes_is_refused(self):
         for path in ('rt_core/base/good.hpp', 'tests/unit/test_good.cpp'):
