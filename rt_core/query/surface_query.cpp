@@ -57,22 +57,21 @@ public:
     {
         BlockBatch batch; // NOLINT(cppcoreguidelines-pro-type-member-init): filled to its count.
         batch.count = 0;
-        std::uint32_t known = kNoNode;
         if (tree_.is_block_in_use(memory.block))
         {
-            known = memory.block;
-            look_at_alone(known, batch);
+            known_.before = memory.block;
+            look_at_alone(memory.block, batch);
         }
-        if (known == kNoNode || limit_ > kPoorLimit * memory.limit)
+        if (known_.before == kNoNode || limit_ > kPoorLimit * memory.limit)
         {
             const std::uint32_t nearest = descend();
-            if (nearest != kNoNode && nearest != known)
+            if (nearest != kNoNode && nearest != known_.before)
             {
-                known = nearest;
-                look_at_alone(known, batch);
+                known_.nearest = nearest;
+                look_at_alone(nearest, batch);
             }
         }
-        walk(known, batch);
+        walk(batch);
         decide();
         memory.block = nearest_block_ == kNoNode ? memory.block : nearest_block_;
         memory.limit = limit_;
@@ -102,6 +101,17 @@ public:
     }
 
 private:
+    /// The blocks that the search begins with, which the walk leaves out.
+    struct KnownBlocks
+    {
+        std::uint32_t before{kNoNode};  ///< The one of the last query.
+        std::uint32_t nearest{kNoNode}; ///< The one that the nearest boxes lead to.
+
+        [[nodiscard]] bool has(std::uint32_t block) const noexcept
+        {
+            return block == before || block == nearest;
+        }
+    };
     struct Candidate
     {
         std::uint32_t block;
@@ -145,9 +155,9 @@ private:
         return ref.is_none() ? kNoNode : ref.index();
     }
 
-    /// Breadth first no visit waits for the one before; `known` was looked at. With half the budget
-    /// gone the nearest come first, so that what it doesn't suffice for is far away.
-    void walk(std::uint32_t known, BlockBatch& batch) noexcept
+    /// Breadth first no visit waits for the one before. With half the budget gone the nearest come
+    /// first, so that what it doesn't suffice for is far away.
+    void walk(BlockBatch& batch) noexcept
     {
         Frontier frontier; // NOLINT(cppcoreguidelines-pro-type-member-init): likewise.
         frontier.count = tree_.root().is_none() ? 0 : 1;
@@ -159,7 +169,7 @@ private:
             const WalkItem item = take_next(frontier, next);
             const TreeRef ref = item.ref;
             const float gap = item.gap;
-            if (gap > bound() || (ref.is_block() && ref.index() == known))
+            if (gap > bound() || (ref.is_block() && known_.has(ref.index())))
             {
                 continue;
             }
@@ -174,10 +184,10 @@ private:
             }
             if (batch.count > BlockBatch::kFull)
             {
-                look_at(batch, known);
+                look_at(batch);
             }
         }
-        look_at(batch, known);
+        look_at(batch);
         for (; next < frontier.count; ++next)
         {
             leave(frontier.gaps[next]);
@@ -247,8 +257,8 @@ private:
         }
     }
 
-    /// All blocks of the batch but the known one, and empties it.
-    void look_at(BlockBatch& batch, std::uint32_t known) noexcept
+    /// All blocks of the batch but the known ones, and empties it.
+    void look_at(BlockBatch& batch) noexcept
     {
         const std::uint32_t granted = budget_.take_nodes(batch.count);
         for (std::uint32_t i = granted; i < batch.count; ++i)
@@ -256,9 +266,32 @@ private:
             leave(batch.gaps[i]);
         }
         batch.count = granted;
+        // The kernel leaves out one block; after a jump there is a second one.
+        const bool has_both = known_.before != kNoNode && known_.nearest != kNoNode;
+        if (has_both)
+        {
+            leave_out(TreeRef::to_block(known_.before).value, batch);
+        }
+        const std::uint32_t known = known_.nearest != kNoNode ? known_.nearest : known_.before;
         tree_.kernels().sort_out(&tree_.block(0), probe_, TreeRef::to_block(known).value, bound(),
                                  batch);
         test_batch(batch);
+    }
+
+    static void leave_out(std::uint32_t block, BlockBatch& batch) noexcept
+    {
+        std::uint32_t left = 0;
+        for (std::uint32_t i = 0; i < batch.count; ++i)
+        {
+            batch.blocks[left] = batch.blocks[i];
+            batch.gaps[left] = batch.gaps[i];
+            for (auto& axis : batch.toward)
+            {
+                axis[left] = axis[i];
+            }
+            left += batch.blocks[i] != block ? 1U : 0U;
+        }
+        batch.count = left;
     }
 
     void test_batch(BlockBatch& batch) noexcept
@@ -480,6 +513,7 @@ private:
     ClosestPoint nearest_;
     FaceId nearest_face_{};
     std::uint32_t nearest_block_{kNoNode};
+    KnownBlocks known_;
 };
 
 /// From where single precision does not reach: the box of everything says how far it is.

@@ -533,6 +533,28 @@ TEST(SurfaceQuery, what_a_spent_budget_leaves_is_far_away)
     EXPECT_FALSE(ask(*rig.sut, Vec3(0, 0, 0), 0.05).surface->is_cut);
 }
 
+/// The search begins at two blocks then, and both are in reach.
+TEST(SurfaceQuery, after_a_jump_lists_each_face_once_and_the_same_faces_as_a_first_query)
+{
+    TreeRig rig({kSheetFaces, kSheetFaces, kSheetFaces});
+    put_sheet(rig);
+    const double disc = sheet_disc(500.0);
+    QueryMemory memory;
+    for (int jump = 0; jump < 8; ++jump)
+    {
+        const Vec3 center(jump % 2 == 0 ? -0.2 * disc : 0.3 * disc, 0.01 * disc * jump, 1e-3);
+        const PointAnswer first = ask(*rig.sut, center, disc);
+        PointAnswer asked;
+        asked.budget.nodes = 1'000'000;
+        asked.budget.triangles = 1'000'000;
+        gather_surface(*rig.sut, center, disc, memory, asked.budget, *asked.surface);
+        ASSERT_FALSE(asked.surface->is_cut) << jump;
+        ASSERT_EQ(faces_of(*rig.sut, *asked.surface), faces_of(*rig.sut, *first.surface)) << jump;
+        ASSERT_EQ(asked.surface->count, first.surface->count) << jump;
+        ASSERT_EQ(asked.surface->answer.nearest_face, first.surface->answer.nearest_face) << jump;
+    }
+}
+
 TEST(SurfaceQuery, of_more_nodes_and_blocks_than_are_gone_through_in_order_misses_none)
 {
     constexpr std::uint32_t kFaces = 12'000;
