@@ -270,6 +270,8 @@ void tell_pair(FieldSink& sink, const PairOutput& pair)
     sink.number("upper_m", pair.upper_m);
     sink.number("certified_radius_m", pair.certified_radius_m);
     sink.number("tolerated_m", pair.tolerated_m);
+    sink.vector("tool_world_m", pair.tool_m);
+    sink.rotation("tool_rotation_world", quaternion(pair.tool_rotation));
     sink.vector("point_world_m", pair.point_m);
     sink.integer("nearest_face", known(pair.nearest_face));
     sink.vector("nearest_point_world_m", where(has_nearest, pair.nearest_point_m));

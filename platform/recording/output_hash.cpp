@@ -12,7 +12,7 @@ namespace
 
 // A field that is added to one of these has to be hashed below.
 static_assert(sizeof(ToolOutput) == 256);
-static_assert(sizeof(PairOutput) == 136);
+static_assert(sizeof(PairOutput) == 232);
 static_assert(sizeof(Contact) == 96);
 static_assert(sizeof(MeshReport) == 8 * kMaxMeetingFaces + 24);
 static_assert(sizeof(ModelOutput) == 80);
@@ -37,6 +37,13 @@ public:
         add(value.y());
         add(value.z());
     }
+    void add(const Mat3& value) noexcept
+    {
+        for (int row = 0; row < 3; ++row)
+        {
+            add(Vec3(value.row(row)));
+        }
+    }
     void add(const PoolUse& use) noexcept
     {
         add(std::uint64_t{use.used});
@@ -57,10 +64,7 @@ std::uint64_t hash_tools(std::span<const ToolOutput> tools) noexcept
         hash.add(tool.force_n);
         hash.add(tool.proxy_m);
         hash.add(tool.torque_nm);
-        for (int row = 0; row < 3; ++row)
-        {
-            hash.add(Vec3(tool.proxy_rotation.row(row)));
-        }
+        hash.add(tool.proxy_rotation);
         hash.add(std::uint64_t{tool.in_contact});
         hash.add(std::uint64_t{tool.frozen});
         hash.add(std::uint64_t{tool.squeezed});
@@ -119,6 +123,8 @@ std::uint64_t hash_pairs(std::span<const PairOutput> pairs) noexcept
     {
         hash.add((std::uint64_t{pair.tool} << 32U) | pair.object);
         hash.add(static_cast<std::uint64_t>(pair.kind));
+        hash.add(pair.tool_m);
+        hash.add(pair.tool_rotation);
         hash.add(pair.point_m);
         hash.add(pair.lower_m);
         hash.add(pair.upper_m);

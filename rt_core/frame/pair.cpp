@@ -437,6 +437,7 @@ SurfaceRoom Pair::query(const SurfaceRoom& room, const Budgets& budgets, WorkCou
     LocalSurface& surface = surface_;
     surface = room.surface();
     const ObjectPose& pose = parts_.object->pose;
+    asked_ = parts_.tool->stance().place;
     if (outlook_.is_asleep())
     {
         surface.answer = outlook_.from_motion();
@@ -748,6 +749,8 @@ PairOutput Pair::output() const noexcept
     return {.tool = parts_.tool_index,
             .object = parts_.object_number,
             .kind = is_nearest_known ? known : answer.kind,
+            .tool_m = asked_.translation_m,
+            .tool_rotation = asked_.rotation,
             .point_m = to_world(pose, answer.tool_point_m),
             .lower_m = lower_m_,
             .upper_m = upper_m_,

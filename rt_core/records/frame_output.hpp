@@ -87,8 +87,12 @@ struct PairOutput
     std::uint32_t tool{0};
     std::uint32_t object{0};
     AnswerKind kind{AnswerKind::bracket};
-    /// From where: of the tool's core, at its proxy at the start of the frame, the point that is
-    /// nearest to the surface, or the centre where that is not known.
+    /// Where the tool was asked about: its place at the start of the frame, or at the start of the
+    /// frame's last step that had work left for this pair. Pairs of one tool may differ.
+    Vec3 tool_m{0.0, 0.0, 0.0};
+    Mat3 tool_rotation{Mat3::Identity()}; ///< The same of its rotation.
+    /// Of the tool's core, there, the point that is nearest to the surface, or the centre where
+    /// that is not known.
     Vec3 point_m{0.0, 0.0, 0.0};
     double lower_m{0.0}; ///< From the core, >= 0; the tool's radius is not taken off.
     double upper_m{0.0}; ///< Likewise; infinite where nothing is known yet.

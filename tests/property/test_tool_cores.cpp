@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace tactus::test
@@ -114,6 +115,33 @@ ToolSpec scaled_tool(const CoreCase& kind, double diagonal_m)
     return tool_with(core, kind.radius * diagonal_m);
 }
 
+/// A hand that goes through the model's surface faster than a body follows it in one step.
+class Sweep
+{
+public:
+    Sweep(const TestModel& model, Random& random)
+        : from_(place_at_distance(model, random, 0.05 * model.diagonal_m))
+        , way_(random.in_cube(0.5 * model.diagonal_m))
+        , turn_(turned(random, 0.1))
+    {
+    }
+
+    ToolState next()
+    {
+        const double phase = 0.15 * frame_++;
+        state_.position_m = from_ + (1.0 - std::cos(phase)) * way_;
+        state_.rotation = turn_ * state_.rotation;
+        return state_;
+    }
+
+private:
+    Vec3 from_;
+    Vec3 way_;
+    Mat3 turn_;
+    ToolState state_;
+    int frame_{0};
+};
+
 /// So that nothing passes by answering nothing.
 struct Seen
 {
@@ -187,6 +215,39 @@ TEST(ToolCores, every_frame_brackets_the_distance_and_exact_ones_are_the_full_me
     }
     EXPECT_GT(seen.exact, 100);
     EXPECT_GT(seen.contacts, 100);
+}
+
+TEST(ToolCores, answers_of_frames_with_several_steps_are_of_the_place_that_they_name)
+{
+    Random random(403);
+    const TestModel& model = small_model(0);
+    const double slack = 1e-13 * model.diagonal_m;
+    int elsewhere = 0;
+    for (const CoreCase& kind : core_cases())
+    {
+        RigOptions options;
+        ToolSpec spec = scaled_tool(kind, model.diagonal_m);
+        spec.radius_m = std::max(spec.radius_m, 0.005 * model.diagonal_m);
+        spec.passes_through = false;
+        spec.speed_max_m_per_s = 1e3 * model.diagonal_m;
+        options.tools = {spec};
+        FrameRig rig(model, options);
+        Sweep hand(model, random);
+        Vec3 began_m = hand.next().position_m;
+        for (int frame = 0; frame < 120; ++frame)
+        {
+            const ToolState tool = hand.next();
+            const FrameOutput output = rig.step(std::span(&tool, 1), {});
+            const PairOutput& pair = output.pairs[0];
+            const PlacedCore core(spec.core, {pair.tool_rotation, pair.tool_m, 1.0});
+            const Truth truth = measure(model, core, spec.radius_m);
+            ASSERT_LE(pair.lower_m, truth.distance_m + slack) << kind.name << frame;
+            ASSERT_GE(pair.upper_m, truth.distance_m - slack) << kind.name << frame;
+            elsewhere += (pair.tool_m - began_m).norm() > slack ? 1 : 0;
+            began_m = output.tools[0].proxy_m;
+        }
+    }
+    EXPECT_GT(elsewhere, 20);
 }
 
 TEST(ToolCores, a_turned_and_scaled_object_gives_the_same_answers)

@@ -58,6 +58,7 @@ struct Example
         PairOutput& pair = frame.pair_outputs[0];
         pair.object = 3;
         pair.kind = AnswerKind::exact;
+        pair.tool_m = Vec3(97.0, 98.0, 99.0);
         pair.point_m = Vec3(62.0, 63.0, 64.0);
         pair.lower_m = 65.0;
         pair.upper_m = 66.0;
@@ -169,8 +170,10 @@ TEST(FrameExport, tells_every_value_under_its_name)
             "in_contact": true, "held_back": true, "frozen": false,
             "faults": ["tool_stuck"]}],
         "pairs": [{
-            "object": 3, "answer": "exact", "point_world_m": [62.0, 63.0, 64.0], "lower_m": 65.0,
-            "upper_m": 66.0, "certified_radius_m": 67.0, "tolerated_m": 96.0, "nearest_face": 68,
+            "object": 3, "answer": "exact", "tool_world_m": [97.0, 98.0, 99.0],
+            "tool_rotation_world": [0.0, 0.0, 0.0, 1.0],
+            "point_world_m": [62.0, 63.0, 64.0], "lower_m": 65.0, "upper_m": 66.0,
+            "certified_radius_m": 67.0, "tolerated_m": 96.0, "nearest_face": 68,
             "nearest_point_world_m": [69.0, 70.0, 71.0], "nearest_feature": "edge_2",
             "damping_n_s_per_m": 72.0, "normal_world": [0.0, 0.0, 1.0], "side": "outside",
             "contacts": 0, "meeting_faces": null}],

@@ -70,6 +70,8 @@ std::vector<Part> parts()
         {&OutputHashes::pairs,
          {pair([](auto& p) { p.tool = 1; }), pair([](auto& p) { p.object = 1; }),
           pair([](auto& p) { p.kind = AnswerKind::stale; }),
+          pair([](auto& p) { p.tool_m.y() = 1.0; }),
+          pair([](auto& p) { p.tool_rotation(2, 1) = 1.0; }),
           pair([](auto& p) { p.point_m.x() = 1.0; }), pair([](auto& p) { p.lower_m = 1.0; }),
           pair([](auto& p) { p.upper_m = 1.0; }), pair([](auto& p) { p.certified_radius_m = 1.0; }),
           pair([](auto& p) { p.tolerated_m = 1.0; }),
