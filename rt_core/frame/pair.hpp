@@ -270,7 +270,7 @@ private:
     TouchReport* touches_{nullptr};    ///< Null unless the tool is held as a body.
     MeshPair* mesh_{nullptr};          ///< Null unless the tool is a mesh.
     Outlook outlook_;
-    Similarity asked_; ///< Where the tool was when it was asked about last, in the world.
+    Similarity asked_;           ///< Where the tool was when it was asked about last, in the world.
     Vec3 hand_m_{0.0, 0.0, 0.0}; ///< In the model's frame, in the last frame.
     Urgency urgency_;
     bool is_shed_{false};
