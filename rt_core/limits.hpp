@@ -271,6 +271,8 @@ inline constexpr double kDampingForceShare = 0.25;
 /// The most that coarser faces may change a force by where the pools have room for finer ones, in
 /// newtons: a tenth of what a hand feels of a wall.
 inline constexpr double kForceToleranceMax_n = 0.1;
+/// The same unless an option says otherwise: no hand feels it.
+inline constexpr double kForceToleranceUsual_n = 0.001;
 /// How fast a force may change beside what hand and objects make, as a share of the device's
 /// largest force in a millisecond, unless an option says otherwise: 0.08 N of 8 N. A strike so
 /// rises in 100 ms, about as fast as a hand gives way. No less than the least, or none would come

@@ -29,6 +29,9 @@ namespace tactus::hrtc
 namespace
 {
 
+/// What a refusal proposes is rounded to three digits, and taken.
+constexpr double kWithinRadius = 0.99;
+
 constexpr double kBytesPerMib = 1024.0 * 1024.0;
 /// Without --follow-speed.
 constexpr double kSpeedMax_diag = 1.0;
@@ -72,6 +75,10 @@ Controller::create(const Options& options, std::vector<ServedModel> models, cons
         return *error;
     }
     controller->make_tools(options);
+    if (std::optional<Refusal> error = controller->check_tolerance(options))
+    {
+        return *error;
+    }
     if (std::optional<Refusal> error = controller->lay_out_pools(options))
     {
         return *error;
@@ -182,6 +189,33 @@ void Controller::make_tools(const Options& options)
     }
 }
 
+/// A tool whose surface may be off by more than its radius feels none. Without a tolerance that is
+/// asked for, and for tools without a radius, SurfaceTolerance's own bound holds.
+std::optional<Refusal> Controller::check_tolerance(const Options& options) const
+{
+    double softest_n_per_m = options.stiffness_n_per_m;
+    for (const ObjectSpec& object : objects_)
+    {
+        const double wall_n_per_m = object.material.stiffness_n_per_m;
+        softest_n_per_m =
+            wall_n_per_m > 0.0 ? std::min(softest_n_per_m, wall_n_per_m) : softest_n_per_m;
+    }
+    for (const ToolSetup& tool : tools_)
+    {
+        const double most_n = softest_n_per_m * tool.spec.radius_m;
+        if (!is_mesh(tool.spec) && tool.spec.radius_m > 0.0 &&
+            options.force_tolerance_n.value_or(0.0) > most_n)
+        {
+            return Refusal{fmt::format(
+                "--force-tolerance: {:.3g} N is {:.3g} mm of a wall of {:.4g} N/m, more than the "
+                "radius of the tool {}; 0 to {:.3g} N",
+                *options.force_tolerance_n, 1e3 * *options.force_tolerance_n / softest_n_per_m,
+                softest_n_per_m, tool.shape, kWithinRadius * most_n)};
+        }
+    }
+    return std::nullopt;
+}
+
 std::optional<Refusal> Controller::lay_out_pools(const Options& options)
 {
     setup_.objects = objects_;
@@ -195,7 +229,7 @@ std::optional<Refusal> Controller::lay_out_pools(const Options& options)
     }
     setup_.static_when_it_fits = options.static_when_it_fits;
     setup_.prediction = options.prediction;
-    setup_.force_tolerance_n = options.force_tolerance_n;
+    setup_.force_tolerance_n = options.force_tolerance_n.value_or(kForceToleranceUsual_n);
     setup_.kernels = options.kernels != nullptr ? options.kernels : &best_kernels();
     setup_.period_ns = options.period().ns;
     const auto cache = static_cast<std::size_t>(options.cache_mib * kBytesPerMib);

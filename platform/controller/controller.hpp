@@ -74,6 +74,7 @@ private:
     void make_poses(const Options& options);
     [[nodiscard]] std::optional<Refusal> open_devices(const Options& options);
     void make_tools(const Options& options);
+    [[nodiscard]] std::optional<Refusal> check_tolerance(const Options& options) const;
     void make_courier(const Log& log);
     [[nodiscard]] std::optional<Refusal> simulate_device(const Options& options, std::size_t tool);
     [[nodiscard]] std::optional<Refusal> finish_devices(const Options& options);

@@ -2,8 +2,10 @@
 // Copyright the Tactus authors.
 #include "platform/report/start_lines.hpp"
 
+#include "platform/report/footprint.hpp"
 #include "platform/scene/material_limits.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
+#include "rt_core/frame/frame_setup.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/spm/header.hpp"
 #include "transport/base/counted.hpp"
@@ -161,6 +163,35 @@ std::string size_note(const ToolSetup& tool, const std::vector<Surroundings>& ob
                                : fmt::format(", {:.2g} TIMES AS LARGE as what it can touch", times);
 }
 
+/// Nothing unless more faces lie below the tool, on the densest of the objects, than a frame looks
+/// at or the pools have room for.
+std::string footprint_note(const ToolSetup& tool, const Controller& controller)
+{
+    Footprint most;
+    std::string name;
+    for (std::size_t i = 0; i < controller.objects().size(); ++i)
+    {
+        const ServedModel& model = controller.models()[controller.objects()[i].model.value];
+        const Footprint here = footprint_of(tool.spec, model, controller.poses()[i].scale);
+        name = here.faces > most.faces ? model.name : name;
+        most = here.faces > most.faces ? here : most;
+    }
+    const double room = pool_capacities(controller.setup()).faces;
+    const double pool_mib = static_cast<double>(controller.pool_bytes()) / 0x1p20;
+    const std::string limit =
+        most.faces > kMaxLocalTriangles ? fmt::format("a frame looks at {}", kMaxLocalTriangles)
+        : most.kept > room ? fmt::format("the pools have room for {:.2g} of {:.2g} around them; "
+                                         "--pool-mib {:.0f} would do",
+                                         room, most.kept, std::ceil(pool_mib * most.kept / room))
+                           : "";
+    const bool is_tolerant = controller.setup().force_tolerance_n > 0.0;
+    return limit.empty() ? std::string()
+                         : fmt::format("{:<12}lies on some {:.2g} faces of {}, {}: it {}\n", "",
+                                       most.faces, name, limit,
+                                       is_tolerant ? "feels a coarser surface, within bounds"
+                                                   : "MAY BE HELD BACK, without --force-tolerance");
+}
+
 /// Which of the rule's terms makes the wall softer than asked.
 std::string softened_by(const ToolSetup& tool, double damping_n_s_per_m, double asked_n_per_m)
 {
@@ -206,9 +237,9 @@ std::string tool_line(const Options& options, const ToolSetup& tool, const Contr
                                   ? fmt::format("{:.3g} m round {}", device.workspace_radius_m,
                                                 text_of(Vec3(centre[0], centre[1], centre[2])))
                                   : "anywhere"; // A simulated hand that follows an object.
-    return fmt::format("{:<12}{} on {}, {}: {}{}; {}\n", "tool", tool.shape, device.name, where,
-                       reach_of(options, tool, controller, objects), size_note(tool, objects),
-                       wall);
+    return fmt::format("{:<12}{} on {}, {}: {}{}; {}\n{}", "tool", tool.shape, device.name, where,
+                       reach_of(options, tool, controller, objects), size_note(tool, objects), wall,
+                       footprint_note(tool, controller));
 }
 
 } // namespace

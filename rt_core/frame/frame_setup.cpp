@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "rt_core/frame/frame_setup.hpp"
 
+#include "rt_core/limits.hpp"
+
 #include <algorithm>
 #include <array>
 
@@ -24,6 +26,8 @@ const char* refusal_text(FrameRefusal refusal) noexcept
         return "a model's header is damaged";
     case FrameRefusal::base_refused:
         return "a model's base mesh is damaged";
+    case FrameRefusal::bad_tolerance:
+        return "the force tolerance is no number from 0 to 0.1 N";
     case FrameRefusal::memory_too_small:
         return "the pools are too small for the models";
     }
@@ -61,6 +65,10 @@ std::optional<FrameRefusal> find_refusal(const FrameSetup& setup) noexcept
         capacities.pairs > kMaxPairs)
     {
         return FrameRefusal::too_many;
+    }
+    if (!(setup.force_tolerance_n >= 0.0 && setup.force_tolerance_n <= kForceToleranceMax_n))
+    {
+        return FrameRefusal::bad_tolerance;
     }
     std::uint64_t faces = setup.for_guests.faces;
     for (const ModelSource& source : setup.models)

@@ -72,6 +72,7 @@ enum class FrameRefusal : std::uint8_t
     shared_model,     ///< A tool names a model that an object shows.
     header_refused,   ///< A model's header did not pass its checks.
     base_refused,     ///< A model's base mesh did not pass its checks.
+    bad_tolerance,    ///< The force tolerance is not 0 to kForceToleranceMax_n.
     memory_too_small, ///< The lent memory is less than required_bytes().
 };
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <limits>
 #include <optional>
 
 namespace tactus::test
@@ -62,6 +63,27 @@ TEST(FrameSetup, takes_as_many_faces_of_all_models_as_the_limit)
     EXPECT_EQ(find_refusal(setup), FrameRefusal::header_refused); // It is looked at later.
     models[0].capacities.faces = 1;
     EXPECT_EQ(find_refusal(setup), FrameRefusal::too_many_faces);
+}
+
+TEST(FrameSetup, takes_a_force_tolerance_up_to_the_limit)
+{
+    const std::array<ModelSource, 1> models{};
+    const std::array<ToolSpec, 1> tools{};
+    FrameSetup setup;
+    setup.models = models;
+    setup.tools = tools;
+    for (const double taken : {0.0, 0.001, kForceToleranceMax_n})
+    {
+        setup.force_tolerance_n = taken;
+        EXPECT_EQ(find_refusal(setup), FrameRefusal::header_refused) << taken; // Looked at later.
+    }
+    for (const double refused :
+         {-1e-9, 1.01 * kForceToleranceMax_n, std::numeric_limits<double>::quiet_NaN(),
+          std::numeric_limits<double>::infinity()})
+    {
+        setup.force_tolerance_n = refused;
+        EXPECT_EQ(find_refusal(setup), FrameRefusal::bad_tolerance) << refused;
+    }
 }
 
 TEST(FrameSetup, refuses_models_that_are_not_there_and_a_tool_s_model_that_an_object_shows)
