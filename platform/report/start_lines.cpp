@@ -163,6 +163,13 @@ std::string size_note(const ToolSetup& tool, const std::vector<Surroundings>& ob
                                : fmt::format(", {:.2g} TIMES AS LARGE as what it can touch", times);
 }
 
+/// A count above 0, to two digits: 27000.
+std::string about(double count)
+{
+    const double step = std::pow(10.0, std::max(0.0, std::floor(std::log10(count)) - 1.0));
+    return fmt::format("{:.0f}", std::round(count / step) * step);
+}
+
 /// Nothing unless more faces lie below the tool, on the densest of the objects, than a frame looks
 /// at or the pools have room for.
 std::string footprint_note(const ToolSetup& tool, const Controller& controller)
@@ -177,18 +184,22 @@ std::string footprint_note(const ToolSetup& tool, const Controller& controller)
         most = here.faces > most.faces ? here : most;
     }
     const double room = pool_capacities(controller.setup()).faces;
-    const double pool_mib = static_cast<double>(controller.pool_bytes()) / 0x1p20;
-    const std::string limit =
-        most.faces > kMaxLocalTriangles ? fmt::format("a frame looks at {}", kMaxLocalTriangles)
-        : most.kept > room ? fmt::format("the pools have room for {:.2g} of {:.2g} around them; "
-                                         "--pool-mib {:.0f} would do",
-                                         room, most.kept, std::ceil(pool_mib * most.kept / room))
-                           : "";
+    std::string limit;
+    if (most.faces > kMaxLocalTriangles)
+    {
+        limit = fmt::format("a frame looks at {}", kMaxLocalTriangles);
+    }
+    else if (most.kept > room)
+    {
+        const double pool_mib = static_cast<double>(controller.pool_bytes()) / 0x1p20;
+        limit = fmt::format("the pools have room for {} of {} there; --pool-mib {:.0f} would do",
+                            about(room), about(most.kept), std::ceil(pool_mib * most.kept / room));
+    }
     const bool is_tolerant = controller.setup().force_tolerance_n > 0.0;
     return limit.empty() ? std::string()
-                         : fmt::format("{:<12}lies on some {:.2g} faces of {}, {}: it {}\n", "",
-                                       most.faces, name, limit,
-                                       is_tolerant ? "feels a coarser surface, within bounds"
+                         : fmt::format("{:<12}lies on some {} faces of {}, {}: it {}\n", "",
+                                       about(most.faces), name, limit,
+                                       is_tolerant ? "feels a coarser surface, with proven bounds"
                                                    : "MAY BE HELD BACK, without --force-tolerance");
 }
 
