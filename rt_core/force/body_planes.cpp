@@ -26,12 +26,28 @@ constexpr double kMostLean = 0.8;
 constexpr double kSeamGap = 0.5;
 constexpr double kOnFace = 1e-3;
 constexpr double kAbove = 0.1;
+/// And that tool point is among those that touch the face's plane, to within this share of the
+/// radius: they hold it up without the edge.
+constexpr double kSameSupport = 0.01;
 /// What is within this share of the radius of touching may be held by friction.
 constexpr double kTouchingGap = 0.02;
 /// Slips below this share of the radius are none.
 constexpr double kLeastSlip = 1e-4;
 /// Friction that is this near to what the pressure allows is not corrected.
 constexpr double kSameFriction = 1e-4;
+
+/// Directions in a plane, of half a turn.
+constexpr double kHalfRoot = 0.7071067811865476; ///< sin 45 degrees,
+constexpr double kSin22 = 0.3826834323650898;    ///< and of 22.5.
+constexpr double kCos22 = 0.9238795325112867;
+constexpr std::array<std::array<double, 2>, 8> kDirections{{{1.0, 0.0},
+                                                            {kCos22, kSin22},
+                                                            {kHalfRoot, kHalfRoot},
+                                                            {kSin22, kCos22},
+                                                            {0.0, 1.0},
+                                                            {-kSin22, kCos22},
+                                                            {-kHalfRoot, kHalfRoot},
+                                                            {-kCos22, kSin22}}};
 
 Motion<6> to_motion(const Vec3& translation, const Vec3& rotation) noexcept
 {
@@ -80,15 +96,20 @@ Vec3 BodyPlanes::lever_m(std::uint32_t i) const noexcept
     return touches_[i].on_tool_m - radius_m_ * touches_[i].normal - place_m_;
 }
 
+HalfSpace<6> BodyPlanes::space_of(const BodyTouch& touch) const noexcept
+{
+    const Vec3 lever = (touch.on_tool_m - place_m_) / arm_m_;
+    return {to_motion(touch.normal, lever.cross(touch.normal)),
+            radius_m_ - touch.normal.dot(touch.on_tool_m - touch.on_surface_m)};
+}
+
 void BodyPlanes::add(const BodyTouch& touch, const BodyGrip& grip) noexcept
 {
     if (touch.normal == Vec3(0.0, 0.0, 0.0))
     {
         return; // Of a face without area: those round it hold.
     }
-    const Vec3 lever = (touch.on_tool_m - place_m_) / arm_m_;
-    const HalfSpace<6> space{to_motion(touch.normal, lever.cross(touch.normal)),
-                             radius_m_ - touch.normal.dot(touch.on_tool_m - touch.on_surface_m)};
+    const HalfSpace<6> space = space_of(touch);
     std::size_t least = 0;
     for (std::size_t i = 0; i < spaces_.size(); ++i)
     {
@@ -122,36 +143,125 @@ void BodyPlanes::replace(std::size_t plane, const HalfSpace<6>& space, const Bod
     }
 }
 
-bool BodyPlanes::is_seam(std::size_t plane) const noexcept
+BodyPlanes::Ground::Ground(std::uint32_t nearest, const Vec3& normal) noexcept
+    : face(nearest), first(across(normal)), second(normal.cross(first))
 {
-    const BodyTouch& touch = touches_[plane];
-    if (touch.is_face || spaces_[plane].offset < -kSeamGap * radius_m_)
+    high_m.fill(-kInfinity);
+    low_m.fill(kInfinity);
+}
+
+BodyPlanes::Ground::Heights BodyPlanes::Ground::heights(const Vec3& point_m) const noexcept
+{
+    const double x = first.dot(point_m);
+    const double y = second.dot(point_m);
+    Heights heights_m; // NOLINT(cppcoreguidelines-pro-type-member-init): the loop fills it.
+    for (std::size_t i = 0; i < heights_m.size(); ++i)
     {
-        return false;
+        heights_m[i] = kDirections[i][0] * x + kDirections[i][1] * y;
     }
-    for (std::size_t i = 0; i < spaces_.size(); ++i)
+    return heights_m;
+}
+
+void BodyPlanes::Ground::support(const Vec3& point_m) noexcept
+{
+    const Heights here_m = heights(point_m);
+    for (std::size_t i = 0; i < here_m.size(); ++i)
     {
-        const BodyTouch& face = touches_[i];
-        if (!face.is_face || face.surface != touch.surface ||
-            spaces_[i].offset < spaces_[plane].offset)
+        high_m[i] = std::max(high_m[i], here_m[i]);
+        low_m[i] = std::min(low_m[i], here_m[i]);
+    }
+}
+
+bool BodyPlanes::Ground::is_among_supports(const Vec3& point_m, double off_m) const noexcept
+{
+    const Heights here_m = heights(point_m);
+    bool is_among = true;
+    for (std::size_t i = 0; i < here_m.size(); ++i)
+    {
+        is_among &= here_m[i] <= high_m[i] + off_m && here_m[i] >= low_m[i] - off_m;
+    }
+    return is_among;
+}
+
+BodyPlanes::Grounds BodyPlanes::grounds() const noexcept
+{
+    Grounds grounds;
+    for (std::uint32_t i = 0; i < spaces_.size(); ++i)
+    {
+        const BodyTouch& touch = touches_[i];
+        if (!touch.is_face)
         {
             continue;
         }
-        const double lean = (touch.normal - face.normal).norm();
-        const double edge_m = face.normal.dot(touch.on_surface_m - face.on_surface_m);
-        const double tool_m = face.normal.dot(touch.on_tool_m - face.on_surface_m);
-        if (lean > kLeastLean && lean < kMostLean &&
-            std::abs(edge_m) <= kOnFace * lean * radius_m_ &&
-            tool_m >= radius_m_ * (1.0 - kAbove * lean * lean))
+        auto* same = std::ranges::find_if(
+            grounds,
+            [&](const Ground& ground)
+            {
+                const BodyTouch& face = touches_[ground.face];
+                const Vec3 between_m = touch.on_surface_m - face.on_surface_m;
+                return face.surface == touch.surface &&
+                       (touch.normal - face.normal).squaredNorm() < kLeastLean * kLeastLean &&
+                       std::abs(face.normal.dot(between_m)) < kOnFace * kLeastLean * radius_m_;
+            });
+        if (same == grounds.end())
         {
-            return true;
+            if (grounds.full())
+            {
+                continue;
+            }
+            grounds.push_back(Ground(i, touch.normal));
+            same = grounds.end() - 1;
+        }
+        same->face = spaces_[i].offset > spaces_[same->face].offset ? i : same->face;
+        same->support(touch.on_tool_m - place_m_);
+    }
+    return grounds;
+}
+
+bool BodyPlanes::is_seam(std::size_t plane, const Ground& ground) const noexcept
+{
+    const BodyTouch& touch = touches_[plane];
+    const BodyTouch& face = touches_[ground.face];
+    const double lean = (touch.normal - face.normal).norm();
+    const double edge_m = face.normal.dot(touch.on_surface_m - face.on_surface_m);
+    const double tool_m = face.normal.dot(touch.on_tool_m - face.on_surface_m);
+    return face.surface == touch.surface && spaces_[ground.face].offset >= spaces_[plane].offset &&
+           lean > kLeastLean && lean < kMostLean &&
+           std::abs(edge_m) <= kOnFace * lean * radius_m_ &&
+           tool_m >= radius_m_ * (1.0 - kAbove * lean * lean) &&
+           ground.is_among_supports(touch.on_tool_m - place_m_, kSameSupport * radius_m_);
+}
+
+void BodyPlanes::leave_out_seams() noexcept
+{
+    const Grounds grounds = this->grounds();
+    StaticVector<std::size_t, kMaxHalfSpaces> kept;
+    for (std::size_t i = 0; i < spaces_.size(); ++i)
+    {
+        const bool may_be_seam = !touches_[i].is_face && spaces_[i].offset >= -kSeamGap * radius_m_;
+        if (!may_be_seam ||
+            std::ranges::none_of(grounds, [&](const Ground& ground) { return is_seam(i, ground); }))
+        {
+            kept.push_back(i);
         }
     }
-    return false;
+    for (std::size_t i = 0; i < kept.size(); ++i)
+    {
+        spaces_[i] = spaces_[kept[i]];
+        touches_[i] = touches_[kept[i]];
+        grips_[i] = grips_[kept[i]];
+    }
+    while (spaces_.size() > kept.size())
+    {
+        (void)spaces_.pop_back();
+        (void)touches_.pop_back();
+        (void)grips_.pop_back();
+    }
 }
 
 BodyMotion BodyPlanes::nearest(const Motion<6>& wanted) noexcept
 {
+    leave_out_seams();
     BodyMotion answer;
     const NearestMotion<6> held = plain(wanted, answer.is_squeezed);
     answer.motion = held.motion;
@@ -225,10 +335,6 @@ BodyPlanes::Chosen BodyPlanes::choose(const NearestMotion<6>& plain) const noexc
     const auto take = [&](Candidate& taken)
     {
         taken.apart_sq = 0.0;
-        if (is_seam(taken.plane))
-        {
-            return;
-        }
         chosen.push_back(taken.plane);
         for (Candidate& other : candidates)
         {

@@ -9,6 +9,7 @@
 #include "rt_core/limits.hpp"
 #include "rt_core/math/vec3.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -112,7 +113,28 @@ private:
     };
     using Chosen = StaticVector<std::uint32_t, kTiltedContacts>;
 
-    [[nodiscard]] bool is_seam(std::size_t plane) const noexcept;
+    /// A plane of faces that the tool touches, and where it does: a mesh has many faces in one.
+    struct Ground
+    {
+        using Heights = std::array<double, 8>; ///< Along directions in the plane.
+
+        std::uint32_t face; ///< The touch of the nearest of these faces.
+        Vec3 first;         ///< Of the plane's axes,
+        Vec3 second;
+        Heights high_m; ///< the extent of the tool points that touch it, from the tool's place.
+        Heights low_m;
+
+        Ground(std::uint32_t nearest, const Vec3& normal) noexcept;
+        [[nodiscard]] Heights heights(const Vec3& point_m) const noexcept;
+        void support(const Vec3& point_m) noexcept;
+        [[nodiscard]] bool is_among_supports(const Vec3& point_m, double off_m) const noexcept;
+    };
+    using Grounds = StaticVector<Ground, 8>;
+
+    [[nodiscard]] Grounds grounds() const noexcept;
+    [[nodiscard]] bool is_seam(std::size_t plane, const Ground& ground) const noexcept;
+    void leave_out_seams() noexcept;
+    [[nodiscard]] HalfSpace<6> space_of(const BodyTouch& touch) const noexcept;
     void replace(std::size_t plane, const HalfSpace<6>& space, const BodyTouch& touch,
                  const BodyGrip& grip) noexcept;
     [[nodiscard]] double apart_sq(const HalfSpace<6>& a, const HalfSpace<6>& b) const noexcept;

@@ -6,8 +6,11 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace tactus::test
@@ -43,6 +46,27 @@ double least_on_way(const Rig& rig, const ToolCore& core, const Similarity& from
     return least;
 }
 
+/// A flat square of 0.2 m in cells, each of two triangles. Corners within it are moved along it.
+TriangleList flat_mesh(double cell_m)
+{
+    const int cells = static_cast<int>(0.2 / cell_m);
+    const auto corner = [&](int i, int j)
+    {
+        const double shift = i % 3 == 1 && j % 2 == 1 ? 0.3 * cell_m : 0.0;
+        return to_float(Vec3(-0.1 + cell_m * i + shift, -0.1 + cell_m * j - 0.5 * shift, 0.0));
+    };
+    TriangleList triangles;
+    for (int i = 0; i < cells; ++i)
+    {
+        for (int j = 0; j < cells; ++j)
+        {
+            triangles.push_back({corner(i, j), corner(i + 1, j), corner(i + 1, j + 1)});
+            triangles.push_back({corner(i, j), corner(i + 1, j + 1), corner(i, j + 1)});
+        }
+    }
+    return triangles;
+}
+
 /// A box at rest on a plane, just touching it.
 Rig box_on_plane(const Material& material)
 {
@@ -67,6 +91,37 @@ TEST(RigidProxy, comes_to_rest_on_what_held_it_where_it_is_told_of_one_point_at_
         const ToolOutput output = rig.step(Vec3(0, 0, -0.004), tilted);
         ASSERT_LE((output.proxy_m - before).norm(), 1e-4 * kBodyRadius) << i;
         ASSERT_NEAR(rig.distance(), kBodyRadius, 0.01 * kBodyRadius) << i;
+    }
+}
+
+TEST(RigidProxy, slides_and_turns_over_the_seams_of_a_mesh_without_drag)
+{
+    const std::array<Vec3, 5> corners{
+        {{0.02, 0.0, 0.0}, {-0.01, 0.02, 0.0}, {-0.01, -0.02, 0.0}, {0, 0, 0.02}, {0.01, 0, 0.03}}};
+    const std::array<std::pair<ToolCore, double>, 3> tools{
+        {{Box{kHalf}, kHalf.z()},
+         {Segment{{-0.03, 0, 0}, {0.03, 0, 0}}, 0.0},
+         {Hull::create(corners).value(), 0.0}}};
+    for (const auto& [core, height_m] : tools)
+    {
+        for (const double cell_m : {0.02, 0.01})
+        {
+            Rig rig(tool_of(core), {{flat_mesh(cell_m), {}, {}}});
+            rig.takes_steps = true;
+            const double pressed_m = height_m + kBodyRadius - 0.002; // 1 N.
+            rig.settle(Vec3(-0.02, 0, 0.05));
+            rig.settle(Vec3(-0.02, 0, pressed_m));
+            for (int frame = 0; frame < 200; ++frame)
+            {
+                const Vec3 goal(-0.02 + 2e-4 * frame, 8e-5 * frame, pressed_m);
+                const ToolOutput output = rig.step(goal, turn(Vec3(0, 0, 1), 4e-3 * frame));
+                const auto told = [&]
+                { return std::to_string(cell_m) + ", " + std::to_string(frame); };
+                ASSERT_NEAR(output.force_n.z(), 1.0, 5e-3) << told();
+                ASSERT_LE(output.force_n.head<2>().norm(), 5e-3) << told();
+                ASSERT_GE(rig.distance(), kBodyRadius * (1.0 - 1e-6)) << told();
+            }
+        }
     }
 }
 
