@@ -72,7 +72,7 @@ TEST(FrameSetup, takes_a_force_tolerance_up_to_the_limit)
     FrameSetup setup;
     setup.models = models;
     setup.tools = tools;
-    for (const double taken : {0.0, 0.001, kForceToleranceMax_n})
+    for (const double taken : {0.0, kForceToleranceUsual_n, kForceToleranceMax_n})
     {
         setup.force_tolerance_n = taken;
         EXPECT_EQ(find_refusal(setup), FrameRefusal::header_refused) << taken; // Looked at later.
