@@ -5,6 +5,7 @@
 /// device sweeps round the bumpy sphere, held 1 mm below where the proxy's centre rests.
 
 #include "host_tools/shapes/shapes.hpp"
+#include "tests/bench/body_cases.hpp"
 #include "tests/bench/force_rows.hpp"
 #include "tests/bench/measuring.hpp"
 #include "tests/bench/rigid_sweeps.hpp"
@@ -312,6 +313,8 @@ std::vector<Case> force_cases()
                          }});
     }
     cases.push_back({"rigid", When::always, run_rigid_sweeps});
+    cases.push_back({"sheets", When::always, run_body_sheets});
+    cases.push_back({"dense", When::always, run_dense_meshes});
     cases.push_back({"units", When::always, run_units});
     cases.push_back({"recorded", When::always,
                      [](const CaseContext& context) { add_recorded_peer(context.rows); }});
