@@ -80,9 +80,10 @@ struct BodyMotion
 /// motion then costs what they take of it beside the springs' energy, and the nearest one is found
 /// in that metric: the planes and what is wanted are taken there and back by its Cholesky factor.
 ///
-/// Where a tool stands over one face, the next one seems to lean against it: its nearest point is
-/// the edge that both share. Such a plane is left out, or the tool would catch on the seams of a
-/// mesh.
+/// Seams: where a tool stands over one face, the next one seems to lean against it, since its
+/// nearest point is the edge that both share. Such a plane would let the tool go half of the way to
+/// the edge at most, and so drag at what slides. It is left out where touches on the first face's
+/// plane hold up that place of the tool from all sides.
 ///
 /// Scratch, too large for a frame's stack: 23 KiB. Haptic thread. Cost: 0.7 to 5 us without
 /// friction, at most 10 us more with it.
@@ -129,7 +130,9 @@ private:
         void support(const Vec3& point_m) noexcept;
         [[nodiscard]] bool is_among_supports(const Vec3& point_m, double off_m) const noexcept;
     };
-    using Grounds = StaticVector<Ground, 8>;
+    /// The tool catches on the seams of further ones.
+    static constexpr std::size_t kMaxGrounds = 8;
+    using Grounds = StaticVector<Ground, kMaxGrounds>;
 
     [[nodiscard]] Grounds grounds() const noexcept;
     [[nodiscard]] bool is_seam(std::size_t plane, const Ground& ground) const noexcept;

@@ -60,13 +60,17 @@ sys.exit(abs(beyond - (2 - across / 2 - radius - 0.5)) > 0.005)
 CHECK
 
 # A tool on more faces than a frame looks at says so at the start, and what it will feel.
-large() { "$hrtc" "${model[@]}" --tool box:0.05,0.05,0.05 --duration 0.1 "$@" >large.log; }
+run_large() {
+    "$hrtc" "${model[@]}" --tool box:0.05,0.05,0.05 --duration 0.1 "$@" >large.log \
+        || fault "a large tool: $(cat large.log)"
+}
 readonly lies_on='^ +lies on some [1-9][0-9]*00 faces of bumpy, a frame looks at 1024: it'
-large && grep -qE "$lies_on feels a coarser surface" large.log || fault "$(cat large.log)"
-large --force-tolerance 0 && grep -qE "$lies_on MAY BE HELD BACK" large.log \
-    || fault "without a tolerance: $(cat large.log)"
-large --tool sphere:0.002 && [[ $(grep -cE "$lies_on" large.log) == 1 ]] \
-    || fault "a small tool, too: $(cat large.log)"
+run_large
+grep -qE "$lies_on feels a coarser surface" large.log || fault "$(cat large.log)"
+run_large --force-tolerance 0
+grep -qE "$lies_on MAY BE HELD BACK" large.log || fault "without a tolerance: $(cat large.log)"
+run_large --tool sphere:0.002
+[[ $(grep -cE "$lies_on" large.log) == 1 ]] || fault "a small tool, too: $(cat large.log)"
 
 # A damping that leaves no wall is refused, with what would do; one that leaves some goes.
 expect 2 "--material: a damping of 2 N s/m on 'bumpy' leaves the device sim no wall at 1000 Hz; at \
