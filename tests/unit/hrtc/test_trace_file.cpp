@@ -14,7 +14,7 @@ namespace tactus::hrtc::test
 namespace
 {
 
-using Json = nlohmann::json;
+using TraceJson = nlohmann::json;
 
 TracedFrame frame(std::uint64_t number, std::int64_t start_us)
 {
@@ -31,11 +31,11 @@ TracedFrame frame(std::uint64_t number, std::int64_t start_us)
 }
 
 /// Events of the file, but for those that name its rows.
-std::vector<Json> events_of(const std::filesystem::path& path, Json& file)
+std::vector<TraceJson> events_of(const std::filesystem::path& path, TraceJson& file)
 {
-    file = Json::parse(std::ifstream(path));
-    std::vector<Json> events;
-    for (const Json& event : file.at("traceEvents"))
+    file = TraceJson::parse(std::ifstream(path));
+    std::vector<TraceJson> events;
+    for (const TraceJson& event : file.at("traceEvents"))
     {
         if (event.at("ph") != "M")
         {
@@ -52,7 +52,7 @@ protected:
 
     tactus::test::TemporaryFolder folder_{"trace"};
     std::filesystem::path path_{folder_.path() / "trace.json"};
-    Json json_;
+    TraceJson json_;
 };
 
 TEST_F(Traced, a_file_without_frames_is_one)
@@ -78,7 +78,7 @@ TEST_F(Traced, a_frame_holds_its_stages_one_after_the_other)
     sut.tap().add(second);
     ASSERT_TRUE(sut.finish());
 
-    const std::vector<Json> events = events_of(path_, json_);
+    const std::vector<TraceJson> events = events_of(path_, json_);
     ASSERT_EQ(events.size(), 2U * (1 + kStages + 1) + 2);
     EXPECT_EQ(events[0].at("name"), "frame");
     EXPECT_EQ(events[0].at("ts"), 0.0);
@@ -95,9 +95,9 @@ TEST_F(Traced, a_frame_holds_its_stages_one_after_the_other)
     EXPECT_EQ(events[6].at("name"), "write");
     EXPECT_DOUBLE_EQ(events[6].at("ts").get<double>() + events[6].at("dur").get<double>(), 150.25);
     EXPECT_EQ(events[7].at("ts"), 1'000.0);
-    EXPECT_EQ(events[7].at("args").at("faults"), Json({"chunk_late", "tool_stuck"}));
+    EXPECT_EQ(events[7].at("args").at("faults"), TraceJson({"chunk_late", "tool_stuck"}));
     EXPECT_EQ(events[14].at("name"), "taken");
-    EXPECT_EQ(events[14].at("args"), Json({{"arrivals", 2}, {"link_updates", 1}}));
+    EXPECT_EQ(events[14].at("args"), TraceJson({{"arrivals", 2}, {"link_updates", 1}}));
     EXPECT_EQ(events[15].at("name"), "wishes");
     EXPECT_EQ(events[15].at("ts"), 1'010.0);
 }
@@ -114,7 +114,7 @@ TEST_F(Traced, a_missed_deadline_is_marked)
     sut.tap().add(later);
     ASSERT_TRUE(sut.finish());
     std::vector<double> missed_us;
-    for (const Json& event : events_of(path_, json_))
+    for (const TraceJson& event : events_of(path_, json_))
     {
         if (event.at("name") == "deadline missed")
         {
@@ -132,10 +132,10 @@ TEST_F(Traced, what_the_courier_began_before_has_a_negative_time)
     const auto result = sut.finish();
     ASSERT_TRUE(result);
     EXPECT_EQ(result.value().rounds, 1U);
-    const std::vector<Json> events = events_of(path_, json_);
-    const Json* round = nullptr;
-    const Json* first = nullptr;
-    for (const Json& event : events)
+    const std::vector<TraceJson> events = events_of(path_, json_);
+    const TraceJson* round = nullptr;
+    const TraceJson* first = nullptr;
+    for (const TraceJson& event : events)
     {
         round = event.at("name") == "round" ? &event : round;
         first = event.at("name") == "frame" ? &event : first;
@@ -147,7 +147,8 @@ TEST_F(Traced, what_the_courier_began_before_has_a_negative_time)
     EXPECT_EQ(round->at("dur"), 1.0);
     EXPECT_EQ(
         round->at("args"),
-        Json({{"wishes", 3}, {"pieces", 2}, {"bytes", 600}, {"handed_over", 2}, {"refused", 1}}));
+        TraceJson(
+            {{"wishes", 3}, {"pieces", 2}, {"bytes", 600}, {"handed_over", 2}, {"refused", 1}}));
 }
 
 TEST(TraceTap, counts_what_finds_no_room)
