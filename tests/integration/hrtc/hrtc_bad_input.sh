@@ -29,7 +29,7 @@ refuse 2 'missing.gltf: no such file' missing.gltf
 refuse 2 'missing.rec: cannot be opened' good.spm --device replay:missing.rec
 refuse 2 'missing.so' good.spm --device plugin:./missing.so
 refuse 2 "--motion: no object is called 'cow'; there are good" good.spm --motion tap:cow
-refuse 2 '--pool-mib: 0.25 MiB is too small for 1 model; 0.37 MiB would do for a start' good.spm \
+refuse 2 '--pool-mib: 0.25 MiB is too small for 1 model; 0.38 MiB would do for a start' good.spm \
     --pool-mib 0.25
 softest='0.01 N is 0.02 mm of a wall of 500 N/m, more than the radius'
 refuse 2 "--force-tolerance: $softest of the tool sphere:0.00001; 0 to 0.00495 N" good.spm \
