@@ -81,12 +81,12 @@ struct Options
     Prediction prediction{Prediction::automatic};
     const Kernels* kernels{nullptr}; ///< Of the queries; null: the best of the processor.
     double stiffness_n_per_m{500.0};
-    double angular_stiffness_nm_per_rad{0.0};  ///< 0: as the stiffness and the tool's size make it.
-    double smooth_m{0.0};                      ///< 0: facets are felt.
-    std::optional<double> force_tolerance_n;   ///< FrameSetup's; none: kForceToleranceUsual_n.
-    std::optional<double> speed_limit_m_per_s; ///< None: the device's own.
-    double object_speed_m_per_s{0.5};          ///< Believed of an object near a tool.
-    std::optional<std::uint32_t> clutch_button; ///< Of every device.
+    double angular_stiffness_nm_per_rad{0.0}; ///< 0: as the stiffness and the tool's size make it.
+    double smooth_m{0.0};                     ///< 0: facets are felt.
+    double force_tolerance_n{kForceToleranceUsual_n}; ///< FrameSetup's.
+    std::optional<double> speed_limit_m_per_s;        ///< None: the device's own.
+    double object_speed_m_per_s{0.5};                 ///< Believed of an object near a tool.
+    std::optional<std::uint32_t> clutch_button;       ///< Of every device.
     /// Of a silent loop, until the supervisor brakes. None: as the kernel can promise.
     std::optional<std::uint32_t> supervisor_periods;
     /// None: one diagonal of the first model a second.

@@ -189,10 +189,11 @@ void Controller::make_tools(const Options& options)
     }
 }
 
-/// A tool whose surface may be off by more than its radius feels none. Without a tolerance that is
-/// asked for, and for tools without a radius, SurfaceTolerance's own bound holds.
+/// A tool whose surface may be off by more than its radius feels none. For the usual tolerance, and
+/// for tools without a radius, SurfaceTolerance's own bound holds.
 std::optional<Refusal> Controller::check_tolerance(const Options& options) const
 {
+    const double asked_n = options.force_tolerance_n;
     double softest_n_per_m = options.stiffness_n_per_m;
     for (const ObjectSpec& object : objects_)
     {
@@ -204,13 +205,13 @@ std::optional<Refusal> Controller::check_tolerance(const Options& options) const
     {
         const double most_n = softest_n_per_m * tool.spec.radius_m;
         if (!is_mesh(tool.spec) && tool.spec.radius_m > 0.0 &&
-            options.force_tolerance_n.value_or(0.0) > most_n)
+            asked_n > std::max(most_n, kForceToleranceUsual_n))
         {
             return Refusal{fmt::format(
                 "--force-tolerance: {:.3g} N is {:.3g} mm of a wall of {:.4g} N/m, more than the "
                 "radius of the tool {}; 0 to {:.3g} N",
-                *options.force_tolerance_n, 1e3 * *options.force_tolerance_n / softest_n_per_m,
-                softest_n_per_m, tool.shape, kWithinRadius * most_n)};
+                asked_n, 1e3 * asked_n / softest_n_per_m, softest_n_per_m, tool.shape,
+                std::max(kWithinRadius * most_n, kForceToleranceUsual_n))};
         }
     }
     return std::nullopt;
@@ -229,7 +230,7 @@ std::optional<Refusal> Controller::lay_out_pools(const Options& options)
     }
     setup_.static_when_it_fits = options.static_when_it_fits;
     setup_.prediction = options.prediction;
-    setup_.force_tolerance_n = options.force_tolerance_n.value_or(kForceToleranceUsual_n);
+    setup_.force_tolerance_n = options.force_tolerance_n;
     setup_.kernels = options.kernels != nullptr ? options.kernels : &best_kernels();
     setup_.period_ns = options.period().ns;
     const auto cache = static_cast<std::size_t>(options.cache_mib * kBytesPerMib);

@@ -193,8 +193,9 @@ void declare_force(CommandLine& line, Options& options)
     line.add_option("--force-tolerance", options.force_tolerance_n,
                     "Coarser levels count as the surface where that changes a force by no more "
                     "than this, in newtons, and farther where the pools have no room for finer "
-                    "ones; 0: only exact faces do. Not for mesh tools [0.001]")
-        .number_between(0.0, kForceToleranceMax_n);
+                    "ones; 0: only exact faces do. Not for mesh tools")
+        .number_between(0.0, kForceToleranceMax_n)
+        .show_default();
     line.add_option("--slew", options.slew_share_per_ms,
                     "How fast a force may change beside what hand and objects make, as a share of "
                     "the device's largest force in a millisecond")
