@@ -122,8 +122,8 @@ private:
         std::uint32_t face; ///< The touch of the nearest of these faces.
         Vec3 first;         ///< Of the plane's axes,
         Vec3 second;
-        Heights high_m; ///< the extent of the tool points that touch it, from the tool's place.
-        Heights low_m;
+        Heights high_m{}; ///< the extent of the tool points that touch it, from the tool's place.
+        Heights low_m{};
 
         Ground(std::uint32_t nearest, const Vec3& normal) noexcept;
         [[nodiscard]] Heights heights(const Vec3& point_m) const noexcept;

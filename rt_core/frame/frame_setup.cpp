@@ -66,7 +66,9 @@ std::optional<FrameRefusal> find_refusal(const FrameSetup& setup) noexcept
     {
         return FrameRefusal::too_many;
     }
-    if (!(setup.force_tolerance_n >= 0.0 && setup.force_tolerance_n <= kForceToleranceMax_n))
+    const double tolerance_n = setup.force_tolerance_n;
+    const bool is_taken = tolerance_n >= 0.0 && tolerance_n <= kForceToleranceMax_n;
+    if (!is_taken) // Nor what is no number.
     {
         return FrameRefusal::bad_tolerance;
     }
