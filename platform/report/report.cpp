@@ -10,7 +10,7 @@
 #include "platform/machine/allocation_counter.hpp"
 #include "platform/report/report_events.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
-#include "transport/base/atomic_file.hpp"
+#include "transport/base/output_file.hpp"
 #include "transport/content_hash.hpp"
 
 #include <fmt/format.h>
