@@ -69,7 +69,7 @@ inline constexpr std::uint32_t kMaxObjects = 4'096;
 /// Models that share the pools: 8 KiB each beside their header and base mesh. A byte says whose a
 /// slot is.
 inline constexpr std::uint32_t kMaxModels = 256;
-/// Pairs of a tool and an object near it that are followed at once: 4.9 KiB each, 3 KiB more with
+/// Pairs of a tool and an object near it that are followed at once: 5.3 KiB each, 3 KiB more with
 /// contacts and 10 KiB more where a tool is a mesh. Of more the nearest are followed, and a tool
 /// goes no farther than it is clear of the others: FrameFault::scene_crowded.
 inline constexpr std::uint32_t kMaxPairs = 64;

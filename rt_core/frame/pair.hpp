@@ -99,7 +99,7 @@ inline constexpr std::size_t kMaxRequests = std::size_t{2} * kMaxPairs;
 using RefineRequests = StaticVector<RefineRequest, kMaxRequests>;
 
 /// One tool and one object: where they are to each other, and what is known of it from frame to
-/// frame. Haptic thread; the functions in the frame's order. 5.1 KiB beside its parts.
+/// frame. Haptic thread; the functions in the frame's order. 5.3 KiB beside its parts.
 class Pair
 {
 public:
