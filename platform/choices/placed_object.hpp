@@ -14,7 +14,7 @@ namespace tactus::hrtc
 /// An object that is there from the start.
 struct PlacedObject
 {
-    std::size_t model{0}; ///< Of Options::models.
+    std::size_t model{0}; ///< The place of its model in Options::models.
     Similarity place;
     Material material;
     bool has_place{false}; ///< Given by --place or by the host.

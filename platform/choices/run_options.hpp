@@ -86,7 +86,7 @@ struct Options
     double force_tolerance_n{kForceToleranceUsual_n}; ///< FrameSetup's.
     std::optional<double> speed_limit_m_per_s;        ///< None: the device's own.
     double object_speed_m_per_s{0.5};                 ///< Believed of an object near a tool.
-    std::optional<std::uint32_t> clutch_button;       ///< Of every device.
+    std::optional<std::uint32_t> clutch_button;       ///< A button, the same on every device.
     /// Of a silent loop, until the supervisor brakes. None: as the kernel can promise.
     std::optional<std::uint32_t> supervisor_periods;
     /// None: one diagonal of the first model a second.

@@ -19,6 +19,8 @@ struct RunHooks
     std::function<bool()> is_stopped; ///< Asked for an end.
     /// What gets the progress of a run of this name; it is gone when the loop has ended.
     std::function<FramesDone(const std::string& what)> begin_progress;
+
+    [[nodiscard]] bool goes_on() const { return !is_stopped || !is_stopped(); }
 };
 
 } // namespace tactus::hrtc

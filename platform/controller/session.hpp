@@ -48,7 +48,7 @@ public:
 private:
     Session(const Options& options, RunHooks hooks) : options_(options), hooks_(std::move(hooks)) {}
 
-    [[nodiscard]] bool goes_on() const { return !hooks_.is_stopped || !hooks_.is_stopped(); }
+    [[nodiscard]] bool goes_on() const { return hooks_.goes_on(); }
 
     [[nodiscard]] std::optional<Refusal> connect();
     [[nodiscard]] std::optional<Refusal> take_scene();

@@ -261,7 +261,7 @@ void SessionRun::watch(const std::string& what)
     std::uint64_t seen = 0;
     while (!loop_.is_done() && !loop_.has_failed())
     {
-        if (hooks.is_stopped && hooks.is_stopped())
+        if (!hooks.goes_on())
         {
             loop_.stop();
         }

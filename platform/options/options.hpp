@@ -25,7 +25,7 @@ struct CommandForm
     bool records{true}; ///< Takes --record, --replay, --trace and --histograms, too.
     double duration_s{10.0};
     std::function<void(CommandLine&)> declare; ///< Its own options; none when empty.
-    std::string footer;                        ///< Of --help.
+    std::string footer;                        ///< The end of --help.
     std::string commands;                      ///< The program's other commands, for messages.
     FileReaders readers;                       ///< Lent to the options.
 };

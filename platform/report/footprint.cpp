@@ -69,20 +69,21 @@ Outline outline_of(const ToolCore& core)
 
 } // namespace
 
-double mean_faces_per_m2(const ServedModel& model)
+FaceDensity face_density(const ServedModel& model)
 {
     const auto header = ModelHeader::parse(model.header);
     if (!header)
     {
-        return 0.0;
+        return {};
     }
+    const auto faces_in_all = static_cast<double>(header.value().fields().source_faces);
     const ModelCounts counts = header.value().counts();
     std::vector<Vec3f> positions_m(counts.base_vertices);
     std::vector<BaseFace> faces(counts.base_faces);
     std::vector<std::uint32_t> next(counts.base_faces);
     if (!parse_base_mesh(model.base, header.value(), {positions_m, faces, next}))
     {
-        return 0.0;
+        return {faces_in_all, 0.0};
     }
     double area_m2 = 0.0;
     for (const BaseFace& face : faces)
@@ -91,8 +92,7 @@ double mean_faces_per_m2(const ServedModel& model)
         { return to_vec3(positions_m[face.corners[i].value]); };
         area_m2 += 0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm();
     }
-    return area_m2 > 0.0 ? static_cast<double>(header.value().fields().source_faces) / area_m2
-                         : 0.0;
+    return {faces_in_all, area_m2 > 0.0 ? faces_in_all / area_m2 : 0.0};
 }
 
 double faces_under(const ToolSpec& tool, double faces_per_m2)
@@ -109,12 +109,10 @@ double faces_under(const ToolSpec& tool, double faces_per_m2)
     return area_m2 * faces_per_m2;
 }
 
-Footprint footprint_of(const ToolSpec& tool, const ServedModel& model, double scale)
+Footprint footprint_of(const ToolSpec& tool, const FaceDensity& density, double scale)
 {
-    const double faces = faces_under(tool, mean_faces_per_m2(model) / (scale * scale));
-    const auto header = ModelHeader::parse(model.header);
-    const double all = header ? static_cast<double>(header.value().fields().source_faces) : 0.0;
-    return {std::min(faces, all), std::min(kKeptPerFace * faces, all)};
+    const double faces = faces_under(tool, density.per_m2 / (scale * scale));
+    return {std::min(faces, density.faces), std::min(kKeptPerFace * faces, density.faces)};
 }
 
 } // namespace tactus::hrtc

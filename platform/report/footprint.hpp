@@ -8,12 +8,17 @@
 namespace tactus::hrtc
 {
 
-/// How many faces of the source a square metre of a model has on average, taken from the area of
-/// its base mesh, at a scale of 1. 0 where the base mesh isn't here.
-[[nodiscard]] double mean_faces_per_m2(const ServedModel& model);
+/// How densely the faces of a model's source lie, at a scale of 1, on average.
+struct FaceDensity
+{
+    double faces{0.0};  ///< In all,
+    double per_m2{0.0}; ///< and by the area of its base mesh; 0 where that isn't here.
+};
+/// Reads the base mesh. Any thread, as are the others.
+[[nodiscard]] FaceDensity face_density(const ServedModel& model);
 
 /// About how many faces a frame looks at when the tool lies flat on a surface of that density:
-/// those below its core and in reach around it. 0 for tools that are meshes. Any thread.
+/// those below its core and in reach around it. 0 for tools that are meshes.
 [[nodiscard]] double faces_under(const ToolSpec& tool, double faces_per_m2);
 
 /// What a tool that lies on a model asks for, in faces, about.
@@ -23,8 +28,8 @@ struct Footprint
     double kept{0.0};  ///< The pools need room for, beside the base mesh, where those are exact.
 };
 
-/// Both are 0 for tools that are meshes and for models whose base mesh isn't here. `scale` is the
-/// object's. Reads the base mesh; any thread.
-[[nodiscard]] Footprint footprint_of(const ToolSpec& tool, const ServedModel& model, double scale);
+/// Both are 0 for tools that are meshes and for a density of 0. `scale` is the object's.
+[[nodiscard]] Footprint footprint_of(const ToolSpec& tool, const FaceDensity& density,
+                                     double scale);
 
 } // namespace tactus::hrtc

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <span>
 #include <vector>
 
@@ -172,15 +173,17 @@ std::string about(double count)
 
 /// Nothing unless more faces lie below the tool, on the densest of the objects, than a frame looks
 /// at or the pools have room for.
-std::string footprint_note(const ToolSetup& tool, const Controller& controller)
+std::string footprint_note(const ToolSetup& tool, const Controller& controller,
+                           const std::vector<FaceDensity>& densities)
 {
     Footprint most;
     std::string name;
     for (std::size_t i = 0; i < controller.objects().size(); ++i)
     {
-        const ServedModel& model = controller.models()[controller.objects()[i].model.value];
-        const Footprint here = footprint_of(tool.spec, model, controller.poses()[i].scale);
-        name = here.faces > most.faces ? model.name : name;
+        const std::size_t model = controller.objects()[i].model.value;
+        const Footprint here =
+            footprint_of(tool.spec, densities[model], controller.poses()[i].scale);
+        name = here.faces > most.faces ? controller.models()[model].name : name;
         most = here.faces > most.faces ? here : most;
     }
     const double room = pool_capacities(controller.setup()).faces;
@@ -248,9 +251,9 @@ std::string tool_line(const Options& options, const ToolSetup& tool, const Contr
                                   ? fmt::format("{:.3g} m round {}", device.workspace_radius_m,
                                                 text_of(Vec3(centre[0], centre[1], centre[2])))
                                   : "anywhere"; // A simulated hand that follows an object.
-    return fmt::format("{:<12}{} on {}, {}: {}{}; {}\n{}", "tool", tool.shape, device.name, where,
-                       reach_of(options, tool, controller, objects), size_note(tool, objects), wall,
-                       footprint_note(tool, controller));
+    return fmt::format("{:<12}{} on {}, {}: {}{}; {}\n", "tool", tool.shape, device.name, where,
+                       reach_of(options, tool, controller, objects), size_note(tool, objects),
+                       wall);
 }
 
 } // namespace
@@ -258,10 +261,13 @@ std::string tool_line(const Options& options, const ToolSetup& tool, const Contr
 std::string start_lines(const Options& options, const Controller& controller)
 {
     const std::vector<Surroundings> objects = surroundings_of(controller);
+    std::vector<FaceDensity> densities;
+    std::ranges::transform(controller.models(), std::back_inserter(densities), face_density);
     std::string text = object_lines(options, controller, objects);
     for (const ToolSetup& tool : controller.tools())
     {
-        text += tool_line(options, tool, controller, objects);
+        text += tool_line(options, tool, controller, objects) +
+                footprint_note(tool, controller, densities);
     }
     return text;
 }

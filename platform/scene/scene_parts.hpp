@@ -18,7 +18,7 @@ namespace tactus::hrtc
 struct SceneParts
 {
     std::span<const ServedModel> models;
-    std::span<const ObjectSpec> objects; ///< By their numbers.
+    std::span<const ObjectSpec> objects; ///< Object i has the number i.
     std::span<const ToolSetup> tools;
     /// For each model the number of the first object that shows it; that of no object where none
     /// does.

@@ -26,8 +26,8 @@ constexpr double kMostLean = 0.8;
 constexpr double kSeamGap = 0.5;
 constexpr double kOnFace = 1e-3;
 constexpr double kAbove = 0.1;
-/// And that tool point is among those that touch the face's plane, to within this share of the
-/// radius: they hold it up without the edge.
+/// The tool point of a seam lies among those that touch the face's plane, to within this share of
+/// the radius: they hold it up without the edge.
 constexpr double kSameSupport = 0.01;
 /// What is within this share of the radius of touching may be held by friction.
 constexpr double kTouchingGap = 0.02;
@@ -36,10 +36,10 @@ constexpr double kLeastSlip = 1e-4;
 /// Friction that is this near to what the pressure allows is not corrected.
 constexpr double kSameFriction = 1e-4;
 
-/// Directions in a plane, of half a turn.
-constexpr double kHalfRoot = 0.7071067811865476; ///< sin 45 degrees,
-constexpr double kSin22 = 0.3826834323650898;    ///< and of 22.5.
-constexpr double kCos22 = 0.9238795325112867;
+constexpr double kHalfRoot = 0.7071067811865476; ///< sin 45 degrees.
+constexpr double kSin22 = 0.3826834323650898;    ///< sin 22.5 degrees.
+constexpr double kCos22 = 0.9238795325112867;    ///< cos 22.5 degrees.
+/// Directions in a plane, half a turn of them.
 constexpr std::array<std::array<double, 2>, 8> kDirections{{{1.0, 0.0},
                                                             {kCos22, kSin22},
                                                             {kHalfRoot, kHalfRoot},
@@ -96,20 +96,15 @@ Vec3 BodyPlanes::lever_m(std::uint32_t i) const noexcept
     return touches_[i].on_tool_m - radius_m_ * touches_[i].normal - place_m_;
 }
 
-HalfSpace<6> BodyPlanes::space_of(const BodyTouch& touch) const noexcept
-{
-    const Vec3 lever = (touch.on_tool_m - place_m_) / arm_m_;
-    return {to_motion(touch.normal, lever.cross(touch.normal)),
-            radius_m_ - touch.normal.dot(touch.on_tool_m - touch.on_surface_m)};
-}
-
 void BodyPlanes::add(const BodyTouch& touch, const BodyGrip& grip) noexcept
 {
     if (touch.normal == Vec3(0.0, 0.0, 0.0))
     {
         return; // Of a face without area: those round it hold.
     }
-    const HalfSpace<6> space = space_of(touch);
+    const Vec3 lever = (touch.on_tool_m - place_m_) / arm_m_;
+    const HalfSpace<6> space{to_motion(touch.normal, lever.cross(touch.normal)),
+                             radius_m_ - touch.normal.dot(touch.on_tool_m - touch.on_surface_m)};
     std::size_t least = 0;
     for (std::size_t i = 0; i < spaces_.size(); ++i)
     {

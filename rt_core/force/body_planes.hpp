@@ -120,10 +120,10 @@ private:
         using Heights = std::array<double, 8>; ///< Along directions in the plane.
 
         std::uint32_t face; ///< The touch of the nearest of these faces.
-        Vec3 first;         ///< Of the plane's axes,
-        Vec3 second;
-        Heights high_m{}; ///< the extent of the tool points that touch it, from the tool's place.
-        Heights low_m{};
+        Vec3 first;         ///< An axis in the plane.
+        Vec3 second;        ///< The other one.
+        Heights high_m{};   ///< Where the tool points that touch it end, from the tool's place,
+        Heights low_m{};    ///< and where they begin.
 
         Ground(std::uint32_t nearest, const Vec3& normal) noexcept;
         [[nodiscard]] Heights heights(const Vec3& point_m) const noexcept;
@@ -137,7 +137,6 @@ private:
     [[nodiscard]] Grounds grounds() const noexcept;
     [[nodiscard]] bool is_seam(std::size_t plane, const Ground& ground) const noexcept;
     void leave_out_seams() noexcept;
-    [[nodiscard]] HalfSpace<6> space_of(const BodyTouch& touch) const noexcept;
     void replace(std::size_t plane, const HalfSpace<6>& space, const BodyTouch& touch,
                  const BodyGrip& grip) noexcept;
     [[nodiscard]] double apart_sq(const HalfSpace<6>& a, const HalfSpace<6>& b) const noexcept;

@@ -90,9 +90,9 @@ struct PairOutput
     /// Where the tool was asked about: its place at the start of the frame, or at the start of the
     /// frame's last step that had work left for this pair. Pairs of one tool may differ.
     Vec3 tool_m{0.0, 0.0, 0.0};
-    Mat3 tool_rotation{Mat3::Identity()}; ///< The same of its rotation.
-    /// Of the tool's core, there, the point that is nearest to the surface, or the centre where
-    /// that is not known.
+    Mat3 tool_rotation{Mat3::Identity()}; ///< The tool's rotation there.
+    /// The point of the tool's core, there, that is nearest to the surface, or the core's centre
+    /// where that is not known.
     Vec3 point_m{0.0, 0.0, 0.0};
     double lower_m{0.0}; ///< From the core, >= 0; the tool's radius is not taken off.
     double upper_m{0.0}; ///< Likewise; infinite where nothing is known yet.

@@ -2,10 +2,27 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/math/vec3.hpp"
 #include "tests/bench/cases.hpp"
+
+#include <cstdint>
+#include <vector>
 
 namespace tactus::bench
 {
+
+/// The corners of a box round the origin.
+[[nodiscard]] inline std::vector<Vec3> box_corners(const Vec3& half_m)
+{
+    std::vector<Vec3> corners_m;
+    for (std::uint32_t i = 0; i < 8; ++i)
+    {
+        corners_m.emplace_back((i & 1U) != 0 ? half_m.x() : -half_m.x(),
+                               (i & 2U) != 0 ? half_m.y() : -half_m.y(),
+                               (i & 4U) != 0 ? half_m.z() : -half_m.z());
+    }
+    return corners_m;
+}
 
 /// Bodies that lie, slide and turn on flat sheets of any cell size, where force and torque are
 /// known.

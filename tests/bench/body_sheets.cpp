@@ -6,6 +6,7 @@
 /// motion: 1 N along the normal through the hand's place, no drag and no torque. Nothing is
 /// subtracted from what is felt.
 
+#include "rt_core/limits.hpp"
 #include "tests/bench/body_cases.hpp"
 #include "tests/bench/touch_motion.hpp"
 #include "tests/shared/frame_rig.hpp"
@@ -29,13 +30,11 @@ namespace
 {
 
 constexpr double kSheet_m = 0.06;
-/// Of a cell, how far corners of an uneven sheet are off, at most.
+/// How far corners of an uneven sheet are off at most, as a share of a cell.
 constexpr double kSheetJitter = 0.3;
 constexpr double kSheetForce_n = 1.0;
 constexpr double kSheetStiffness_n_per_m = 500.0;
 constexpr double kSheetDepth_m = kSheetForce_n / kSheetStiffness_n_per_m;
-/// As hrtc has it.
-constexpr double kSheetTolerance_n = 1e-3;
 constexpr std::size_t kSheetPool_bytes = 16 * kMiB;
 
 constexpr double kSheetSlide_m_per_s = 0.05;
@@ -148,14 +147,7 @@ NamedMesh make_sheet(const SheetMesh& sheet)
 
 SheetBody sheet_box(const char* name, const Vec3& half_m)
 {
-    SheetBody body{name, Box{half_m}, {}, 5e-4, 2.0 * half_m.x()};
-    for (std::uint32_t i = 0; i < 8; ++i)
-    {
-        body.corners_m.emplace_back((i & 1U) != 0 ? half_m.x() : -half_m.x(),
-                                    (i & 2U) != 0 ? half_m.y() : -half_m.y(),
-                                    (i & 4U) != 0 ? half_m.z() : -half_m.z());
-    }
-    return body;
+    return {name, Box{half_m}, box_corners(half_m), 5e-4, 2.0 * half_m.x()};
 }
 
 SheetBody sheet_capsule(const char* name, double length_m)
@@ -252,7 +244,7 @@ void run_sheet(const CaseContext& context, const Scene& scene, const SheetBody& 
     test::RigOptions options;
     options.tools = {tool};
     options.pool_bytes = kSheetPool_bytes;
-    options.force_tolerance_n = kSheetTolerance_n;
+    options.force_tolerance_n = kForceToleranceUsual_n;
     options.static_when_it_fits = true;
     Budgets budgets;
     budgets.work =

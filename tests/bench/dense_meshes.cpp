@@ -6,6 +6,7 @@
 /// the most that a frame costs. A hand comes down, slides while it presses, and lifts off again.
 
 #include "host_tools/shapes/shapes.hpp"
+#include "rt_core/limits.hpp"
 #include "tests/bench/body_cases.hpp"
 #include "tests/bench/instruction_count.hpp"
 #include "tests/bench/mesh_touch.hpp"
@@ -28,7 +29,6 @@ namespace tactus::bench
 namespace
 {
 
-constexpr double kDenseTolerance_n = 1e-3; ///< As hrtc has it.
 constexpr std::size_t kDensePool_bytes = 16 * kMiB;
 constexpr std::size_t kScarcePool_bytes = 2 * kMiB; ///< hrtc's default.
 constexpr double kDenseInstructions = 600'000;      ///< Goal.
@@ -87,14 +87,7 @@ struct DenseTool
 
 DenseTool dense_box(const char* name, const Vec3& half_m)
 {
-    DenseTool tool{name, Box{half_m}, 5e-4, {}};
-    for (std::uint32_t i = 0; i < 8; ++i)
-    {
-        tool.corners_m.emplace_back((i & 1U) != 0 ? half_m.x() : -half_m.x(),
-                                    (i & 2U) != 0 ? half_m.y() : -half_m.y(),
-                                    (i & 4U) != 0 ? half_m.z() : -half_m.z());
-    }
-    return tool;
+    return {name, Box{half_m}, 5e-4, box_corners(half_m)};
 }
 
 DenseTool dense_capsule(const char* name, double radius_m, double length_m)
@@ -103,7 +96,7 @@ DenseTool dense_capsule(const char* name, double radius_m, double length_m)
     return {name, Segment{-end_m, end_m}, radius_m, {-end_m, end_m}};
 }
 
-/// Of all runs the model that tools are made of.
+/// The model that tools are made of in all runs.
 const Scene& dense_tool_scene(SceneStore& scenes)
 {
     const TriangleMesh ball = make_shape(Shape::bumpy_sphere, 1'000).value();
@@ -131,7 +124,7 @@ std::vector<DenseTool> dense_tools(SceneStore& scenes)
             dense_mesh_tool(dense_tool_scene(scenes))};
 }
 
-/// Of the tool's lowest point over the surface.
+/// The height of the tool's lowest point over the surface.
 double dense_height_m(std::uint32_t frame)
 {
     const std::uint32_t at = frame % kDenseCycle;
@@ -231,7 +224,7 @@ void run_dense(const CaseContext& context, const DenseRun& run,
     test::RigOptions rig_options;
     rig_options.tools = {tool};
     rig_options.pool_bytes = run.pool_bytes;
-    rig_options.force_tolerance_n = kDenseTolerance_n;
+    rig_options.force_tolerance_n = kForceToleranceUsual_n;
     rig_options.static_when_it_fits = true;
     Budgets budgets;
     budgets.work = Budgets::work_of(rig_options.period_ns / 2, run.tool.times);

@@ -58,21 +58,22 @@ TEST(Footprint, counts_the_faces_of_a_model_by_its_base_mesh)
         area_m2 += 0.5 * (to_vec3(face[1]) - corner).cross(to_vec3(face[2]) - corner).norm();
     }
     const auto all = static_cast<double>(plate.faces.size());
-    const double per_m2 = mean_faces_per_m2(served);
+    const FaceDensity density = face_density(served);
+    const double per_m2 = density.per_m2;
     EXPECT_NEAR(per_m2, all / area_m2, 0.01 * per_m2);
 
     const ToolSpec tool = tool_of(PointCore{}, 0.02 * plate.diagonal_m);
-    const Footprint once = footprint_of(tool, served, 1.0);
+    const Footprint once = footprint_of(tool, density, 1.0);
     EXPECT_EQ(once.faces, faces_under(tool, per_m2));
     EXPECT_GT(once.kept, once.faces);
-    EXPECT_DOUBLE_EQ(footprint_of(tool, served, 0.5).faces, 4.0 * once.faces);
-    const Footprint small_object = footprint_of(tool, served, 1e-4);
+    EXPECT_DOUBLE_EQ(footprint_of(tool, density, 0.5).faces, 4.0 * once.faces);
+    const Footprint small_object = footprint_of(tool, density, 1e-4);
     EXPECT_EQ(small_object.faces, all) << "no more than there are";
     EXPECT_EQ(small_object.kept, all);
 
     served.base.clear();
-    EXPECT_EQ(mean_faces_per_m2(served), 0.0);
-    EXPECT_EQ(footprint_of(tool, served, 1.0).kept, 0.0);
+    EXPECT_EQ(face_density(served).per_m2, 0.0);
+    EXPECT_EQ(footprint_of(tool, face_density(served), 1.0).kept, 0.0);
 }
 
 } // namespace
