@@ -43,9 +43,9 @@ void DeadlineAccount::add(std::uint64_t frame, const CycleMeasures& measures, st
                           bool over_work) noexcept
 {
     outside_.record(measures.outside);
-    if (measures.cpu + measures.beside_cpu <= share_of(cpu_limit_, kShownShare))
+    if (const std::uint64_t times = times_shown(measures.cpu + measures.beside_cpu); times > 0)
     {
-        shown_work_ = std::max(shown_work_.value_or(work), work);
+        shown_work_ = std::max(shown_work_.value_or(0), times * work);
     }
     const Duration lost = period_ * (std::int64_t{measures.cycle.periods} - 1);
     (lost.ns > 0 ? after_loss_ : in_turn_).record(measures.lateness_of_end + lost);
@@ -71,6 +71,15 @@ void DeadlineAccount::add(std::uint64_t frame, const CycleMeasures& measures, st
     {
         suspects_.push_back({frame, work, flags}); // Within what is reserved.
     }
+}
+
+/// How many times the work of a frame that took `time` fits in the shown share of the limit: 0 to
+/// kShownTimes.
+std::uint64_t DeadlineAccount::times_shown(Duration time) const noexcept
+{
+    const std::int64_t fits =
+        share_of(cpu_limit_, kShownShare).ns / std::max<std::int64_t>(time.ns, 1);
+    return static_cast<std::uint64_t>(std::clamp<std::int64_t>(fits, 0, kShownTimes));
 }
 
 CycleFlag DeadlineAccount::flags_of(const CycleMeasures& measures, bool over_work) const noexcept

@@ -77,7 +77,8 @@ struct NotedCycle
 /// Too much processor time is our own fault unless the same work is shown to need less: the clock
 /// of a thread also runs for interrupts, and on a shared machine for what other guests take. The
 /// run itself shows it, where a frame with as much counted work took at most kShownShare of the
-/// limit; or a repetition of the very frame does, which the caller reports by settle().
+/// limit, or one with a part of it as small a part of that; or a repetition of the very frame does,
+/// which the caller reports by settle().
 ///
 /// Filled by the haptic thread without allocating; read by others, and settled, once the loop has
 /// ended.
@@ -90,6 +91,9 @@ public:
     /// A frame whose time, with the work beside it, is at most this part of the limit shows that
     /// its amount of work fits. One is enough, since nothing makes the same work faster than it is.
     static constexpr double kShownShare = 0.5;
+    /// A frame that took half or a quarter of that shows twice or this many times its work to fit:
+    /// counted work takes time in proportion, and what a frame takes besides is in it once more.
+    static constexpr std::int64_t kShownTimes = 4;
     /// Longer than this, or than that share of a short period, and the machine was at it.
     static constexpr Duration kMachineTime = microseconds(300);
     static constexpr double kMachineShare = 0.3;
@@ -144,6 +148,7 @@ private:
     };
 
     [[nodiscard]] CycleFlag flags_of(const CycleMeasures& measures, bool over_work) const noexcept;
+    [[nodiscard]] std::uint64_t times_shown(Duration time) const noexcept;
     [[nodiscard]] bool is_shown(std::uint64_t work) const noexcept
     {
         return shown_work_ && work <= *shown_work_;
