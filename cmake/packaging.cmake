@@ -31,13 +31,13 @@ set(CPACK_PROJECT_CONFIG_FILE ${PROJECT_SOURCE_DIR}/cmake/debian/check.cmake)
 set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/debian/stage.cmake)
 
 # tactus_package(<name> SECTION <section> [ARCHITECTURE all] [DEPENDS <package>...]
-#     [RECOMMENDS <package>...] [SUGGESTS <package>...] [SERVICE <unit>]
+#     [RECOMMENDS <package>...] [SUGGESTS <package>...] [SERVICES <unit>...]
 #     DESCRIPTION <first line and paragraphs>)
-# Depends of what is linked come from dpkg-shlibdeps. With SERVICE the maintainer scripts of the
-# package have @on_configure@, @on_remove@ and @after_removal@ in the place of what looks after it.
+# dpkg-shlibdeps adds the packages of linked libraries to the dependencies. With SERVICES the
+# maintainer scripts' @on_configure@, @on_remove@ and @after_removal@ are those of the units.
 macro(tactus_package name)
-    cmake_parse_arguments(ARG "" "SECTION;ARCHITECTURE;SERVICE;DESCRIPTION"
-        "DEPENDS;RECOMMENDS;SUGGESTS" ${ARGN})
+    cmake_parse_arguments(ARG "" "SECTION;ARCHITECTURE;DESCRIPTION"
+        "DEPENDS;RECOMMENDS;SUGGESTS;SERVICES" ${ARGN})
     string(TOUPPER ${name} upper)
     list(APPEND CPACK_COMPONENTS_ALL ${name})
     set(CPACK_DEBIAN_${upper}_PACKAGE_NAME ${name})
@@ -50,14 +50,15 @@ macro(tactus_package name)
         set(CPACK_DEBIAN_${upper}_PACKAGE_ARCHITECTURE ${ARG_ARCHITECTURE})
         set(CPACK_DEBIAN_${upper}_PACKAGE_SHLIBDEPS OFF)
     endif()
-    if(ARG_SERVICE)
-        set(service ${ARG_SERVICE})
-        foreach(moment on_configure on_remove after_removal)
-            file(READ ${PROJECT_SOURCE_DIR}/cmake/debian/service.${moment} ${moment})
-            string(CONFIGURE "${${moment}}" ${moment} @ONLY)
-            string(STRIP "${${moment}}" ${moment})
+    foreach(moment on_configure on_remove after_removal)
+        set(${moment})
+        foreach(service ${ARG_SERVICES})
+            file(READ ${PROJECT_SOURCE_DIR}/cmake/debian/service.${moment} script)
+            string(CONFIGURE "${script}" script @ONLY)
+            string(APPEND ${moment} "${script}")
         endforeach()
-    endif()
+        string(STRIP "${${moment}}" ${moment})
+    endforeach()
     set(CPACK_DEBIAN_${upper}_PACKAGE_CONTROL_EXTRA)
     foreach(file conffiles postinst postrm prerm shlibs triggers)
         if(EXISTS ${PROJECT_SOURCE_DIR}/cmake/debian/${name}.${file})
@@ -102,7 +103,7 @@ These are the headers, static libraries, the package for CMake's find_package
 and the files of pkg-config.")
 tactus_package(tactus-host
     SECTION science
-    SERVICE spm_publish.service
+    SERVICES spm_publish.service spm_view.service
     DEPENDS libjs-three libjs-dygraphs
     SUGGESTS tactus-doc
     DESCRIPTION "haptic touch of huge triangle meshes - programs of the host
@@ -110,12 +111,12 @@ Tactus lets a hand feel triangle meshes that are larger than the memory of
 the machine that computes the force.
 .
 spm_build turns meshes into models, spm_inspect checks and shows them,
-spm_publish serves them to controllers over DDS, as a service if wanted. The
-service is not enabled: /etc/default/spm_publish first says what to serve.
-spm_view shows in a browser what controllers touch.")
+spm_publish serves them to controllers over DDS, spm_view shows in a browser
+what controllers touch, both as services if wanted. They are not enabled:
+/etc/default/spm_publish first says what to serve.")
 tactus_package(tactus-controller
     SECTION science
-    SERVICE hrtc.service
+    SERVICES hrtc.service
     DEPENDS adduser
     RECOMMENDS libjs-dygraphs
     SUGGESTS tactus-doc tactus-host

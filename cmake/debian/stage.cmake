@@ -33,10 +33,12 @@ foreach(package ${CPACK_COMPONENTS_ALL})
     put(${debian}/${package}.lintian-overrides usr/share/lintian/overrides/${package})
     put(${debian}/${package}.limits etc/security/limits.d/tactus.conf)
     put(${debian}/${package}.sysctl usr/lib/sysctl.d/61-tactus.conf)
-    put(${debian}/${package}.default etc/default/spm_publish)
     if(package STREQUAL tactus-controller)
         put(${CPACK_TACTUS_SOURCE}/platform/hrtc/deploy/hrtc.toml etc/tactus/hrtc.toml)
     elseif(package STREQUAL tactus-host)
+        foreach(service spm_publish spm_view)
+            put(${debian}/${service}.default etc/default/${service})
+        endforeach()
         file(MAKE_DIRECTORY ${root}/var/lib/tactus) # Where models are looked for.
     endif()
 

@@ -83,7 +83,7 @@ holds libtactus-dev "$libraries"/libtactus_{core,transport,platform,host,c}.{a,s
     usr/include/tactus/rt_core/frame/frame.hpp usr/share/man/man3/tactus.h.3.gz
 holds tactus-host usr/bin/spm_{build,inspect,publish} \
     usr/share/man/man1/spm_{build,inspect,publish}.1.gz \
-    usr/lib/systemd/system/spm_publish.service etc/default/spm_publish
+    usr/lib/systemd/system/spm_{publish,view}.service etc/default/spm_{publish,view}
 holds tactus-controller usr/bin/hrtc usr/share/man/man1/hrtc.1.gz etc/tactus/hrtc.toml \
     usr/lib/systemd/system/hrtc.service usr/lib/sysctl.d/61-tactus.conf \
     etc/security/limits.d/tactus.conf
