@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <random>
 #include <set>
@@ -342,14 +343,10 @@ struct Blame
 /// A cycle, or up to four like it, that did as much work within 400 us.
 bool shows(const RandomCycle& cycle, std::uint64_t work)
 {
-    return std::ranges::any_of(std::array<std::int64_t, 4>{1, 2, 3, 4},
-                               [&](std::int64_t times)
-                               {
-                                   return cycle.work * times >= work &&
-                                          (cycle.measures.cpu + cycle.measures.beside_cpu).ns *
-                                                  times <=
-                                              microseconds(400).ns;
-                               });
+    const Duration time = cycle.measures.cpu + cycle.measures.beside_cpu;
+    return std::ranges::any_of(
+        std::array{1U, 2U, 3U, 4U}, [&](unsigned times)
+        { return cycle.work * times >= work && time.ns * times <= microseconds(400).ns; });
 }
 
 /// The rules of docs/deadline-test.md, said of a whole run at once. `over`: of those that were
