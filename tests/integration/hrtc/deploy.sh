@@ -9,7 +9,7 @@ command -v python3 >/dev/null || exit 77
 
 cmake --install "$folder" --prefix "$scratch/root" >install.log || fail 'cmake --install'
 readonly installed=$scratch/root/bin documents=$scratch/root/share/doc/tactus
-for program in spm_build spm_inspect spm_publish hrtc; do
+for program in spm_build spm_inspect spm_publish spm_view hrtc; do
     [[ $("$installed/$program" --version) == "$program "* ]] || fault "$program --version"
 done
 for file in README.md LICENSE docs/deploy.md examples/hrtc.toml; do
@@ -22,15 +22,17 @@ done
 "$installed/hrtc" --config "$documents/examples/hrtc.toml" --print-config >options.toml \
     || fault 'hrtc does not take the options of its example'
 grep -qx 'duration=86400' options.toml || fault 'the example is not read'
-for unit in hrtc spm_publish; do
+for unit in hrtc spm_publish spm_view; do
     service=$scratch/root/lib/systemd/system/$unit.service
-    ! grep -q '@' "$service" || fault "left as it was in the service: $(grep '@' "$service")"
+    ! grep '@[A-Z_]*@' "$service" || fault "a line of $unit.service is not configured"
     [[ -s $scratch/root/share/man/man1/$unit.1 ]] || fault "no page of $unit in the manual"
     if command -v systemd-analyze >/dev/null; then
         sed -e "s|^ExecStart=[^ ]*|ExecStart=$installed/$unit|" "$service" >"$unit.service"
         # It speaks of other units of the machine, too.
         systemd-analyze verify --man=no "./$unit.service" >verify.log 2>&1 || true
         ! grep "$unit\.service" verify.log || fault "systemd does not like the service $unit"
+        systemd-analyze security --offline=true --threshold=30 "./$unit.service" >exposure.log \
+            || fault "exposure of $unit: $(tail -n 1 exposure.log)"
     fi
 done
 

@@ -13,6 +13,9 @@ awk 'BEGIN {
         printf "%.3f bumpy %.6f 0 0 0 0 0 1\n", i / 100, 0.002 * sin(i * 3.14159265 / 100)
 }' >swing.txt
 
+# check_steps: an object that is followed moves a little in each frame, where no frames were lost.
+check_steps() { was_held_up report.json || check report.json models.0.pose.step_max_m '<' 0.005; }
+
 # The object moves, the force follows, and the host sees it.
 start_publisher bumpy.spm --poses swing.txt --poses-loop --watch
 run_hrtc --model bumpy --duration 2.5 --record swing.rec
@@ -20,9 +23,10 @@ run_hrtc --model bumpy --duration 2.5 --record swing.rec
 check_clean report.json
 check_answers report.json
 check report.json models.0.pose.followed == 1 models.0.pose.accepted '>' 50 \
-    models.0.pose.moves '>' 50 models.0.pose.step_max_m '<' 0.005 \
+    models.0.pose.moves '>' 50 \
     models.0.pose.refused.rotation == 0 models.0.pose.refused.not_newer == 0 \
     force.max_n '>' 0 safety.begun.jump == 0 telemetry.sent '>' 50
+check_steps
 grep -q '^poses  *bumpy: moved in [0-9]* frames' hrtc.log || fault 'the summary tells no poses'
 wait_until 'word of the host on a tool in contact and a pose that is followed' \
     grep -q '^watch hrtc-[0-9]*: .* N in contact.*; bumpy .* pages.* pose ' publish.log
@@ -69,7 +73,8 @@ printf '%s\n' '0 bumpy 0.5 0 0 0 0 0 1' '1 bumpy 0.5 0.03 0 0 0 0.1 0.995' \
 start_publisher bumpy.spm --poses far.txt --poses-loop --poses-rate 100
 contact=0.3 run_hrtc --model bumpy --duration 4
 check report.json models.0.pose.accepted '>' 100 models.0.pose.moves '>' 100 \
-    models.0.pose.step_max_m '<' 0.005 safety.begun.jump == 0
+    safety.begun.jump == 0
+check_steps
 check_contact report.json force.contact_share 0.3
 check_clean report.json
 stop_publisher
