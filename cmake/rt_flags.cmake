@@ -13,6 +13,27 @@ target_compile_definitions(tactus_numerics INTERFACE
 add_compile_options(-fPIC -fno-semantic-interposition
     $<$<COMPILE_LANGUAGE:CXX>:-fvisibility-inlines-hidden>)
 
+# Stack protector, marks for shadow stack and branch targets, checked calls of libc; not beside
+# sanitizers, which check the same. Modules on the frame's path take tactus_without_guards().
+if(NOT TACTUS_SANITIZE)
+    if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+        set(branches -fcf-protection=full)
+        set(branches_of_frame -fcf-protection=return)
+    elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
+        set(branches -mbranch-protection=standard)
+        set(branches_of_frame -mbranch-protection=none)
+    endif()
+    add_compile_options(-fstack-protector-strong ${branches}
+        "$<$<CONFIG:Release>:-U_FORTIFY_SOURCE;-D_FORTIFY_SOURCE=2>")
+endif()
+# tactus_without_guards(): for the targets of this folder. A stack protector costs a frame 2 to 3 %
+# of its instructions, marks of branch targets 0.7 to 1 %.
+macro(tactus_without_guards)
+    if(NOT TACTUS_SANITIZE)
+        add_compile_options(-fno-stack-protector ${branches_of_frame})
+    endif()
+endmacro()
+
 if(TACTUS_SANITIZE)
     add_compile_options(
         -fsanitize=${TACTUS_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
