@@ -18,9 +18,10 @@ namespace tactus
 namespace
 {
 
-/// Between two looks.
+/// Pause between two polls.
 constexpr auto kPause = std::chrono::milliseconds(1);
-/// Nothing came for so long: asked again. Longer than a round trip of any use to a hand.
+/// Silence after which missing parts are requested again; longer than any round trip that is usable
+/// for haptics.
 constexpr auto kAgain = std::chrono::milliseconds(100);
 
 } // namespace
@@ -75,7 +76,7 @@ BaseFetch::State BaseFetch::check()
             return state_ = State::refused;
         }
         parts_ = PartIntake(ContentKind::base, header_.fields().base_bytes);
-        session_ = 0; // Asked again at once.
+        session_ = 0; // 0 requests the parts again at once.
         return state_;
     }
     model_.base = std::move(parts_.bytes());

@@ -16,24 +16,24 @@
 namespace tactus
 {
 
-/// Fetches a model's base mesh over its link, part by part: a host that goes in the middle, is
-/// silent or sends what is wrong is no loss where another one serves the model.
+/// Fetches a model's base mesh over its link, part by part. If a server leaves midway, is silent or
+/// sends wrong bytes, the fetch goes on with another server of the model.
 class BaseFetch final : private PieceSink
 {
 public:
     enum class State : std::uint8_t
     {
         under_way,
-        done,    ///< The model's `base` is whole and has the hash that its header names.
-        refused, ///< For good: it has another one, and no other server has it.
+        done,    ///< `base` of the model is complete and has the hash that its header names.
+        refused, ///< Final: the bytes have another hash, and no other server has the model.
     };
 
-    /// The model must outlive it, and its header be as ServedModel says; one with a base mesh is
-    /// done.
+    /// `model` must outlive the fetch and have a header as ServedModel states. The fetch of a model
+    /// that already has a base mesh is done.
     explicit BaseFetch(ServedModel& model);
 
-    /// Takes what has come, and asks for what is missing, again where nothing comes. Never waits
-    /// but for a file's disk.
+    /// Takes the parts that have arrived and requests the missing ones, again after a timeout.
+    /// Never waits, except for a file's disk.
     State step();
 
     [[nodiscard]] const ServedModel& model() const noexcept { return model_; }
@@ -48,12 +48,13 @@ private:
     ModelHeader header_;
     PartIntake parts_;
     State state_{State::under_way};
-    std::uint64_t session_{0}; ///< Of the last request.
+    std::uint64_t session_{0}; ///< Link session of the last request.
     Clock::time_point progress_{};
 };
 
-/// Waits until all these models have their base meshes: at most `timeout`, or until `go_on` (asked
-/// every few milliseconds) returns false. Those that came stay when it is refused, which says why.
+/// Waits until all these models have their base meshes, at most `timeout`, or until `go_on` (called
+/// every few milliseconds) returns false. The refusal names a model that lacks its base mesh;
+/// fetched base meshes stay.
 [[nodiscard]] std::optional<Refusal> bring_bases(std::span<ServedModel> models,
                                                  std::chrono::milliseconds timeout,
                                                  const std::function<bool()>& go_on = {});

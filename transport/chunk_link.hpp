@@ -11,9 +11,9 @@
 namespace tactus
 {
 
-/// Takes what a link delivers. The bytes are the piece's coded form, not verified, and valid only
-/// during the call. Of a base mesh they are one part (transport/piece_parts.hpp), which is the
-/// key's number.
+/// Receives the pieces that a link delivers. `bytes` are the piece's coded form, not verified, and
+/// valid only during the call. A base mesh arrives in parts (transport/piece_parts.hpp); the key's
+/// number is that of the part.
 class PieceSink
 {
 public:
@@ -26,14 +26,15 @@ protected:
 enum class LinkState : std::uint8_t
 {
     connected,
-    host_gone, ///< Nobody serves this model at present; it may come back.
+    host_gone, ///< No server has this model at present; one may return.
 };
 
-/// Where one model's base mesh, index pages and chunks come from: a local file, a host on the
-/// network, or a stand-in for one. Used by one thread, the transport thread; no call waits but for
-/// a file's disk.
+/// Source of one model's base mesh, index pages and chunks: a local file, a server on the network,
+/// or a stand-in for one. Used by one thread, the transport thread; no call waits, except for a
+/// file's disk.
 ///
-/// A link may lose, repeat, reorder and damage: the courier verifies and asks again.
+/// A link may lose, repeat, reorder and damage pieces: the Courier verifies them and requests them
+/// again.
 class ChunkLink
 {
 public:
@@ -44,28 +45,29 @@ public:
     ChunkLink(ChunkLink&&) = delete;
     ChunkLink& operator=(ChunkLink&&) = delete;
 
-    /// Asks for pieces that the model has, most urgent first. A newer generation goes before what
-    /// is still waiting.
+    /// Requests pieces that the model has, most urgent first. A newer generation goes before
+    /// requests that still wait.
     virtual void request(std::span<const ContentKey> keys, std::uint32_t generation) = 0;
 
-    /// Called in receive(), or after it for a base mesh that is whole: what came hasn't the hash
-    /// that it should have. Whether it is worth while to ask again: another source is asked from
-    /// now on, or may come.
+    /// Reports that a piece has a wrong hash. Called in receive(), or after it for a complete base
+    /// mesh. True if a further request makes sense: the link now asks another source, or one may
+    /// appear.
     [[nodiscard]] virtual bool distrust(ContentKey /*key*/) { return false; }
 
-    /// Hands over what has come in. Also the place for the link's own upkeep: call it often (a few
-    /// hundred times a second) even when nothing was asked for.
+    /// Delivers the pieces that have arrived. Also does the link's own upkeep: call it often (a few
+    /// hundred times a second) even without open requests.
     virtual void poll(PieceSink& sink) = 0;
 
     [[nodiscard]] virtual LinkState state() const = 0;
 
-    /// Counts connections: when it changes, whoever serves now knows of no earlier request.
+    /// Number of connections so far. When it changes, the present server knows none of the earlier
+    /// requests.
     [[nodiscard]] virtual std::uint64_t session() const = 0;
 
-    /// Payload bytes that came in, keys and framing of the link included.
+    /// Payload bytes received, the link's keys and framing included.
     [[nodiscard]] virtual std::uint64_t bytes_received() const = 0;
 
-    /// Pieces that were asked for and that it knows to be damaged where they lie.
+    /// Requested pieces that are known to be damaged in their storage.
     [[nodiscard]] virtual std::uint64_t damaged() const { return 0; }
 };
 

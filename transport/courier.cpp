@@ -16,7 +16,7 @@ namespace tactus
 namespace
 {
 
-/// Generations count up and may wrap: whether `a` is older than `b`.
+/// True if `a` is older than `b`. Generations count up and may wrap.
 bool is_older(std::uint32_t a, std::uint32_t b) noexcept
 {
     return static_cast<std::int32_t>(a - b) < 0;
@@ -54,8 +54,8 @@ void Courier::add(const ModelHeader& header, Linker& linker, ChunkLink& link, st
 void Courier::step(std::int64_t now_ns)
 {
     now_ns_ = now_ns;
-    // Counted before the freed slots are taken back: the haptic thread frees a page before it
-    // wishes for it anew, so each of these wishes sees the freeing that came before it.
+    // The count is taken before the freed slots: the haptic thread frees a page before it requests
+    // it again, so each of these requests is processed after the release that preceded it.
     const std::size_t wishes = door_.wanted.size();
     bank_.take_back_freed();
     take_wishes(wishes);
@@ -92,7 +92,7 @@ void Courier::open_wish(const PieceWish& wish)
         is_older(newest_generation_, wish.generation) ? wish.generation : newest_generation_;
     if (is_resident(side, wish.key))
     {
-        return; // On its way through the door: it was wished for twice.
+        return; // The piece is already on its way to the haptic thread; the request is a duplicate.
     }
     if (OpenWish* open = find_open(side, wish.key); open != nullptr)
     {
@@ -119,7 +119,7 @@ void Courier::forget_oldest_generation()
     remove(open_[oldest]);
 }
 
-/// The cache has waited long enough for an answer.
+/// Handles a repeated request: the cache's timeout has expired.
 void Courier::wish_again(OpenWish& open)
 {
     Side& side = *open.side;
@@ -143,10 +143,9 @@ void Courier::ask_again(OpenWish& open)
     open.is_asked = false;
 }
 
-/// What hasn't been asked for yet, and everything again when another host serves the model. How
-/// long to wait for an answer is the cache's to know: a wish has one clock, WishList's. Loss is the
-/// link's business first; wishes expire for what it cannot see: pieces that were damaged, or found
-/// no slot.
+/// Sends the requests not yet sent, and all again if another server has the model. The cache owns
+/// the timeout (WishList). The link handles loss first; requests expire for causes that it cannot
+/// see: pieces that were damaged or found no slot.
 void Courier::ask(Side& side)
 {
     const std::span<OpenWish> open = open_.first(open_count_);
@@ -214,7 +213,7 @@ void Courier::want_base(Side& side, const PieceWish& wish)
 {
     if (side.linker.has_base() || bank_.is_outdated(wish.owner, wish.generation))
     {
-        return; // On its way through the door, or not wanted any more: it was wished for twice.
+        return; // The mesh is already on its way to the haptic thread, or not wanted any more.
     }
     if (side.base.bytes().empty())
     {
@@ -250,8 +249,8 @@ void Courier::bring_base(Side& side)
     }
 }
 
-/// Waits while pages are here that were linked to the one before. What is refused gives the cells
-/// back: a host that goes on sending it would keep them for ever.
+/// Adopts a complete base mesh; waits while pages linked to the previous one are resident. A
+/// refused mesh gives its cells back: a server that repeats it would occupy them permanently.
 void Courier::adopt_base(Side& side)
 {
     if (side.linker.pages_here() > 0)
@@ -287,7 +286,7 @@ void Courier::adopt_base(Side& side)
     side.base = {};
 }
 
-/// Others may need the room.
+/// Gives the cells back, since other models may need them.
 void Courier::give_cells_back(Side& side)
 {
     bank_.expect_news_of(side.linker.owner());
@@ -328,7 +327,7 @@ void Courier::adopt_index_page(Side& side, IndexPageId page, std::span<const std
         !done)
     {
         refuse(side, side.counters.refused_content, key, refusal_text(done.error()));
-        close_wish(side, key); // The host has no better one.
+        close_wish(side, key); // The server has no better one.
         return;
     }
     bank_.take_index_page(side.linker.owner(), page);
@@ -391,7 +390,7 @@ void Courier::hand_over(Side& side, ContentKey key, std::uint32_t slot, std::uin
                          1e-9 * static_cast<double>(waited_ns)));
     }
     close_wish(side, key);
-    // Room for every slot that the model may have: a slot is in at most one queue.
+    // The queue has room for every slot that the model may have: a slot is in at most one queue.
     const bool pushed =
         door_.arrived.try_push({key, slot, bank_.freed_taken(), linked, DoorEventKind::arrival,
                                 static_cast<std::uint8_t>(side.linker.owner())});
@@ -399,7 +398,8 @@ void Courier::hand_over(Side& side, ContentKey key, std::uint32_t slot, std::uin
     ++side.counters.delivered;
 }
 
-/// After the arrivals that linked them, so that the door's order is that of linking.
+/// Sends link updates after the arrivals that they depend on, so the queue has the order of
+/// linking.
 void Courier::push_link_updates(Side& side)
 {
     Linker::Update update;

@@ -26,64 +26,65 @@
 namespace tactus
 {
 
-/// What the transport thread did for one model since the start.
+/// Counts of the transport thread's work for one model since the start.
 struct CourierCounters
 {
-    std::uint64_t pieces{0};      ///< Came in, whatever became of them.
-    std::uint64_t coded_bytes{0}; ///< Of those, without the link's framing.
-    std::uint64_t delivered{0};   ///< Handed over to the haptic thread.
-    std::uint64_t wishes{0};      ///< Taken from the door.
-    std::uint64_t asked_again{0}; ///< Repeated: nothing came, or another host serves the model.
+    std::uint64_t pieces{0};      ///< Pieces received, accepted or not.
+    std::uint64_t coded_bytes{0}; ///< Their bytes, without the link's framing.
+    std::uint64_t delivered{0};   ///< Pieces passed to the haptic thread.
+    std::uint64_t wishes{0};      ///< Requests taken from the haptic thread.
+    /// Requests repeated: no answer, or another server has the model.
+    std::uint64_t asked_again{0};
 
-    std::uint64_t refused_hash{0};     ///< Damaged, forged, or another piece under this key.
-    std::uint64_t refused_content{0};  ///< The hash fits but parse refuses: a faulty model.
-    std::uint64_t dropped_unasked{0};  ///< Duplicates, late ones, and what nobody wished for.
-    std::uint64_t dropped_no_slot{0};  ///< Every slot is with the haptic thread.
-    std::uint64_t dropped_no_index{0}; ///< The chunk's index page is not here to verify it.
-    std::uint64_t forgotten{0};        ///< Wishes given up because too many were open.
-    std::uint64_t overdue{0};          ///< Wishes that waited for more than a second (WishClock).
-    std::uint64_t overdue_came{0};     ///< Of those, what came after all.
+    std::uint64_t refused_hash{0}; ///< Pieces that are damaged, forged, or belong to another key.
+    /// Pieces with the right hash that parse refuses: a faulty model.
+    std::uint64_t refused_content{0};
+    std::uint64_t dropped_unasked{0}; ///< Duplicates, late pieces and pieces without a request.
+    /// Pieces for which no slot was free: the haptic thread has all.
+    std::uint64_t dropped_no_slot{0};
+    std::uint64_t dropped_no_index{0}; ///< Chunks whose index page is not resident to verify them.
+    std::uint64_t forgotten{0};        ///< Requests given up because too many were open.
+    std::uint64_t overdue{0};          ///< Requests that waited for more than a second (WishClock).
+    std::uint64_t overdue_came{0};     ///< Overdue pieces that arrived in the end.
 
     [[nodiscard]] std::uint64_t refused() const noexcept { return refused_hash + refused_content; }
 };
 
 struct CourierOptions
 {
-    /// Asked for and not yet here, 64 B each; above 0 (asserted).
+    /// Maximum number of open requests, 64 B each; above 0 (asserted).
     std::uint32_t open_wishes{SlotDoor::kOpenWishes};
-    /// Wishes come again within kWishTimeoutFrames, or twice that; after a longer pause than this a
-    /// piece was not wanted meanwhile.
+    /// Longest pause between two requests for one piece that counts as continued demand. The haptic
+    /// thread repeats a request within kWishTimeoutFrames, or twice that.
     std::int64_t forgotten_ns{1'000'000'000};
 };
 
-/// The transport thread's work: takes wishes from the door, asks each model's link, verifies what
-/// comes, parses it into a free slot, links it and hands the slot over. Has no thread of its own:
-/// call step() on one thread.
+/// The transport thread's work: takes requests from the haptic thread, asks each model's link,
+/// verifies the pieces that arrive, parses each into a free slot, links it and passes the slot on.
+/// Has no thread of its own: call step() on one thread.
 ///
 /// Trust: an index page is checked against its hash in the header, a chunk against its hash in its
-/// index page, so nothing that the header's author did not write reaches a slot. A refused piece
-/// changes nothing but counters; the slot it would have had stays free.
+/// index page, so only data that the header's author wrote reaches a slot. A refused piece changes
+/// nothing but counters; its slot stays free.
 ///
-/// What a record waited for may come with a later page: the door is told then which records of
-/// pages already handed over are linked, the latest state of a page, once there is room.
+/// A later page may bring what a record of an earlier page needed. The haptic thread is then sent
+/// the linked records of that page, in their latest state, once the queue has room.
 ///
-/// A piece that doesn't come for a second is told of and counted, and again when it comes after
-/// all.
+/// A piece that does not arrive within a second is logged and counted, and so is its later arrival.
 ///
-/// A guest's base mesh comes in parts and is checked as a whole against the hash that the header
-/// names, parsed into the cells that came with the wish, and handed over; the model's pages come
-/// after it. When it is given back all that was linked to it has been. Where nothing of it comes
-/// for a second, whether its host is gone or silent, the cells are given back; what had come is
-/// kept for the next wish, which may find another host. They are given back at once when it is
-/// refused, and it is asked for anew with the next wish.
+/// A streamed model's base mesh comes in parts. As a whole it is checked against the hash in the
+/// header, parsed into the cells that the request named, and passed on; the model's pages follow
+/// it. The base mesh is given back only after everything linked to it. If no part arrives for a
+/// second, because the server is gone or silent, the cells are given back; the parts are kept for
+/// the next request, which may reach another server. If the base mesh is refused, the cells are
+/// given back at once, and the next request fetches it from the beginning.
 ///
-/// Nothing is allocated after the last add() but for base meshes on their way (the links and the
-/// log are their own matter).
+/// Nothing is allocated after the last add(), except for base meshes in transit (and by links and
+/// log).
 class Courier
 {
 public:
-    /// Slots are those of all models; they are all the courier's at first. Slots and door must
-    /// outlive it.
+    /// All slots of all models belong to the Courier at first. Slots and door must outlive it.
     Courier(Arena& arena, const PageSlots& slots, SlotDoor& door, Log log,
             const CourierOptions& options = {});
 
@@ -91,18 +92,18 @@ public:
     [[nodiscard]] static std::size_t required_bytes(std::size_t pages, std::size_t index_pages,
                                                     const CourierOptions& options = {}) noexcept;
 
-    /// One model more, the linker's owner: they come in the order of their numbers, from 0. All
-    /// must outlive the courier. `name` stands in front of log lines. A linker without a base mesh
-    /// is a guest's: the mesh is brought when it is wished for.
+    /// Adds one model, the linker's owner; models are added in the order of their numbers, from 0.
+    /// All arguments must outlive the Courier. `name` precedes log lines. A linker without a base
+    /// mesh belongs to a streamed model: the mesh is fetched on request.
     void add(const ModelHeader& header, Linker& linker, ChunkLink& link, std::string name);
 
-    /// One round: freed slots, wishes, repeats, arrivals, link updates. `now_ns` is monotonic, of
-    /// one clock. In time by what has come; a link of a file waits for its disk.
+    /// Runs one round: freed slots, requests, repeats, arrivals, link updates. `now_ns` is
+    /// monotonic, always of the same clock. The cost grows with the arrivals; a link to a file
+    /// waits for its disk.
     void step(std::int64_t now_ns);
 
-    /// From now on `copies` gets every piece of the model that is handed over, in its coded form
-    /// and right before; null ends it. It must outlive the courier. Here and below there must be
-    /// such a model.
+    /// Sends every piece of the model to `copies` too, in its coded form, right before it is passed
+    /// on; null ends that. `copies` must outlive the Courier. The model must exist, here and below.
     void copy_pieces_to(PieceSink* copies, std::uint32_t model = 0) noexcept
     {
         sides_[model]->copies = copies;
@@ -116,21 +117,21 @@ public:
     {
         return sides_[model]->counters;
     }
-    /// From the wish for a piece until it was handed over.
+    /// Times from the request for a piece until it was passed on.
     [[nodiscard]] const WaitingTimes& waiting_times(std::uint32_t model = 0) const noexcept
     {
         return sides_[model]->waiting_times;
     }
-    /// Whether a piece of the model is still wished for that hasn't come for more than a second.
+    /// True while an open request of the model has waited for more than a second.
     [[nodiscard]] bool is_starved(std::uint32_t model = 0) const noexcept;
     [[nodiscard]] std::size_t open_wishes() const noexcept { return open_count_; }
-    /// Adds the chunks of the model that are wished for and haven't come, in any order.
+    /// Appends the chunks of the model with open requests, in any order.
     void add_wished_chunks(std::uint32_t model, std::vector<ChunkId>& chunks) const;
     [[nodiscard]] std::size_t free_pages() const noexcept { return bank_.free_pages(); }
     [[nodiscard]] std::size_t free_index_pages() const noexcept { return bank_.free_index_pages(); }
 
 private:
-    /// One model's.
+    /// State of one model.
     struct Side final : PieceSink
     {
         Side(Courier& courier, const ModelHeader& model_header, Linker& model_linker,
@@ -156,13 +157,14 @@ private:
         ChunkLink& link;
         std::string name;
         std::uint64_t session;
-        std::size_t unasked{0}; ///< Of the open wishes.
-        std::size_t overdue{0}; ///< Likewise.
-        /// Of a guest whose base mesh is wanted: where it is to lie, and what has come of it.
+        std::size_t unasked{0}; ///< Open requests not yet sent to the link.
+        std::size_t overdue{0}; ///< Open requests that are overdue.
+        /// Cells of a wanted base mesh of a streamed model; `base` has the parts received.
         std::optional<std::uint32_t> base_cell;
         PartIntake base;
         bool is_base_asked{false};
-        std::int64_t base_progress_ns{0}; ///< Wished for or some of it come, for the last time.
+        /// Time of the first request or of the last part received.
+        std::int64_t base_progress_ns{0};
         PieceSink* copies{nullptr};
         CourierCounters counters;
         WaitingTimes waiting_times;
@@ -204,13 +206,13 @@ private:
     SlotDoor& door_;
     SlotBank bank_;
     RateLimitedLog log_;
-    std::span<OpenWish> open_; ///< The first `open_count_` are in use.
+    std::span<OpenWish> open_; ///< Storage of open requests; the first `open_count_` are in use.
     std::size_t open_count_{0};
     std::span<ContentKey> batch_;
     std::int64_t forgotten_ns_;
     std::uint32_t newest_generation_{0};
     std::int64_t now_ns_{0};
-    std::vector<std::unique_ptr<Side>> sides_; ///< By owner.
+    std::vector<std::unique_ptr<Side>> sides_; ///< Models by owner number.
 };
 
 } // namespace tactus

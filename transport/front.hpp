@@ -20,63 +20,64 @@
 namespace tactus
 {
 
-/// Page slots that one front looks at: of 256 Ki records, 33 MB of pages.
+/// Maximum number of page slots in one refinement state: 256 Ki records, 33 MB of pages.
 inline constexpr std::size_t kMaxFrontPages = 4'096;
-/// Object numbers that one front looks at, beside the objects of awake pairs.
+/// Object numbers listed by one refinement state, in addition to the objects of awake pairs.
 inline constexpr std::uint32_t kFrontSweep = 16;
-/// Most objects of one front.
+/// Maximum number of objects in one refinement state.
 inline constexpr std::size_t kMaxFrontObjects = 2 * kFrontSweep;
-/// Most wishes of one front, those of all models together: a courier has no more open.
+/// Maximum number of requests in one refinement state, over all models: a Courier has no more open.
 inline constexpr std::size_t kMaxFrontWishes = 256;
-/// Most regions of one front; a ball that moves has five.
+/// Maximum number of regions in one refinement state; a moving ball has five.
 inline constexpr std::size_t kMaxFrontRegions = 64;
-/// Most bytes of FrontTool::shape.
+/// Maximum number of bytes of FrontTool::shape.
 inline constexpr std::size_t kMaxShapeBytes = 63;
 
-/// A resident page of records. A record is split where its bit is set: base mesh and split records
-/// are the faces that the controller has, to the last one.
+/// A resident page of records. A record is split if its bit is set. Base mesh and split records
+/// together determine the controller's faces exactly.
 struct FrontPage
 {
     ChunkId chunk{};
-    std::uint64_t refined{0}; ///< Bit n: the chunk's record n.
+    std::uint64_t refined{0}; ///< Bit n is the chunk's record n.
 
     bool operator==(const FrontPage&) const = default;
 };
 
-/// A model of which the controller has something.
+/// A model with pages or open requests on the controller.
 struct FrontModel
 {
     ContentHash hash{};
-    std::vector<FrontPage> pages; ///< By their chunks.
-    std::vector<ChunkId> wished;  ///< Asked for and not here yet; ascending.
+    std::vector<FrontPage> pages; ///< Resident pages, ascending by chunk.
+    std::vector<ChunkId> wished;  ///< Requested chunks that are not resident yet, ascending.
 
     bool operator==(const FrontModel&) const = default;
 };
 
-/// A ball that a tool may touch: where its chunks are looked for. Model frame, metres.
+/// A ball that a tool may touch, in which its chunks are searched. Model frame, metres.
 struct FrontRegion
 {
-    std::uint32_t model{0};  ///< Of Front::models.
-    bool is_foretold{false}; ///< Else a tool is there.
+    std::uint32_t model{0};  ///< Index into Front::models.
+    bool is_foretold{false}; ///< True for a predicted place, false for the tool's present one.
     std::array<float, 3> center_m{};
     float radius_m{0.0F};
 
     bool operator==(const FrontRegion&) const = default;
 };
 
-/// Where an object stood at the end of the frame.
+/// Pose of an object at the end of the frame.
 struct FrontObject
 {
-    std::uint64_t host_epoch{0}; ///< As in PairTelemetry.
-    std::uint32_t object{0};     ///< Likewise.
-    std::uint32_t number{0};     ///< On the controller.
-    std::uint32_t model{0};      ///< Of Front::models.
-    Pose pose;                   ///< Of the model's frame (ModelHeader::origin_m), in the world.
+    /// Epoch of the server that shows the object; 0: placed by the controller.
+    std::uint64_t host_epoch{0};
+    std::uint32_t object{0}; ///< Number of the object on that server, or on the controller.
+    std::uint32_t number{0}; ///< Number of the object on the controller.
+    std::uint32_t model{0};  ///< Index into Front::models.
+    Pose pose;               ///< Pose of the model's frame (ModelHeader::origin_m) in the world.
 
     bool operator==(const FrontObject&) const = default;
 };
 
-/// With the controller's own number of the model.
+/// Wire form of a region; `model` is still the controller's own number.
 [[nodiscard]] inline FrontRegion front_region_of(const RankedRegion& region) noexcept
 {
     FrontRegion shown{
@@ -91,10 +92,10 @@ struct FrontObject
 struct FrontTool
 {
     SafetyState state{SafetyState::reset};
-    ForceOff causes{ForceOff::none}; ///< Why less than the frame's force goes out.
-    std::string shape;               ///< In the words of hrtc's --tool; printable ASCII.
+    ForceOff causes{ForceOff::none}; ///< Reasons why the output is below the frame's force.
+    std::string shape;               ///< Shape as hrtc's --tool takes it; printable ASCII.
     double radius_m{0.0};
-    bool begins_inside{false}; ///< It began inside a closed object.
+    bool begins_inside{false}; ///< True if the tool began inside a closed object.
 
     bool operator==(const FrontTool&) const = default;
 };
@@ -102,32 +103,33 @@ struct FrontTool
 /// Times of frames, in nanoseconds.
 struct FrontTimes
 {
-    double mean_ns{0.0}; ///< Of the frames since the last front.
-    double max_ns{0.0};  ///< Of all frames.
+    double mean_ns{0.0}; ///< Mean since the last refinement state.
+    double max_ns{0.0};  ///< Maximum over all frames.
 
     bool operator==(const FrontTimes&) const = default;
 };
 
-/// Stages in their order, then the frame, then its processor time.
+/// Number of timed spans: the stages in their order, the frame, the frame's processor time.
 inline constexpr std::size_t kFrontTimes = kStages + 2;
 
-/// What a controller has refined, and how, at most ten times a second: what a viewer needs beside
-/// Telemetry to draw the controller's own faces from a copy of the model.
+/// A controller's refinement state, published at most ten times a second. With Telemetry, a viewer
+/// can draw the controller's own faces from a copy of the model.
 struct Front
 {
-    std::uint64_t frame{0}; ///< Frames run.
+    std::uint64_t frame{0}; ///< Number of frames run.
     std::int64_t time_ns{0};
     std::array<FrontTimes, kFrontTimes> times{};
-    Budgets budgets; ///< Of the frame.
-    /// Of the numbers from here up to `sweep_end` on the controller all objects are listed.
+    Budgets budgets; ///< Budgets of the frame.
+    /// First of the controller's object numbers, up to `sweep_end`, whose objects are all listed.
     std::uint32_t sweep_begin{0};
     std::uint32_t sweep_end{0};
-    std::uint32_t slots_left_out{0};   ///< Of pages, beyond kMaxFrontPages.
-    std::uint32_t regions_left_out{0}; ///< Less urgent ones, beyond kMaxFrontRegions.
+    std::uint32_t slots_left_out{0};   ///< Page slots beyond kMaxFrontPages.
+    std::uint32_t regions_left_out{0}; ///< Least urgent regions beyond kMaxFrontRegions.
     std::vector<FrontTool> tools;
-    std::vector<FrontModel> models; ///< Those with pages or wishes, of `objects` or `regions`.
+    /// Models with pages or requests, and those of `objects` or `regions`.
+    std::vector<FrontModel> models;
     std::vector<FrontObject> objects;
-    std::vector<FrontRegion> regions; ///< Most urgent first.
+    std::vector<FrontRegion> regions; ///< Regions, most urgent first.
 
     bool operator==(const Front&) const = default;
 };

@@ -44,8 +44,8 @@ bool InsideTest::holds(const Vec3& place_m) const
     return true;
 }
 
-/// By the winding number: the sum of the solid angles of all faces (Van Oosterom and Strackee 1983)
-/// is 4 pi inside and zero outside, with the other sign of a surface that is turned.
+/// Winding number test: the sum of the solid angles of all faces (Van Oosterom and Strackee 1983)
+/// is 4 pi inside and zero outside, with the opposite sign for a surface of opposite orientation.
 bool InsideTest::is_wound_round(const Vec3& place_m) const
 {
     double half_angles = 0.0;

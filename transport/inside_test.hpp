@@ -13,28 +13,29 @@
 namespace tactus
 {
 
-/// Tells whether a tool begins inside a solid. The force has no notion of inside: a surface holds a
-/// tool on the side where it was first. One that begins within is held there, and a hand that
-/// leaves is pulled back. So a program that starts a run asks first.
+/// Test whether a tool begins inside a solid. The force has no notion of inside: a surface holds a
+/// tool on the side of its first contact. A tool that begins inside is held there, and pulls back a
+/// hand that leaves. A program therefore tests before a run.
 ///
-/// Judged by the base mesh, with a margin as wide as its largest error: a place that is nearer to
-/// the surface isn't called inside.
+/// The test uses the base mesh with a margin of its largest error: a place within the margin of the
+/// surface does not count as inside.
 ///
-/// Any thread, but not the haptic one: some microseconds to a millisecond a place.
+/// Any thread, except the haptic one: some microseconds to a millisecond a place.
 class InsideTest
 {
 public:
-    /// Of a model that isn't closed, or whose base mesh isn't here, nothing is inside. Of a header
-    /// that parses.
+    /// `header` must parse, and `base` is its coded base mesh. If the model is not closed or `base`
+    /// is empty, no place is inside.
     InsideTest(const ModelHeader& header, std::span<const std::byte> base);
 
-    /// A place in the model's frame.
+    /// True if a place, in the model's frame, is inside.
     [[nodiscard]] bool holds(const Vec3& place_m) const;
 
 private:
     [[nodiscard]] bool is_wound_round(const Vec3& place_m) const;
 
-    std::vector<std::array<Vec3, 3>> faces_m_; ///< None: nothing is inside.
+    /// Faces of the base mesh; empty: no place is inside.
+    std::vector<std::array<Vec3, 3>> faces_m_;
     double margin_m_{0.0};
 };
 

@@ -11,13 +11,13 @@
 namespace tactus
 {
 
-/// Takes one line of text, without its newline. Called on the transport thread, never on the haptic
-/// thread. An empty one is never called: nothing is told.
+/// Receives one line of text, without a newline. Called on the transport thread, never on the
+/// haptic thread. An empty one is never called: nothing is logged.
 using Log = std::function<void(const std::string&)>;
 
-/// Lets through a few lines a second and says how many it held back: a fault that repeats a
+/// Limits the lines per second and reports how many were suppressed: a fault that repeats a
 /// thousand times a second must not flood the terminal or stall its thread. One thread; reads the
-/// clock, and what it writes allocates.
+/// clock, and allocates when it writes.
 class RateLimitedLog
 {
 public:
@@ -28,7 +28,7 @@ public:
     {
     }
 
-    /// True when one more line may be written now; build the line only then.
+    /// True if one more line may be written now; build the line only then.
     [[nodiscard]] bool try_begin()
     {
         const auto now = std::chrono::steady_clock::now();

@@ -10,22 +10,21 @@
 namespace tactus
 {
 
-/// What an object's material may be, whoever says so: an option of hrtc, a scene file or a file of
-/// poses.
+/// Ranges of an object's material, from an option of hrtc, a scene file or a file of poses.
 inline constexpr double kSoftest_n_per_m = 1.0;
-inline constexpr double kStiffest_n_per_m = 3'000.0;    ///< Of --stiffness, too.
-inline constexpr double kSoftestTurn_nm_per_rad = 1e-3; ///< Of --angular-stiffness.
+inline constexpr double kStiffest_n_per_m = 3'000.0;    ///< Also the maximum of --stiffness.
+inline constexpr double kSoftestTurn_nm_per_rad = 1e-3; ///< Minimum of --angular-stiffness.
 inline constexpr double kStiffestTurn_nm_per_rad = 100.0;
 inline constexpr double kRoughest = 3.0;
-inline constexpr double kMostDamped_n_s_per_m = 20.0; ///< And most viscous.
+inline constexpr double kMostDamped_n_s_per_m = 20.0; ///< Maximum of damping and of viscosity.
 
-/// The same in words, for messages.
+/// Text of the ranges, for messages.
 inline constexpr std::string_view kMaterialRanges =
     "1 to 3000 N/m, friction of 0 to 3, the dynamic one at most the static one, damping and "
     "viscosity of 0 to 20 N s/m, and a texture's height of at most 1/32 of its length of 0.0001 to "
     "1 m";
 
-/// A material that names no stiffness has that of the tool.
+/// True if all values are in range. A material without a stiffness has that of the tool.
 [[nodiscard]] constexpr bool is_in_range(const Material& material) noexcept
 {
     const bool has_stiffness = material.stiffness_n_per_m != Material{}.stiffness_n_per_m;
@@ -40,7 +39,7 @@ inline constexpr std::string_view kMaterialRanges =
            is_texture(material.texture_height_m, material.texture_length_m);
 }
 
-/// The nearest that is in range of one that is_sound().
+/// Nearest material in range to one that is_sound().
 [[nodiscard]] constexpr Material within_ranges(Material material) noexcept
 {
     const bool has_stiffness = material.stiffness_n_per_m != Material{}.stiffness_n_per_m;

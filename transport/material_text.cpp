@@ -25,7 +25,7 @@ namespace
 
 constexpr NumberRange kFriction{0.0, kRoughest};
 constexpr NumberRange kDamping{0.0, kMostDamped_n_s_per_m, "N s/m"};
-/// One a key of kMaterialKeys, in their order.
+/// Ranges in the order of kMaterialKeys.
 constexpr std::array<NumberRange, kMaterialKeys.size()> kValueRanges{{
     {kSoftest_n_per_m, kStiffest_n_per_m, "N/m"},
     kFriction,
@@ -44,7 +44,7 @@ std::size_t place_of(std::string_view key)
                                     kMaterialKeys.begin());
 }
 
-/// What the numbers, each in its range, are not together; empty when they are a material.
+/// Fault of a combination of values that are each in range; empty for a valid material.
 std::string fault_of(const Material& material)
 {
     if (material.dynamic_friction > material.static_friction)
@@ -73,13 +73,13 @@ Result<Material, Refusal> parse_in_order(std::string_view text)
         });
     if (const std::string fault = fault_of(material); !fault.empty())
     {
-        std::swap(n[1], n[2]); // The one fault that numbers in order can have together.
+        std::swap(n[1], n[2]); // The only fault that numbers in this form can have in combination.
         return not_of_form(text, kInOrder.text, fault, fmt::format("{}", fmt::join(n, ",")));
     }
     return material;
 }
 
-/// The refusal of a text in which a pair has no key.
+/// Refusal of a text with a pair that has no key.
 Refusal no_key(std::string_view text, std::string_view pair)
 {
     const std::string_view key = pair.substr(0, pair.find('='));

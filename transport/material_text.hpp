@@ -13,7 +13,7 @@
 namespace tactus
 {
 
-/// One value of a material by the name that options, scene files and files of poses have for it.
+/// Key of one value of a material, the same in options, scene files and files of poses.
 struct MaterialKey
 {
     std::string_view name;
@@ -29,14 +29,14 @@ inline constexpr std::array<MaterialKey, 7> kMaterialKeys{{
     {"texture_length", &Material::texture_length_m},
 }};
 
-/// What parse_material_keys() takes; for messages.
+/// Form that parse_material_keys() takes; for messages.
 inline constexpr std::string_view kMaterialKeysForm =
     "any of stiffness=, static=, dynamic=, damping=, viscosity=, texture_height= and "
     "texture_length=, with commas between";
 
-/// A material of the values that `value_of` has for the keys, a function of a name. What it has
-/// none for is as where nothing is said: the tool's stiffness, and nothing else to be felt; a
-/// dynamic friction that is left out is the static one. Ranges are not looked at.
+/// Builds a material from `value_of`, a function from a key to an optional value. Defaults of
+/// missing keys: the tool's stiffness, the static friction for the dynamic one, and 0 for the rest.
+/// Ranges are not checked.
 template <typename ValueOf>
 [[nodiscard]] Material material_of(const ValueOf& value_of)
 {
@@ -51,10 +51,10 @@ template <typename ValueOf>
     return material;
 }
 
-/// KEY=VALUE[,KEY=VALUE...], each key once, with values within the ranges of is_in_range().
+/// Reads KEY=VALUE[,KEY=VALUE...], each key once, with values within the ranges of is_in_range().
 [[nodiscard]] Result<Material, Refusal> parse_material_keys(std::string_view text);
 
-/// Likewise, or STIFFNESS[,STATIC[,DYNAMIC[,DAMPING]]].
+/// Reads the same form, or STIFFNESS[,STATIC[,DYNAMIC[,DAMPING]]].
 [[nodiscard]] Result<Material, Refusal> parse_material(std::string_view text);
 
 } // namespace tactus

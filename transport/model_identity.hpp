@@ -11,10 +11,10 @@
 namespace tactus
 {
 
-/// A model as it is spoken of on the wire.
+/// Identity of a model on the wire.
 struct ModelIdentity
 {
-    std::string name; ///< By which it is published; valid.
+    std::string name; ///< Published name; valid.
     ContentHash hash{};
     std::uint32_t revision{0};
 

@@ -14,8 +14,8 @@
 namespace tactus
 {
 
-/// Puts something together that comes in parts, in any order and more than once. Which bytes they
-/// are is for who has the whole to check.
+/// Assembles a whole from parts that arrive in any order and more than once. The owner of the whole
+/// verifies its bytes.
 class PartIntake
 {
 public:
@@ -25,7 +25,7 @@ public:
     {
     }
 
-    /// False for what is here already, of another kind or of another size.
+    /// Stores a part. False if it has arrived before, or is of another kind or size.
     bool receive(ContentKey key, std::span<const std::byte> bytes)
     {
         if (key.kind != kind_ || key.number >= is_here_.size() || is_here_[key.number] ||
@@ -40,7 +40,7 @@ public:
         return true;
     }
     [[nodiscard]] std::size_t missing() const noexcept { return missing_; }
-    /// Adds the missing parts to `keys` while those are fewer than `most`.
+    /// Appends the missing parts to `keys` until it holds `most`.
     void list_missing(std::vector<ContentKey>& keys, std::size_t most) const
     {
         for (std::uint32_t i = 0; i < is_here_.size() && keys.size() < most; ++i)
@@ -56,7 +56,7 @@ public:
 private:
     ContentKind kind_{ContentKind::base};
     std::vector<std::byte> bytes_;
-    std::vector<bool> is_here_; ///< By part.
+    std::vector<bool> is_here_; ///< Received parts, by number.
     std::size_t missing_{0};
 };
 

@@ -10,16 +10,16 @@
 namespace tactus
 {
 
-/// Header and base mesh come in parts of this size; the last one is what is left.
+/// Bytes of one part of a header or base mesh; the last part is the remainder.
 inline constexpr std::size_t kPartBytes = std::size_t{28} << 10U;
 
-/// Parts of something of that size.
+/// Number of parts of `bytes` bytes.
 [[nodiscard]] constexpr std::uint32_t parts_of(std::size_t bytes) noexcept
 {
     return static_cast<std::uint32_t>((bytes + kPartBytes - 1) / kPartBytes);
 }
 
-/// One part of it; empty beyond its end.
+/// Part number `part` of `whole`; empty beyond the end.
 [[nodiscard]] constexpr std::span<const std::byte> part_of(std::span<const std::byte> whole,
                                                            std::uint32_t part) noexcept
 {

@@ -16,9 +16,9 @@ namespace
 {
 
 constexpr std::size_t kStep = std::size_t{64} << 10U;
-/// Of what guests need not have, in percent.
+/// Share of pages in the optional memory of streamed models, in percent.
 constexpr std::size_t kPagesOfGuests = 60;
-/// Index pages get this part of the memory, as of models that stay.
+/// Divisor of the share of index pages in the memory, as for resident models.
 constexpr std::size_t kIndexShare = 64;
 constexpr std::size_t kMostSteps = (std::size_t{1} << 40U) / kStep;
 
@@ -37,8 +37,8 @@ bool try_plan_pools(const FrameSetup& setup, std::span<const ModelHeader> header
     {
         return false;
     }
-    // What the courier needs follows from the number of pages, and that from what is left beside
-    // it: mostly the first guess does, and else halving finds the least that does.
+    // The Courier's need follows from the number of pages, and that from the memory left beside it.
+    // Usually the first guess fits; otherwise halving finds the least value that does.
     std::size_t too_little = 0;
     std::size_t too_much = bytes - common;
     std::size_t courier = 0;

@@ -13,8 +13,8 @@
 namespace tactus
 {
 
-/// Where an object stands: world = translation + scale x rotation x point of the source mesh. The
-/// same as hrtc's --place says, but for the rotation's form.
+/// Pose of an object: world = translation + scale x rotation x point of the source mesh. It equals
+/// hrtc's --place, except for the form of the rotation.
 struct Pose
 {
     std::array<double, 4> rotation{0.0, 0.0, 0.0, 1.0}; ///< Unit quaternion x, y, z, w.
@@ -24,22 +24,22 @@ struct Pose
     bool operator==(const Pose&) const = default;
 };
 
-/// Why a pose isn't used.
+/// Reason why a pose is refused.
 enum class PoseRefusal : std::uint8_t
 {
-    not_newer,   ///< Its serial number isn't above that of the last one.
-    not_finite,  ///< A number is none.
-    rotation,    ///< The quaternion's length isn't within kPoseUnitTolerance of 1.
-    translation, ///< Beyond kPoseReachMax_m.
-    scale,       ///< Outside kPoseScaleMin to kPoseScaleMax.
+    not_newer,   ///< Serial number not above that of the last pose.
+    not_finite,  ///< Number that is not finite.
+    rotation,    ///< Quaternion whose length is not within kPoseUnitTolerance of 1.
+    translation, ///< Translation beyond kPoseReachMax_m.
+    scale,       ///< Scale outside kPoseScaleMin to kPoseScaleMax.
 };
 
 inline constexpr std::size_t kPoseRefusals = 5;
-/// In the order of PoseRefusal.
+/// Names in the order of PoseRefusal.
 inline constexpr std::array<const char*, kPoseRefusals> kPoseRefusalNames{
     "not_newer", "not_finite", "rotation", "translation", "scale"};
 
-/// The same pose with a rotation of length 1, or what is wrong with its numbers.
+/// The same pose with a rotation of length 1, or the reason why its numbers are refused.
 [[nodiscard]] Result<Pose, PoseRefusal> checked_pose(const Pose& pose) noexcept;
 
 } // namespace tactus

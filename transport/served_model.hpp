@@ -13,31 +13,31 @@
 #include <string>
 #include <vector>
 
-// Any thread; the link is one thread's, the transport thread's.
+// Any thread; the link belongs to one thread, the transport thread.
 namespace tactus
 {
 
-/// What a controller needs to start on a model, whatever it comes through: `header` has passed
-/// ModelHeader::parse, its root hash and `base`'s hash were verified.
+/// Everything that a controller needs to start with a model, from any source. `header` has passed
+/// ModelHeader::parse; its root hash and the hash of `base` were verified.
 struct ServedModel
 {
     std::string name;
     ContentHash hash{};
     std::vector<std::byte> header;
-    std::vector<std::byte> base; ///< Coded; empty until it was fetched (base_fetch.hpp).
+    std::vector<std::byte> base; ///< Coded base mesh; empty until it is fetched (base_fetch.hpp).
     std::unique_ptr<ChunkLink> link;
-    std::uint64_t host_epoch{0}; ///< Of the host that sent the header; 0: it is from a file.
+    std::uint64_t host_epoch{0}; ///< Epoch of the server that sent the header; 0: from a file.
 };
 
 /// Verifies the base mesh's hash against the header (SpmRefusal::wrong_checksum), then parses it
-/// into `mesh`, whose spans have the header's counts (PageSlots::take; asserted). On refusal the
-/// content of `mesh` is unspecified.
+/// into `mesh`, whose spans must have the header's counts (PageSlots::take; asserted). On refusal
+/// the content of `mesh` is unspecified.
 [[nodiscard]] Result<Done, SpmRefusal> load_base_mesh(std::span<const std::byte> bytes,
                                                       const ModelHeader& header,
                                                       const BaseMesh& mesh) noexcept;
 
-/// Checks one header from outside as far as a reader can: parse, then root hash
-/// (SpmRefusal::wrong_checksum). The bytes must outlive the result.
+/// Parses an untrusted header, then verifies its root hash (SpmRefusal::wrong_checksum). The bytes
+/// must outlive the result.
 [[nodiscard]] Result<ModelHeader, SpmRefusal>
 parse_trusted_header(std::span<const std::byte> bytes) noexcept;
 

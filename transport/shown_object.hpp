@@ -12,11 +12,11 @@
 namespace tactus
 {
 
-/// An object that a host shows to controllers.
+/// An object that a server shows to controllers.
 struct ShownObject
 {
-    std::string name;    ///< Valid; for people, and for files of poses.
-    ContentHash model{}; ///< Of a model that the host serves.
+    std::string name;    ///< Name, for users and for files of poses; valid.
+    ContentHash model{}; ///< Hash of a model that the server has.
     Material material;
     Pose pose;
 

@@ -12,7 +12,7 @@ SlotBank::Slots SlotBank::Slots::all_free(Arena& arena, std::size_t count) noexc
     Slots slots{arena.take<std::uint32_t>(count), count};
     for (std::size_t i = 0; !arena.is_measuring() && i < slots.stack.size(); ++i)
     {
-        slots.stack[i] = static_cast<std::uint32_t>(count - 1 - i); // Slot 0 is handed out first.
+        slots.stack[i] = static_cast<std::uint32_t>(count - 1 - i); // Slot 0 is taken first.
     }
     return slots;
 }

@@ -18,50 +18,51 @@
 namespace tactus
 {
 
-/// The transport thread's slots: one that a model gave back is for whichever has a piece next.
-/// Transport thread only.
+/// The transport thread's slots. All models share them: any model may fill a slot that another one
+/// gave back. Transport thread only.
 class SlotBank
 {
 public:
-    /// All slots are free. `door` must outlive the bank.
+    /// All slots are free at first. `door` must outlive the bank.
     SlotBank(Arena& arena, const PageSlots& slots, SlotDoor& door);
 
     /// Bytes that the constructor takes from the arena.
     [[nodiscard]] static std::size_t required_bytes(std::size_t pages,
                                                     std::size_t index_pages) noexcept;
 
-    /// One model more, by its owner's number; it must outlive the bank.
+    /// Adds one model, in the order of the owners' numbers. `linker` must outlive the bank.
     void add(Linker& linker) { models_.push_back({&linker, {}, false}); }
 
-    /// Slots that the haptic thread has no more use for are free again, in its order, and unknown
-    /// to those who filled them; models whose base mesh went have none any more.
+    /// Takes back the slots that the haptic thread freed, in its order, and reports each to the
+    /// linker that filled it. A model whose base mesh was freed has no base mesh any more.
     void take_back_freed();
-    /// How many were, modulo 2^32, as in DoorEvent.
+    /// Number of freed slots taken back, modulo 2^32, as in DoorEvent.
     [[nodiscard]] std::uint32_t freed_taken() const noexcept { return freed_taken_; }
 
     [[nodiscard]] std::size_t free_pages() const noexcept { return pages_.count; }
     [[nodiscard]] std::size_t free_index_pages() const noexcept { return index_pages_.count; }
 
-    /// The cells for the model's base mesh were given back: wishes for it are outdated until the
-    /// haptic thread says that it has them.
+    /// Records that the cells for the model's base mesh were given back: requests for it are
+    /// outdated until the haptic thread confirms that it has the cells.
     void expect_news_of(std::uint32_t owner) { models_[owner].is_news_due = true; }
-    /// Whether a wish for the model's base mesh is of the time before it, or its cells, went.
+    /// True if a request for the model's base mesh was made before the mesh, or its cells, were
+    /// given back.
     [[nodiscard]] bool is_outdated(std::uint32_t owner, std::uint32_t generation) const noexcept;
 
-    /// The slot that take_page() gives; one is free (asserted).
+    /// Slot that take_page() takes; one must be free (asserted).
     [[nodiscard]] std::uint32_t next_page() const noexcept { return pages_.next(); }
-    /// `linker` is told when the slot is taken back.
+    /// Takes the next slot; its return is reported to `linker`.
     void take_page(Linker& linker) noexcept;
 
     [[nodiscard]] std::uint32_t next_index_page() const noexcept { return index_pages_.next(); }
     void take_index_page(std::uint32_t owner, IndexPageId page) noexcept;
-    /// The slot of a model's index page until it is taken back, or IdTable::kAbsent.
+    /// Slot of a model's index page until it is taken back, or IdTable::kAbsent.
     [[nodiscard]] std::uint32_t find_index_page(std::uint32_t owner,
                                                 IndexPageId page) const noexcept
     {
         return index_slot_of_.find(PagePool::first_key(owner) + page.value);
     }
-    /// What verifies the chunks of an index page, in its slot, which there must be.
+    /// Entries that verify the chunks of the index page in `slot`, which must hold one.
     [[nodiscard]] std::span<ChunkEntry, kChunksPerIndexPage> entries(std::uint32_t slot) noexcept
     {
         return index_[slot].entries;
@@ -82,24 +83,25 @@ private:
     };
     struct IndexSlot
     {
-        std::uint32_t key{IdTable::kAbsent}; ///< In index_slot_of_; none while it is free.
+        /// Key in index_slot_of_; kAbsent while the slot is free.
+        std::uint32_t key{IdTable::kAbsent};
         std::array<ChunkEntry, kChunksPerIndexPage> entries{};
     };
 
     struct KnownModel
     {
         Linker* linker{nullptr};
-        std::optional<std::uint32_t> base_went; ///< The generation of that.
+        std::optional<std::uint32_t> base_went; ///< Generation in which the base mesh was freed.
         bool is_news_due{false};
     };
 
     SlotDoor& door_;
-    std::vector<KnownModel> models_; ///< By owner.
+    std::vector<KnownModel> models_; ///< Models by owner number.
     Slots pages_;
     Slots index_pages_;
-    std::span<Linker*> linkers_; ///< By page slot; null while it is free.
+    std::span<Linker*> linkers_; ///< Linker by page slot; null while the slot is free.
     std::span<IndexSlot> index_;
-    IdTable index_slot_of_; ///< By PagePool::first_key() + page.
+    IdTable index_slot_of_; ///< Slots by PagePool::first_key() + page.
     std::uint32_t freed_taken_{0};
 };
 

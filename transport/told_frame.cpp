@@ -36,7 +36,7 @@ ToolTelemetry telemetry_of(const ToolState& state, const DeviceRecord& device,
     tool.force_n = parts_of(device.sent_n);
     tool.torque_nm = parts_of(device.sent_nm);
     tool.buttons = device.buttons;
-    // Nobody sends what is no number.
+    // A number that is not finite is never sent.
     tool.has_gripper = device.gripper_m && std::isfinite(*device.gripper_m);
     tool.gripper_m = tool.has_gripper ? *device.gripper_m : 0.0;
     tool.in_contact = output.in_contact;

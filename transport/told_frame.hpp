@@ -12,14 +12,14 @@
 namespace tactus
 {
 
-/// What telemetry tells of one tool, one pair and one model of a frame. What only the transport
-/// knows (hosts, poses, pieces) is left zero, objects have the controller's numbers.
+/// Telemetry of one tool, one pair and one model of a frame. Fields that only the transport knows
+/// (server, poses, pieces) stay zero; objects have the controller's numbers.
 [[nodiscard]] ToolTelemetry telemetry_of(const ToolState& state, const DeviceRecord& device,
                                          const ToolOutput& output) noexcept;
 [[nodiscard]] PairTelemetry telemetry_of(const PairOutput& output) noexcept;
 [[nodiscard]] ModelTelemetry telemetry_of(const ModelOutput& output) noexcept;
 
-/// An object's place as it goes over the wire.
+/// Pose of an object in its wire form.
 [[nodiscard]] Pose pose_of(const Similarity& place) noexcept;
 
 [[nodiscard]] inline std::array<double, 3> parts_of(const Vec3& vector) noexcept

@@ -12,8 +12,8 @@
 namespace tactus
 {
 
-/// How long pieces were waited for: counts in steps of a quarter of a millisecond, up to half a
-/// second; the longest is kept beside them. 16 KiB, nothing allocated. One thread.
+/// Distribution of waiting times of pieces: counts in steps of a quarter of a millisecond, up to
+/// half a second, and the longest time. 16 KiB, no allocation. One thread.
 class WaitingTimes
 {
 public:
@@ -27,8 +27,8 @@ public:
         longest_ns_ = std::max(longest_ns_, waited);
     }
 
-    /// The end of the step that so large a share of all, 0 .. 1, stayed within; 0 when there are
-    /// none, and the longest when it is beyond the steps.
+    /// Upper end of the first step that covers a share, 0 .. 1, of all times. 0 without times; the
+    /// longest time if the share ends beyond the steps.
     [[nodiscard]] double quantile_ms(double share) const noexcept
     {
         const auto enough =
@@ -64,7 +64,8 @@ public:
 private:
     static constexpr std::int64_t kStep_ns = 250'000;
 
-    std::array<std::uint64_t, 2'049> counts_{}; ///< The last one: longer.
+    /// Counts by step; the last one is for longer times.
+    std::array<std::uint64_t, 2'049> counts_{};
     std::uint64_t total_{0};
     std::int64_t sum_ns_{0};
     std::int64_t longest_ns_{0};

@@ -7,8 +7,8 @@
 namespace tactus
 {
 
-/// How long a wish has waited for its piece. It is overdue when it is made again after a second in
-/// which there was a host and nothing came.
+/// Waiting time of one request for a piece. The request is overdue when it is repeated after a
+/// second in which a server was present and no answer came.
 class WishClock
 {
 public:
@@ -20,8 +20,8 @@ public:
     {
     }
 
-    /// It was wished for once more; true once, when it is overdue by that. A pause of more than
-    /// `forgotten_ns` means that nobody wanted it meanwhile.
+    /// Records a repeated request; true once, when the request becomes overdue. After a pause of
+    /// more than `forgotten_ns` the second starts again.
     [[nodiscard]] bool wish(std::int64_t now_ns, std::int64_t forgotten_ns)
     {
         if (now_ns - wished_ns_ > forgotten_ns)
@@ -33,11 +33,11 @@ public:
         is_overdue_ = is_overdue_ || runs_out;
         return runs_out;
     }
-    /// Nobody has been there who could serve it.
+    /// Records that no server was present.
     void wait_for_host(std::int64_t now_ns) { hosted_ns_ = now_ns; }
 
     [[nodiscard]] bool is_overdue() const { return is_overdue_; }
-    /// Overdue, and wished for within the last `forgotten_ns`.
+    /// True if the request is overdue and was repeated within the last `forgotten_ns`.
     [[nodiscard]] bool is_missed(std::int64_t now_ns, std::int64_t forgotten_ns) const
     {
         return is_overdue_ && now_ns - wished_ns_ <= forgotten_ns;
@@ -46,8 +46,9 @@ public:
 
 private:
     std::int64_t opened_ns_{0};
-    std::int64_t wished_ns_{0}; ///< The last time.
-    std::int64_t hosted_ns_{0}; ///< Since when it has been wished for and there is a host.
+    std::int64_t wished_ns_{0}; ///< Time of the last request.
+    /// Start of the time in which the piece was wanted and a server was present.
+    std::int64_t hosted_ns_{0};
     bool is_overdue_{false};
 };
 

@@ -19,15 +19,16 @@ namespace tactus
 namespace
 {
 
-constexpr std::size_t kLongestPath = 4096; ///< With its end mark; Linux and QNX take no longer.
+/// Path length with its end mark; Linux and QNX accept no longer one.
+constexpr std::size_t kLongestPath = 4096;
 
-/// A partial file's name where a signal handler may read it.
+/// Name of a partial file, readable by a signal handler.
 struct PendingSlot
 {
     enum State : int
     {
         unused,
-        reserved, ///< Taken, the name is not complete yet.
+        reserved, ///< The slot is taken, its name not yet complete.
         pending,
     };
 
@@ -45,7 +46,7 @@ std::array<PendingSlot, AtomicFile::kMaxPending>& pending_slots()
     return slots;
 }
 
-/// Keeps the signals away from this thread between making a partial file and registering its name.
+/// Blocks the signals in this thread between creating a partial file and registering its name.
 class SignalPause
 {
 public:
@@ -67,7 +68,7 @@ private:
     sigset_t before_{};
 };
 
-/// kMaxPending when all are taken.
+/// Index of a free slot, now reserved; kMaxPending if all are taken.
 std::size_t reserve_slot()
 {
     for (std::size_t i = 0; i < pending_slots().size(); ++i)
@@ -95,7 +96,7 @@ void remove_pending_and_reraise(int signal)
             ::unlink(slot.path.data());
         }
     }
-    std::raise(signal); // SA_RESETHAND has put the default action back.
+    std::raise(signal); // SA_RESETHAND has restored the default action.
 }
 
 Refusal refuse(const std::filesystem::path& path, const std::string& reason)
@@ -103,9 +104,9 @@ Refusal refuse(const std::filesystem::path& path, const std::string& reason)
     return {path.string() + ": can't be written: " + reason};
 }
 
-/// Whether this is a link that stays, while what it leads to is replaced. In a folder like /tmp a
-/// link that another user has put there could lead anywhere; the rule is that of Linux for opening
-/// files (fs.protected_symlinks).
+/// True if the path is a link that may stay while its target is replaced. In a folder like /tmp a
+/// link of another user could lead anywhere; the rule is that of Linux for opening files
+/// (fs.protected_symlinks).
 bool is_trusted_link(const std::filesystem::path& path)
 {
     struct stat link
@@ -125,10 +126,11 @@ bool is_trusted_link(const std::filesystem::path& path)
            link.st_uid == folder.st_uid;
 }
 
-/// Makes a new file beside `target` and leaves its name in `name`; -1 and errno when it can't.
+/// Creates a file beside `target` and stores its name in `name`; returns the descriptor, or -1 with
+/// errno.
 int make_partial(const std::filesystem::path& target, std::string& name)
 {
-    constexpr int kTries = 1000; // Names left over by killed processes with our id.
+    constexpr int kTries = 1000; // Killed processes with the same id may have left files.
     for (int i = 0; i < kTries; ++i)
     {
         name = target.string() + '.' + std::to_string(::getpid()) + '-' + std::to_string(i) +
@@ -147,7 +149,7 @@ int make_partial(const std::filesystem::path& target, std::string& name)
     return -1;
 }
 
-/// Makes a rename durable. Not every file system can; the file itself is synced by then.
+/// Makes a rename durable. Not every file system supports that; the file itself is already synced.
 void sync_directory(const std::filesystem::path& directory)
 {
     const int descriptor = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -166,7 +168,7 @@ Result<AtomicFile, Refusal> AtomicFile::create(const std::filesystem::path& path
     const auto status = std::filesystem::status(path, code);
     if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
     {
-        // Taking the place of a device or pipe would be no service to anybody.
+        // Replacing a device or pipe is never intended.
         return refuse(path, "it is a directory, device or pipe");
     }
     const bool follows = std::filesystem::exists(status) && is_trusted_link(path);
@@ -309,7 +311,8 @@ Result<Done, Refusal> AtomicFile::commit()
         return reason;
     }
     release_slot(slot_);
-    ::close(std::exchange(descriptor_, -1)); // Synced: close has nothing left to report.
+    // The data are synced, so close has no errors left to report.
+    ::close(std::exchange(descriptor_, -1));
     sync_directory(path_.parent_path());
     return Done{};
 }

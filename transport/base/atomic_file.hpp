@@ -15,29 +15,30 @@
 namespace tactus
 {
 
-/// A file that appears whole or not at all. Bytes go to a file of its own beside it,
-/// PATH.PID-N.partial; commit() makes them durable and gives them the name; until then the
-/// destructor removes them. For one thread at a time; different files may be written from different
-/// threads. Every refusal names the path and says that it can't be written, and why.
+/// A file that appears as a whole or not at all. Bytes go to a file beside it, PATH.PID-N.partial;
+/// commit() makes them durable and renames that file. Until then the destructor removes it. One
+/// thread at a time; different files may be written from different threads. Every refusal names the
+/// path and the reason why it cannot be written.
 class AtomicFile
 {
 public:
-    /// At most this many files may be open for writing in one process: the signal handler finds
-    /// them in memory of fixed size.
+    /// Maximum number of files open for writing in one process: the signal handler finds them in
+    /// memory of fixed size.
     static constexpr std::size_t kMaxPending = 16;
 
-    /// Makes the partial file beside `path`, or beside what that leads to where it is a link, which
-    /// stays one; not so a link of another user in a folder where all may write, which is replaced.
-    /// Refused when `path` is something else than a regular file, or when its directory is missing
-    /// or can't be written.
+    /// Creates the partial file beside `path`. If `path` is a link, the link stays and its target
+    /// is replaced, unless another user owns the link in a folder where all may write; then the
+    /// link is replaced. Refused if `path` is not a regular file, or if its directory is missing or
+    /// cannot be written.
     [[nodiscard]] static Result<AtomicFile, Refusal> create(const std::filesystem::path& path);
 
-    /// Finds out before a long run whether a file can be written, and leaves nothing behind;
-    /// returns why not.
+    /// Tests before a long run whether a file can be written, and leaves nothing behind. Returns
+    /// the reason if not.
     [[nodiscard]] static std::optional<Refusal> probe(const std::filesystem::path& path);
 
-    /// From now on SIGINT, SIGTERM and SIGHUP remove every partial file before they end the process
-    /// as usual; a signal that is ignored stays ignored. Replaces the program's own handlers.
+    /// Installs handlers by which SIGINT, SIGTERM and SIGHUP remove every partial file before they
+    /// end the process as usual. A signal that is ignored stays ignored. Replaces the program's own
+    /// handlers.
     static void remove_pending_on_signal();
 
     AtomicFile(AtomicFile&& other) noexcept;
@@ -46,16 +47,16 @@ public:
     AtomicFile& operator=(const AtomicFile&) = delete;
     ~AtomicFile();
 
-    /// Appends; write_at() does not move the end of what write() appends to.
+    /// Appends bytes. write_at() does not move the position of write().
     [[nodiscard]] Result<Done, Refusal> write(std::span<const std::byte> bytes);
     /// Overwrites, or extends, at a byte offset from the start.
     [[nodiscard]] Result<Done, Refusal> write_at(std::uint64_t offset,
                                                  std::span<const std::byte> bytes);
     /// Flushes to the disk and renames. After a refusal the old file is untouched and the partial
-    /// one is gone; after either nothing more may be written.
+    /// file is gone. Nothing may be written after commit().
     [[nodiscard]] Result<Done, Refusal> commit();
 
-    /// Where the next write() appends.
+    /// Position of the next write().
     [[nodiscard]] std::uint64_t bytes() const noexcept { return end_; }
 
 private:
@@ -65,10 +66,10 @@ private:
     void discard() noexcept;
     [[nodiscard]] Refusal error() const;
 
-    std::string name_; ///< As it was given; for messages.
+    std::string name_; ///< Path as given; for messages.
     std::filesystem::path path_;
     std::filesystem::path partial_;
-    int descriptor_{-1}; ///< -1 once committed, discarded or moved from.
+    int descriptor_{-1}; ///< File descriptor; -1 once committed, discarded or moved from.
     std::size_t slot_{0};
     std::uint64_t end_{0};
 };

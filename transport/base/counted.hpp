@@ -6,11 +6,11 @@
 #include <string>
 #include <string_view>
 
-// Any thread, but not the haptic one: texts allocate.
+// Any thread, except the haptic one: texts allocate.
 namespace tactus
 {
 
-/// "1 brake", "2 brakes". Without `many` an s is put behind `one`.
+/// Number and noun: "1 brake", "2 brakes". An empty `many` is `one` with an s.
 [[nodiscard]] inline std::string counted(std::uint64_t number, std::string_view one,
                                          std::string_view many = {})
 {

@@ -5,7 +5,7 @@
 namespace tactus
 {
 
-/// The exit codes of every program.
+/// Exit codes of every program.
 inline constexpr int kExitDone = 0;
 inline constexpr int kExitCriterionNotMet = 1;
 inline constexpr int kExitFailed = 2;

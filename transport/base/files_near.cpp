@@ -16,7 +16,8 @@ namespace
 {
 
 constexpr std::size_t kFilesShown = 5;
-constexpr std::size_t kEntriesMost = 10'000; ///< A folder may have millions.
+/// Limit, since a folder may have millions of entries.
+constexpr std::size_t kEntriesMost = 10'000;
 
 } // namespace
 

@@ -6,15 +6,15 @@
 #include <string>
 #include <string_view>
 
-// Any thread, but not the haptic one: reads a folder.
+// Any thread, except the haptic one: reads a folder.
 namespace tactus
 {
 
-/// Where no file is: what the user may have meant, to stand behind the reason. "; runs/plate.spm is
-/// there" of runs/plate, else the files with that ending in its folder, at most a few.
+/// Suggestion for a missing file, to append to a message: "; runs/plate.spm is there" for
+/// runs/plate, otherwise a few of the files with that ending in its folder.
 [[nodiscard]] std::string files_near(const std::filesystem::path& missing, std::string_view ending);
 
-/// "a.spm, b.spm and 3 more", or "no .spm".
+/// List of files: "a.spm, b.spm and 3 more", or "no .spm".
 [[nodiscard]] std::string files_in(const std::filesystem::path& folder, std::string_view ending);
 
 } // namespace tactus

@@ -40,7 +40,7 @@ std::string nearest_word(std::string_view word, std::span<const std::string_view
     for (const std::string_view other : words)
     {
         const std::size_t letters = letters_between(word, other);
-        if (letters < std::min(least, other.size())) // Else no letter would be the same.
+        if (letters < std::min(least, other.size())) // Otherwise no letter would be the same.
         {
             least = letters;
             nearest = other;

@@ -6,12 +6,12 @@
 #include <string>
 #include <string_view>
 
-// Any thread, but not the haptic one: texts allocate.
+// Any thread, except the haptic one: texts allocate.
 namespace tactus
 {
 
-/// The one of `words` that a user who wrote `word` may have meant: the fewest letters have to be
-/// put in, left out or exchanged (Levenshtein). Empty when none is near.
+/// The one of `words` with the least edit distance to `word` (Levenshtein: letters inserted,
+/// removed or replaced), for a user's typing error. Empty when none is near.
 [[nodiscard]] std::string nearest_word(std::string_view word,
                                        std::span<const std::string_view> words);
 

@@ -20,7 +20,7 @@ namespace tactus
 namespace
 {
 
-/// As short as it can be, or with so many digits.
+/// Shortest exact text, or text with `digits` significant digits.
 std::string text_of(double number, int digits = 0)
 {
     std::array<char, 32> text{};
@@ -31,7 +31,7 @@ std::string text_of(double number, int digits = 0)
     return {text.data(), end};
 }
 
-/// A unit that users write behind a number, in terms of the one that is meant.
+/// A unit that users write after a number, in terms of the option's unit.
 struct WrittenUnit
 {
     std::string_view written;
@@ -49,10 +49,10 @@ bool is_within(double number, const NumberRange& range)
     return (number >= range.least && number <= range.most) || (range.may_be_zero && number == 0.0);
 }
 
-/// A number with a unit behind it, in the unit that is meant.
+/// Value of a number with a unit after it, in the option's unit.
 std::optional<double> without_unit(std::string_view text, const NumberRange& range)
 {
-    const std::size_t digits = text.find_last_of("0123456789.") + 1; // 0: there are none.
+    const std::size_t digits = text.find_last_of("0123456789.") + 1; // 0: no digits.
     const std::optional<double> number = parse_number(text.substr(0, digits));
     const std::string_view unit = text.substr(digits);
     if (!number || range.unit.empty())
@@ -69,7 +69,7 @@ std::optional<double> without_unit(std::string_view text, const NumberRange& ran
     return known == std::end(kWrittenUnits) ? std::nullopt : std::optional(*number * known->factor);
 }
 
-/// The number that may have been meant, as text; empty where none is near.
+/// The probably intended number as text; empty if none is near.
 std::string meant_by(std::string_view text, const NumberRange& range)
 {
     std::optional<double> number = parse_number(text);
@@ -77,24 +77,24 @@ std::string meant_by(std::string_view text, const NumberRange& range)
     {
         return std::string(text);
     }
-    // Where lengths are small, one that is too large may be in mm.
+    // Small lengths are often written in mm.
     number = !number                                  ? without_unit(text, range)
              : range.unit == "m" && range.most <= 1.0 ? std::optional(*number * 1e-3)
                                                       : std::nullopt;
     return number && is_within(*number, range) ? text_of(*number, 9) : std::string();
 }
 
-/// A form's text in parts.
+/// Parts of a form's text.
 struct Names
 {
     std::vector<std::string_view> all;
-    std::vector<std::size_t> counts; ///< That a value may have, ascending.
+    std::vector<std::size_t> counts; ///< Allowed counts of numbers, ascending.
 };
 
 Names names_of(std::string_view text)
 {
     Names names;
-    for (std::size_t at = text.find(':') + 1; at <= text.size();) // Without a colon from 0.
+    for (std::size_t at = text.find(':') + 1; at <= text.size();) // Starts at 0 without a colon.
     {
         const std::size_t end = std::min(text.find_first_of(",[]", at), text.size());
         if (end > at)
@@ -122,8 +122,8 @@ std::vector<std::string_view> words_of(std::string_view text)
     return words;
 }
 
-/// The value that may have been meant, with zeros for what is missing where all is numbers; empty
-/// where none is near.
+/// The probably intended value, with zeros for missing numbers if the form has no leading word;
+/// empty if none is near.
 std::string meant_by(const std::vector<std::string_view>& words, const NumberForm& form,
                      const Names& names)
 {

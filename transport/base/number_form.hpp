@@ -10,39 +10,40 @@
 #include <string_view>
 #include <vector>
 
-// Any thread, but not the haptic one: texts allocate.
+// Any thread, except the haptic one: texts allocate.
 namespace tactus
 {
 
-/// What one number of a value may be.
+/// Range of one number of a value.
 struct NumberRange
 {
     double least;
     double most;
-    std::string_view unit{}; ///< Empty: the number has none.
-    bool may_be_zero{false}; ///< Besides the range.
+    std::string_view unit{}; ///< Unit; empty: the number has none.
+    bool may_be_zero{false}; ///< True if 0 is allowed in addition to the range.
 };
 
-/// A value of an option that consists of numbers with commas between.
+/// Form of an option's value that consists of numbers separated by commas.
 struct NumberForm
 {
-    /// The names of the numbers, what may be left out in brackets, behind a word and a colon if it
-    /// begins so: "box:X,Y,Z[,R]".
+    /// Names of the numbers, optional ones in brackets, after a leading word and colon if the form
+    /// has one: "box:X,Y,Z[,R]".
     std::string_view text;
-    std::span<const NumberRange> ranges; ///< One a name.
+    std::span<const NumberRange> ranges; ///< Ranges, one for each name.
 };
 
 /// Reads `value`, which begins with the word and the colon of the form. The refusal names the first
-/// fault and, where one is near, the value that may have been meant: "'sphere:2mm' is not sphere:R:
-/// R is in m, without a unit; sphere:0.002?"
+/// fault and, if one is near, the intended value: "'sphere:2mm' is not sphere:R: R is in m, without
+/// a unit; sphere:0.002?"
 [[nodiscard]] Result<std::vector<double>, Refusal> read_numbers(std::string_view value,
                                                                 const NumberForm& form);
 
-/// The refusal of a value that has this form, as read_numbers() words it. `meant` may be empty.
+/// Refusal of a value that lacks this form, worded like that of read_numbers(). `meant` may be
+/// empty.
 [[nodiscard]] Refusal not_of_form(std::string_view value, std::string_view form,
                                   std::string_view fault, std::string_view meant = {});
 
-/// What is wrong with one number, empty when nothing is: "R is 5, not in 1e-05 .. 1 m".
+/// Fault of one number, or empty: "R is 5, not in 1e-05 .. 1 m".
 [[nodiscard]] std::string fault_of_number(std::string_view name, std::string_view text,
                                           const NumberRange& range);
 

@@ -8,7 +8,7 @@
 namespace tactus
 {
 
-/// Reads all of `text` as a finite number; none when it is anything else.
+/// Number that `text` as a whole spells, finite; none for any other text.
 [[nodiscard]] std::optional<double> parse_number(std::string_view text);
 
 } // namespace tactus

@@ -10,11 +10,11 @@
 namespace tactus
 {
 
-/// Finds out before long work whether a file can be written; returns why not. An empty path is no
-/// file.
+/// Tests before long work whether a file can be written; returns the reason if not. An empty path
+/// passes.
 [[nodiscard]] std::optional<Refusal> probe_output(const std::string& path);
 
-/// Writes a text file whole or not at all; returns why not.
+/// Writes a text file as a whole or not at all; returns the reason if it fails.
 [[nodiscard]] std::optional<Refusal> write_text(const std::string& text, const std::string& path);
 
 } // namespace tactus

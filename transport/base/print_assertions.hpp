@@ -5,9 +5,10 @@
 namespace tactus
 {
 
-/// From now on a failed assertion, which is a bug or a call that breaks a promise, says on stderr
-/// what failed and where before it stops the process; without a handler it only stops. Does nothing
-/// where the program has a handler (set_assert_handler()). At start-up, on one thread.
+/// Installs a handler that prints a failed assertion and its place on stderr before the process
+/// stops; without a handler the process only stops. A failed assertion is a bug or a call that
+/// breaks a promise. Has no effect if the program has a handler (set_assert_handler()). Call it at
+/// start-up, on one thread.
 void print_failed_assertions() noexcept;
 
 } // namespace tactus

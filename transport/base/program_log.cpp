@@ -15,7 +15,7 @@ namespace
 
 LogStyle style_of_all;
 
-/// Of a printable line: it is UTF-8 without control characters.
+/// JSON string of a printable line, i.e. UTF-8 without control characters.
 std::string json_text(std::string_view text)
 {
     std::string json = "\"";
@@ -27,7 +27,7 @@ std::string json_text(std::string_view text)
     return json + '"';
 }
 
-/// RFC 3339, to the millisecond.
+/// Time in RFC 3339, to the millisecond.
 std::string time_text(std::chrono::system_clock::time_point now)
 {
     using std::chrono::milliseconds;

@@ -9,43 +9,43 @@
 #include <string>
 #include <string_view>
 
-// Any thread, but not the haptic one: texts allocate, and stderr may wait.
+// Any thread, except the haptic one: texts allocate, and stderr may wait.
 namespace tactus
 {
 
-/// How much a line of a program's log matters.
+/// Severity of a line of a program's log.
 enum class LogLevel : std::uint8_t
 {
-    error,   ///< The program can't do what it was asked.
-    warning, ///< It goes on, but something was lost, refused or isn't as it should be.
-    info,    ///< All is well.
+    error,   ///< The program cannot do its task.
+    warning, ///< The program goes on, but something was lost, refused or is not as it should be.
+    info,    ///< Normal operation.
 };
 inline constexpr std::size_t kLogLevels = 3;
-/// In the order of LogLevel.
+/// Names in the order of LogLevel.
 inline constexpr std::array<const char*, kLogLevels> kLogLevelNames{"error", "warning", "info"};
 
-/// What the log tells, and how.
+/// Selection and format of the log.
 struct LogStyle
 {
-    LogLevel least{LogLevel::info}; ///< What matters less isn't told.
-    bool is_json{false};            ///< A JSON object a line.
+    LogLevel least{LogLevel::info}; ///< Least severe level that is logged.
+    bool is_json{false};            ///< True for one JSON object a line.
 };
 
-/// Once, before there are other threads that log.
+/// Sets the style. Call it once, before other threads log.
 void set_log_style(const LogStyle& style) noexcept;
 [[nodiscard]] const LogStyle& log_style() noexcept;
 
-/// A line as the style has it, without its end: errors and warnings behind the program's name, what
-/// is info as it is; or an object with the keys `time` (UTC), `level`, `program` and `text`.
-/// The line is shown as printable_line() shows it.
+/// A line in a style, without its end. Text style: errors and warnings follow the program's name,
+/// info stands alone. JSON style: an object with the keys `time` (UTC), `level`, `program` and
+/// `text`. The text passes printable_line().
 [[nodiscard]] std::string log_text(const LogStyle& style, LogLevel level, std::string_view program,
                                    std::string_view text,
                                    std::chrono::system_clock::time_point now);
 
-/// Whether lines of this level are told.
+/// True if lines of this level are logged.
 [[nodiscard]] bool is_logged(LogLevel level) noexcept;
 
-/// Tells a line on stderr, if it is to be told.
+/// Writes a line to stderr if its level is logged.
 void log_message(LogLevel level, std::string_view program, std::string_view text);
 
 } // namespace tactus

@@ -12,7 +12,7 @@ namespace tactus
 namespace
 {
 
-/// What keeps the path from being read; empty when nothing does.
+/// Reason why the path cannot be read; empty if it can.
 std::string why_not_a_file(const std::filesystem::path& path)
 {
     std::error_code code;

@@ -13,8 +13,8 @@
 namespace tactus
 {
 
-/// The bytes of a regular file that has 1 to `most` of them. The error says what is wrong with the
-/// file, without its name. Its size is looked at first: what is larger costs nothing.
+/// Bytes of a regular file that has 1 to `most` of them. The refusal gives the fault without the
+/// file's name. The size is checked first, so a file that is too large is not read.
 [[nodiscard]] Result<std::string, Refusal>
 read_file(const std::filesystem::path& path,
           std::uintmax_t most = std::numeric_limits<std::uintmax_t>::max());

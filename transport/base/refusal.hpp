@@ -4,17 +4,18 @@
 
 #include <string>
 
-// Any thread, but not the haptic one: texts allocate.
+// Any thread, except the haptic one: texts allocate.
 namespace tactus
 {
 
-/// Why something was refused: one line for the user, without the program's name and without a line
-/// end. A real-time thread's may have several lines, one for each thing that was not granted.
+/// Reason of a refusal: one line for the user, without the program's name and without a line end. A
+/// real-time thread's refusal may have several lines, one for each right that was not granted.
 struct Refusal
 {
     std::string text;
-    /// An option asked for what this machine can't give (RtThread) or for what contradicts another
-    /// one: the program leaves with the exit code of wrong usage, not with that of a failure.
+    /// True if an option asked for a setting that this machine lacks (RtThread) or that contradicts
+    /// another option. The program then leaves with the exit code of wrong usage, not with that of
+    /// a failure.
     bool is_usage{false};
 };
 

@@ -14,13 +14,13 @@ namespace
 
 using Range = std::pair<std::string_view, std::string_view>;
 
-/// First and last of those that are not letters, and seldom seen.
+/// First and last characters of ranges without letters, all rare.
 constexpr std::array<Range, 20> kNoLetters{{
     {"\u0080", "\u00A9"}, // Controls, blanks and signs of Latin-1, but for its three letters.
     {"\u00AB", "\u00B4"}, {"\u00B6", "\u00B9"},         {"\u00BB", "\u00BF"},
     {"\u034F", "\u034F"}, {"\u061C", "\u061C"},         {"\u115F", "\u1160"},
     {"\u1680", "\u1680"}, {"\u17B4", "\u17B5"},         {"\u180B", "\u180F"},
-    {"\u2000", "\u206F"}, // Blanks, dashes, quotation marks, what joins and what turns.
+    {"\u2000", "\u206F"}, // Blanks, dashes, quotation marks, joiners and direction marks.
     {"\u2800", "\u2800"}, {"\u3000", "\u3000"},         {"\u3164", "\u3164"},
     {"\uE000", "\uF8FF"}, // Private use.
     {"\uFE00", "\uFE0F"}, {"\uFEFF", "\uFEFF"},         {"\uFFA0", "\uFFA0"},
@@ -45,7 +45,7 @@ std::size_t character_bytes(std::string_view text) noexcept
                                                                : 0;
     for (std::size_t i = 1; i < count; ++i)
     {
-        // The second one also says whether fewer bytes would have done, and what is none.
+        // The second byte also excludes overlong forms and invalid characters.
         const unsigned least = i > 1 ? 0x80 : first == 0xE0 ? 0xA0 : first == 0xF0 ? 0x90 : 0x80;
         const unsigned most = i > 1 ? 0xBF : first == 0xED ? 0x9F : first == 0xF4 ? 0x8F : 0xBF;
         if (byte(i) < least || byte(i) > most)
@@ -61,7 +61,7 @@ std::string_view whole_characters(std::string_view text, std::size_t longest) no
     std::size_t end = std::min(longest, text.size());
     if (end < text.size())
     {
-        // A character that goes on behind the end begins at most three bytes before it.
+        // A character that crosses the end begins at most three bytes before it.
         for (std::size_t begin = end - std::min<std::size_t>(end, 3); begin < end; ++begin)
         {
             if (character_bytes(text.substr(begin)) > end - begin)
@@ -79,8 +79,7 @@ bool is_letter(std::string_view character) noexcept
     return bytes > 1 && bytes == character.size() &&
            std::ranges::none_of(
                kNoLetters,
-               [character](
-                   const Range& range) { // Bytes of UTF-8 are in the order of the characters.
+               [character](const Range& range) { // Bytes of UTF-8 sort like the characters.
                    return character >= range.first && character <= range.second;
                });
 }

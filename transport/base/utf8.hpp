@@ -9,17 +9,17 @@
 namespace tactus
 {
 
-/// How many bytes the character has that begins the text, 1 to 4; 0: it is no UTF-8 (RFC 3629), or
-/// the text is empty.
+/// Bytes of the first character of a text, 1 to 4; 0 if it is not UTF-8 (RFC 3629) or the text is
+/// empty.
 [[nodiscard]] std::size_t character_bytes(std::string_view text) noexcept;
 
-/// The beginning of a text in UTF-8: `longest` bytes, or fewer where these would cut a character.
+/// Beginning of a UTF-8 text: `longest` bytes, or fewer if these would cut a character.
 [[nodiscard]] std::string_view whole_characters(std::string_view text,
                                                 std::size_t longest) noexcept;
 
-/// Whether a character of more than one byte is a letter, or a sign that is seen like one: no
-/// control, blank, quotation mark or joiner, none that is invisible or of private use, and nothing
-/// that turns the direction of a text.
+/// True if a character of more than one byte is a letter or a similar visible sign. Controls,
+/// blanks, quotation marks, joiners, invisible and private characters, and changes of text
+/// direction are none.
 [[nodiscard]] bool is_letter(std::string_view character) noexcept;
 
 } // namespace tactus

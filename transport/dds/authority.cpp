@@ -16,7 +16,7 @@ namespace tactus::dds
 namespace
 {
 
-/// Others that are told of; as many strangers as offer the name must not fill the log.
+/// Maximum number of other servers that are logged: many unknown ones must not fill the log.
 constexpr std::size_t kMaxNamed = 16;
 
 } // namespace
@@ -91,7 +91,7 @@ void Authority::step()
     }
 }
 
-/// All that offer the name, of a model with any hash.
+/// Offers of the name, of a model with any hash.
 std::vector<const Catalogue::Offer*> Authority::candidates() const
 {
     return is_scene_ ? catalogue_.servers_of_scene({name_.name})
@@ -145,7 +145,7 @@ void Authority::look_for_another(const std::vector<const Catalogue::Offer*>& off
                           : "{} is offered by {} now: its pieces are used, what it says of "
                             "objects isn't, since it isn't {} and --failover doesn't "
                             "allow it";
-            // The model's link tells of another hash.
+            // The model's link logs a changed hash.
             tell(ServerNews::not_followed, name,
                  has_hash(*offer) ? fmt::format(fmt::runtime(form), what_, name, host_name_) : "");
         }

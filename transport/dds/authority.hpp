@@ -16,18 +16,19 @@
 namespace tactus::dds
 {
 
-/// What became of the server of a name.
+/// Change of the server of a name.
 enum class ServerNews : std::uint8_t
 {
-    pinned,       ///< Its word counts from now on.
-    lost,         ///< It is gone.
-    back,         ///< The same one.
-    replaced,     ///< Another one's word counts from now on.
-    not_followed, ///< Another one offers the name while the one that is pinned is gone,
-    namesake,     ///< or while it is there.
+    pinned,   ///< The server is chosen; its statements count from now on.
+    lost,     ///< The server is gone.
+    back,     ///< The same server is back.
+    replaced, ///< Another server's statements count from now on.
+    /// Another server offers the name while the chosen one is gone, and may not replace it.
+    not_followed,
+    namesake, ///< Another server offers the name while the chosen one is present.
 };
 inline constexpr std::size_t kServerNewsKinds = 6;
-/// In the order of ServerNews: words of the report.
+/// Names in the order of ServerNews, as in the report.
 [[nodiscard]] const std::array<const char*, kServerNewsKinds>& server_news_names() noexcept;
 
 struct ServerEvent
@@ -35,35 +36,36 @@ struct ServerEvent
     std::chrono::steady_clock::time_point time{};
     ServerNews news{ServerNews::pinned};
     std::string what;   ///< "scene 'NAME'" or "model 'NAME'".
-    std::string server; ///< The program with its process and machine.
+    std::string server; ///< Program of the server, with its process and machine.
 };
 
-/// The server whose word counts for one name: which hash it means, which objects there are, where
-/// they stand and how they feel. Pieces need none: a hash proves them.
+/// The server with authority over one name: the hash of the name, the list of objects, their poses
+/// and materials. Pieces need no authority: their hashes prove them.
 ///
-/// It is the first server that answered, by its DDS participant, and stays so. When it is gone its
-/// place is taken by one with the same certificate (DDS Security), by one that Failover allows, or
-/// by none: then what it said last stays, and grows stale. Every change is a line and an event.
-/// One thread, that of the catalogue.
+/// The first server that answers has it and keeps it; it is identified by its DDS participant. If
+/// it is gone, a server with the same certificate (DDS Security) or one that Failover allows takes
+/// over. If there is none, the last state stays and becomes stale. Every change is logged and
+/// recorded as an event. One thread, that of the catalogue.
 class Authority
 {
 public:
-    /// For a scene; for a model with the hash that its name meant. The catalogue must outlive it.
+    /// `name` is that of a scene, or of a model and then has its hash (asserted). The catalogue
+    /// must outlive the authority.
     Authority(Catalogue& catalogue, const ModelSelector& name, bool is_scene, Failover failover,
               Log log);
 
-    /// The server that answered first. Once.
+    /// Chooses the server that answered first. Call it once.
     void pin(std::uint64_t host_epoch);
 
-    /// The host whose word counts: the last one that was there.
+    /// Epoch of the server with authority, present or not.
     [[nodiscard]] std::uint64_t host() const noexcept { return host_epoch_; }
-    /// Whether it is there.
+    /// True if that server is present.
     [[nodiscard]] bool is_here() const noexcept { return is_here_; }
 
-    /// Looks what has become of it. Cheap without news.
+    /// Updates the state from the catalogue. Cheap if that has not changed.
     void step();
 
-    /// The oldest kMaxEvents.
+    /// Events, oldest first; those after the first kMaxEvents are not recorded.
     [[nodiscard]] const std::vector<ServerEvent>& events() const noexcept { return events_; }
     static constexpr std::size_t kMaxEvents = 64;
 
@@ -83,10 +85,11 @@ private:
     RateLimitedLog log_;
     std::uint64_t host_epoch_{0};
     ParticipantId host_{};
-    std::string host_name_; ///< As long as it can be asked for.
+    /// Name of that server, stored because it cannot be looked up once the server is gone.
+    std::string host_name_;
     bool is_here_{false};
     std::uint64_t seen_catalogue_{0};
-    std::set<ParticipantId> named_; ///< Others that were told of since the last change.
+    std::set<ParticipantId> named_; ///< Other servers that were logged since the last change.
     std::vector<ServerEvent> events_;
 };
 

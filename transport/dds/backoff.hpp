@@ -8,8 +8,8 @@
 namespace tactus::dds
 {
 
-/// How often something may be done that another program on the domain can cause and that costs a
-/// little each time: at once, then not for a second, then for twice as long each time, up to a
+/// Rate limit for an action that another program on the domain can trigger and that costs a little
+/// each time: immediate at first, then after a second, then after twice the wait each time, up to a
 /// minute.
 class Backoff
 {

@@ -20,7 +20,7 @@ namespace
 
 /// Samples taken in one refresh; the rest waits in the reader for the next one.
 constexpr std::size_t kEntriesPerRefresh = 4'096;
-/// Hosts whose offers are all kept; beyond them one that is gone is forgotten.
+/// Servers whose offers are all kept; beyond that one that is gone is dropped.
 constexpr std::size_t kMaxKeptHosts = 64;
 constexpr std::size_t kMaxNamesShown = 20;
 
@@ -103,7 +103,7 @@ void Catalogue::keep(std::uint64_t host_epoch)
     count_again();
 }
 
-/// Other offers are asked for than before.
+/// Recounts the shares after a change of the requested offers.
 void Catalogue::count_again()
 {
     shares_.clear();
@@ -160,10 +160,10 @@ void Catalogue::refresh()
     look_at_disputed();
 }
 
-/// A host that leaves takes its offers with it. One that only falls silent keeps them until its
-/// lease ends: who floods the thread that receives makes others fall silent. Anybody can dispose of
-/// an instance, past the filter: that is no news, but what DDS tells of the instance isn't either
-/// from then on.
+/// Handles the end of an instance. A server that leaves takes its offers with it; a server that
+/// falls silent keeps them until its lease ends, since a flood on the receiving thread can silence
+/// others. Any program can dispose of an instance, bypassing the filter: that proves nothing, but
+/// DDS's further reports on the instance are then unreliable too.
 void Catalogue::on_end(std::uint32_t model, std::uint64_t host_epoch, std::uint64_t writer)
 {
     if (!participants_->is_host(writer, host_epoch))
@@ -186,7 +186,7 @@ void Catalogue::dispute(std::uint32_t model, std::uint64_t host_epoch)
     }
 }
 
-/// These go with the writer or the participant of their host.
+/// Disputed offers end with the writer or the participant of their server.
 void Catalogue::look_at_disputed()
 {
     constexpr auto kEvery = std::chrono::milliseconds(50);
@@ -211,7 +211,7 @@ void Catalogue::look_at_disputed()
 std::vector<const Catalogue::Offer*> Catalogue::select(const ModelSelector& selector,
                                                        bool by_scene) const
 {
-    std::map<std::uint64_t, bool> called; // Asked once a host.
+    std::map<std::uint64_t, bool> called; // Result by server, to query each one once.
     const auto is_called = [&](const Offer& offer)
     {
         const auto [known, is_new] = called.try_emplace(offer.host_epoch, false);
@@ -310,7 +310,7 @@ std::string Catalogue::scene_names() const
     return list_of(names);
 }
 
-/// False when there is no room.
+/// False if there is no room.
 bool Catalogue::try_add(Offer offer)
 {
     const Key key{offer.host_epoch, offer.model};
@@ -318,7 +318,7 @@ bool Catalogue::try_add(Offer offer)
     if (known != offers_.end() && known->second.name == offer.name &&
         known->second.hash == offer.hash && known->second.scene == offer.scene)
     {
-        return true; // Written anew every second.
+        return true; // Offers are repeated every second.
     }
     remove(key);
     const bool asked = is_asked(offer);
@@ -334,17 +334,19 @@ bool Catalogue::try_add(Offer offer)
     return true;
 }
 
-/// What isn't asked for goes before what is, and of the host that has the most of it.
+/// Drops an offer that was not requested before one that was, from the server with the most of
+/// them.
 bool Catalogue::try_make_room(std::uint64_t host_epoch, bool for_asked)
 {
     const auto share = shares_.find(host_epoch);
     const Share own = share == shares_.end() ? Share{} : share->second;
     return for_asked ? try_take_from_largest(false, 0) || try_take_from_largest(true, own.asked + 1)
-                     : try_take_from_largest(false, own.others + 1); // Two alike don't take turns.
+                     // The margin of 1 keeps two equal servers from displacing each other.
+                     : try_take_from_largest(false, own.others + 1);
 }
 
-/// The last offer of the host that has the most, if those are more than `more_than`; false without
-/// one.
+/// Drops the last offer of the server that has the most, if that is more than `more_than`; false if
+/// there is none.
 bool Catalogue::try_take_from_largest(bool asked, std::size_t more_than)
 {
     const auto count = [&](const auto& entry)

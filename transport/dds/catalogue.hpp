@@ -20,80 +20,81 @@
 namespace tactus::dds
 {
 
-/// What a controller sees of the models that are published on its domain at present. One thread,
-/// that of the client; no call waits. An offer that is pointed at is there until the next
-/// refresh().
+/// The models published on the domain at present, as a controller sees them. One thread, that of
+/// the client; no call waits. Pointers to offers are valid until the next refresh().
 ///
-/// Offers of what was asked for are kept first, then those of other names. Where there is no room
-/// for one more, the participant with the most offers loses its last: so many strangers can't keep
-/// a server out. What was left out is announced again within a second.
+/// Requested offers have priority over others. If there is no room for one more, the participant
+/// with the most offers loses its last one; unknown participants thus cannot keep a server out. An
+/// offer that was left out is announced again within a second.
 class Catalogue
 {
 public:
     struct Offer
     {
         std::string name;
-        std::string scene; ///< Of its host's objects; may be empty.
+        std::string scene; ///< Scene that consists of the server's objects; may be empty.
         ContentHash hash{};
         std::uint64_t host_epoch{0};
-        std::uint32_t model{0}; ///< Its number on that host.
+        std::uint32_t model{0}; ///< Number of the model on that server.
         std::uint32_t faces{0};
         std::uint32_t header_bytes{0};
         std::uint32_t base_bytes{0};
         ParticipantId host{};
-        std::uint64_t writer{0};  ///< Handle of that one's writer.
-        bool is_disputed{false};  ///< Somebody said that it is gone, perhaps another program.
-        std::uint64_t arrival{0}; ///< Higher for what was seen later.
+        std::uint64_t writer{0}; ///< Handle of the server's writer.
+        /// True if a program, perhaps another one than the server, ended the offer.
+        bool is_disputed{false};
+        std::uint64_t arrival{0}; ///< Order of discovery, ascending.
     };
     static constexpr std::size_t kMaxOffers = 16'384;
 
-    /// `domain` must outlive it. `room` is for the offers of all participants, above 0.
+    /// `domain` must outlive the catalogue. `room` is the number of offers of all participants;
+    /// above 0.
     [[nodiscard]] static Result<Catalogue, Refusal> create(const Domain& domain, Log log,
                                                            std::size_t room = kMaxOffers);
 
-    /// From now on offers like these are asked for. Call it before the first refresh(), or what was
-    /// left out until then comes within a second.
+    /// Gives offers that match priority from now on. Call it before the first refresh(); an offer
+    /// left out earlier returns within a second.
     void ask_for(const ModelSelector& model);
     void ask_for_scene(const std::string& name);
-    /// All offers of this host are kept.
+    /// Keeps all offers of this server.
     void keep(std::uint64_t host_epoch);
 
-    /// Takes news from DDS: new offers, hosts that left or fell silent, programs that speak another
-    /// version of the protocol; tells what was refused. Cheap when there are none.
+    /// Processes DDS events: new offers, servers that left or fell silent, programs with another
+    /// version of the protocol. Logs refusals. Cheap without events.
     void refresh();
 
-    /// Changes with what is there of what was asked for; with all that is there if nothing was.
+    /// Counter that changes with the requested offers; with all offers if none were requested.
     [[nodiscard]] std::uint64_t version() const noexcept { return version_; }
 
-    /// In the order in which they were seen: those of a name, or of any where it is empty; with a
-    /// hash or a server in the selector only theirs.
+    /// Offers that match the selector, in order of discovery. Empty fields of the selector match
+    /// every offer.
     [[nodiscard]] std::vector<const Offer*> offers(const ModelSelector& selector) const;
-    /// The first of those of each host.
+    /// The first matching offer of each server.
     [[nodiscard]] std::vector<const Offer*> servers_of(const ModelSelector& selector) const;
-    /// The first of all; null when there is none.
+    /// The first matching offer; null if there is none.
     [[nodiscard]] const Offer* find(const ModelSelector& selector) const;
-    /// The offer of one run of one host; null when that is gone.
+    /// The offer of a model by one run of one server; null if it is gone.
     [[nodiscard]] const Offer* find(const ContentHash& hash, std::uint64_t host_epoch) const;
 
-    /// The same of a scene.
+    /// The first matching offer of each server, where the selector's name is that of a scene.
     [[nodiscard]] std::vector<const Offer*> servers_of_scene(const ModelSelector& selector) const;
-    /// What a host serves, in the order of its numbers.
+    /// The offers of a server, in the order of their numbers.
     [[nodiscard]] std::vector<const Offer*> offers_of(std::uint64_t host_epoch) const;
 
-    /// Whether that run of a host is there.
+    /// True if that run of a server is present.
     [[nodiscard]] bool has_host(std::uint64_t host_epoch) const;
 
-    /// Their names for a message, "none" without any; a long list is cut.
+    /// Names of the offered models for a message, "none" if empty; a long list is cut.
     [[nodiscard]] std::string names() const;
-    /// The same of scenes.
+    /// Names of the offered scenes, in the same form.
     [[nodiscard]] std::string scene_names() const;
 
     [[nodiscard]] const Participants& participants() const noexcept { return *participants_; }
 
 private:
-    /// Host and number.
+    /// Epoch of a server and number of a model.
     using Key = std::pair<std::uint64_t, std::uint32_t>;
-    /// How many offers a host has here that are asked for, and others.
+    /// Number of stored offers of one server, requested ones and others.
     struct Share
     {
         std::size_t asked{0};
@@ -124,14 +125,14 @@ private:
     RateLimitedLog log_;
     std::size_t room_;
     std::map<Key, Offer> offers_;
-    std::map<std::uint64_t, Share> shares_; ///< By host.
+    std::map<std::uint64_t, Share> shares_; ///< Shares by server.
     std::set<std::string> asked_names_;
     std::set<ContentHash> asked_hashes_;
     std::set<std::string> asked_scenes_;
     std::set<std::uint64_t> kept_hosts_;
     std::uint64_t arrivals_{0};
     std::uint64_t version_{0};
-    std::chrono::steady_clock::time_point looked_{}; ///< At what is disputed.
+    std::chrono::steady_clock::time_point looked_{}; ///< Time of the last check of disputed offers.
 };
 
 } // namespace tactus::dds

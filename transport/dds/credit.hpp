@@ -8,28 +8,29 @@
 namespace tactus::dds
 {
 
-/// The controller's side of the credit for one host's epoch.
+/// The controller's side of the credit for one server's epoch.
 ///
-/// The host counts the pieces it has `sent`, each sample says how many; it may go as far as
-/// `granted`. We grant a window beyond what we have `seen` of that count. All are absolute, so a
-/// lost sample leaks nothing: the next one that comes shows the whole count. Only when a whole
-/// window is lost does nothing come any more; then it is written off.
+/// The server counts the pieces it has `sent` and includes the count in each sample; it may send
+/// until the count reaches `granted`. The controller grants a window beyond the count that it has
+/// `seen`. All numbers are absolute, so a lost sample leaks no credit: the next one that arrives
+/// shows the whole count. Only the loss of a whole window stops the flow; then the window is
+/// written off.
 class CreditWindow
 {
 public:
     explicit CreditWindow(std::uint64_t window) noexcept : window_(window) {}
 
-    /// A new epoch counts from zero.
+    /// Restarts the counts for a new epoch.
     void restart() noexcept { seen_ = received_ = 0; }
 
-    /// A sample came with `pieces` pieces in it and this count.
+    /// Records a sample with this count and `pieces` pieces.
     void on_sample(std::uint64_t sent, std::uint64_t pieces) noexcept
     {
         seen_ = std::max(seen_, sent);
         received_ += pieces;
     }
 
-    /// Nothing came for long: what was granted is taken as lost.
+    /// Treats everything granted as lost, after a long silence.
     void write_off() noexcept { seen_ = granted(); }
 
     [[nodiscard]] std::uint64_t seen() const noexcept { return seen_; }

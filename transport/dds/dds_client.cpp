@@ -18,9 +18,9 @@ namespace tactus::dds
 namespace
 {
 
-/// Between two looks.
+/// Pause between two polls.
 constexpr auto kPause = std::chrono::milliseconds(1);
-/// A model that isn't there after this long is spoken of.
+/// Time after which a missing model is logged.
 constexpr auto kQuiet = std::chrono::seconds(2);
 
 } // namespace
@@ -76,7 +76,7 @@ DdsClient::find_headers(std::span<const ModelSelector> selectors, std::chrono::m
     for (;;)
     {
         exchange_->step();
-        const HeaderSearch* open = nullptr; // The first whose header isn't here.
+        const HeaderSearch* open = nullptr; // First search without a header.
         auto open_state = HeaderSearch::State::done;
         for (HeaderSearch& search : searches)
         {

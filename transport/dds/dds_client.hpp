@@ -22,35 +22,35 @@
 namespace tactus::dds
 {
 
-/// A controller on a DDS domain: finds models and makes links to them. One thread, the transport
-/// thread, uses it and its links.
+/// A controller on a DDS domain: finds models and creates links to them. One thread, the transport
+/// thread, uses the client and its links.
 class DdsClient
 {
 public:
-    /// `controller_name` is shown by hosts; a valid name (asserted). Join from an ordinary thread,
-    /// and after a host of the same process, see Domain, which also says what is refused.
+    /// `controller_name` is shown by servers; a valid name (asserted). Join from an ordinary
+    /// thread, and after a server in the same process; see Domain, also for refusals.
     [[nodiscard]] static Result<std::unique_ptr<DdsClient>, Refusal>
     create(std::uint32_t domain, std::string controller_name, Log log);
 
-    /// Waits until all these models are published and their headers came, verified, each from the
-    /// first of its servers that answers. What it returns, in the order of the selectors, has no
-    /// base meshes: bring_bases() fetches them, or a courier those of guests. Waits at most
-    /// `timeout`, or until `go_on` (asked every few milliseconds) returns false; then it is
-    /// refused, as it is after a second where every server's header is damaged. The client must
-    /// outlive the models' links.
+    /// Waits until all these models are published and their headers have arrived, verified, each
+    /// from the first of its servers that answers. The results, in the order of the selectors, have
+    /// no base meshes: bring_bases() fetches them, or a Courier those of streamed models. Waits at
+    /// most `timeout`, or until `go_on` (called every few milliseconds) returns false. Refused
+    /// then, or after a second in which every server's header is damaged. The client must outlive
+    /// the models' links.
     [[nodiscard]] Result<std::vector<ServedModel>, Refusal>
     find_headers(std::span<const ModelSelector> selectors, std::chrono::milliseconds timeout,
                  const std::function<bool()>& go_on = {});
-    /// The same for one, with its base mesh.
+    /// Finds one model and fetches its base mesh too; otherwise like find_headers().
     [[nodiscard]] Result<ServedModel, Refusal> find(const ModelSelector& selector,
                                                     std::chrono::milliseconds timeout,
                                                     const std::function<bool()>& go_on = {});
 
     [[nodiscard]] const Catalogue& catalogue() const noexcept { return catalogue_; }
     [[nodiscard]] Catalogue& catalogue() noexcept { return catalogue_; }
-    /// For a SceneReader. Polling a link steps it; without links call its step().
+    /// Exchange for a SceneReader. Polling a link steps it; without links call its step().
     [[nodiscard]] PieceExchange& exchange() noexcept { return *exchange_; }
-    /// For further topics of the same controller; lives as long as the client.
+    /// Domain for further topics of the same controller; lives as long as the client.
     [[nodiscard]] const Domain& domain() const noexcept { return domain_; }
     [[nodiscard]] const std::string& controller_name() const noexcept { return controller_name_; }
 
@@ -61,12 +61,12 @@ private:
     [[nodiscard]] Refusal not_found(const HeaderSearch& search, bool is_published,
                                     const std::string& waited) const;
 
-    Domain domain_; ///< First, so that it is left last.
+    Domain domain_; ///< First member, so that it is destroyed last.
     Catalogue catalogue_;
     std::string controller_name_;
     Log log_;
-    RateLimitedLog links_log_; ///< Of all links: a host that goes is that of many models.
-    std::unique_ptr<PieceExchange> exchange_; ///< From create() on.
+    RateLimitedLog links_log_; ///< Log of all links: the loss of a server affects many models.
+    std::unique_ptr<PieceExchange> exchange_; ///< Valid after create().
 };
 
 } // namespace tactus::dds

@@ -22,40 +22,41 @@ namespace tactus::dds
 namespace
 {
 
-/// The catalogue is written anew this often: after a stall a host may have been taken for dead.
+/// Interval of the catalogue: after a stall, controllers may have taken the server for dead.
 constexpr auto kAnnouncement = std::chrono::seconds(1);
 constexpr auto kLookForGone = std::chrono::milliseconds(50);
-/// Each controller is looked at once in so many of these times.
+/// Number of checks in which each controller is checked once.
 constexpr std::size_t kLooks = 20;
-/// Each has up to four DDS writers, about 400 KB.
+/// Maximum number of controllers; each has up to four DDS writers, about 400 KB.
 constexpr std::size_t kMaxClients = 1'024;
-/// Controllers that get all objects at the same time: many at once make each other lose what they
-/// get, and it is sent again and again.
+/// Controllers that receive all objects at the same time: too many make each other lose samples,
+/// which are then sent again and again.
 constexpr std::size_t kMaxJoining = 2;
-/// Who says nothing about its objects for so long has them, or has other troubles; for less where
-/// others wait. One has 4,096 objects after some 50 ms.
+/// Silence after which a controller is treated as joined, so that it does not block others; the
+/// second applies if others wait. A controller has 4,096 objects after some 50 ms.
 constexpr auto kJoiningMax = std::chrono::seconds(5);
 constexpr auto kJoiningMaxBeforeOthers = std::chrono::seconds(1);
-/// It is told again that it may come in; the first time may have been before it listened.
+/// Interval at which an admission is repeated: the first may have been sent before the controller
+/// listened.
 constexpr auto kLetInAgain = std::chrono::milliseconds(100);
-/// Lines a second of controllers that come and go.
+/// Log lines a second about controllers that arrive and leave.
 constexpr std::uint32_t kVisitLines = 40;
-/// Each step has so long for requests and for pieces, so that poses go out every 10 ms with
-/// any number of requests. What isn't done waits for the next step; of requests Cyclone keeps 16 a
-/// controller and gives them in turn.
+/// Time limits of a step for requests and for pieces, so that poses go out every 10 ms under any
+/// number of requests. The remainder waits for the next step; of requests, Cyclone keeps 16 a
+/// controller and delivers them in turn.
 constexpr auto kRequestsMax = std::chrono::milliseconds(2);
 constexpr auto kServingMax = std::chrono::milliseconds(4);
-/// Pieces that one process may ask for in a second. A controller has 256 wishes and asks for each
-/// four times a second; headers of 256 models, 64 parts each, are asked for ten times.
+/// Pieces that one process may request in a second. A controller has 256 requests and repeats each
+/// four times a second; headers of 256 models, 64 parts each, are requested ten times.
 constexpr std::uint64_t kAskedMax = 262'144;
-/// What somebody got counts half after so long.
+/// Half-life of the bytes that a controller received, for the order of service.
 constexpr auto kHalfLife = std::chrono::milliseconds(250);
-/// What a sample costs beyond its pieces, in bytes.
+/// Cost of a sample beyond its pieces, in bytes.
 constexpr double kASample = 1'000.0;
-/// How long to wait while a controller's reader is not there yet.
+/// Wait while a controller's reader is not present yet.
 constexpr auto kMatchWait = std::chrono::milliseconds(2);
 
-/// What a controller calls itself, fit to be printed.
+/// Printable form of the name that a controller reports.
 std::string name_of(const tactus_v5_Wanted& wanted)
 {
     return printable(text_of(wanted.controller_name));
@@ -140,7 +141,8 @@ void DdsHost::step()
         last_looked_ = now;
         look_for_gone();
         static_cast<void>(std::ranges::find_if(clients_, [this](Client& client)
-                                               { return try_heal(client); })); // One at a time.
+                                               // One controller a step.
+                                               { return try_heal(client); }));
     }
     if (now - last_forgot_ >= kHalfLife)
     {
@@ -207,7 +209,7 @@ Result<Done, Refusal> DdsHost::open_endpoints()
     waitset_ = Entity(dds_create_waitset(domain_.participant()));
     dds_set_status_mask(wanted_.handle, DDS_DATA_AVAILABLE_STATUS);
     dds_waitset_attach(waitset_.get(), wanted_.handle, 0);
-    announce(); // Last: who sees the announcement finds everything else.
+    announce(); // Last, so that a controller that sees the announcement finds all else in place.
     return Done{};
 }
 
@@ -227,7 +229,7 @@ void DdsHost::announce()
         entry.faces = fields.source_faces;
         entry.header_bytes = static_cast<std::uint32_t>(store.header_bytes().size());
         entry.base_bytes = static_cast<std::uint32_t>(store.coded_bytes({ContentKind::base, 0}));
-        dds_write(catalogue_.handle, &entry); // A failure is made good in the next second.
+        dds_write(catalogue_.handle, &entry); // A failed write is repeated in the next second.
     }
     last_announced_ = Clock::now();
 }
@@ -293,8 +295,8 @@ void DdsHost::on_request(const ControllerId& controller, const tactus_v5_Wanted&
     take_wishes(*client, wanted);
 }
 
-/// It hears that we are here, but not what moves: a packet in the writer's name, forged or not, may
-/// have told of a much later sample, and what is older is dropped where it comes in.
+/// Handles a controller that hears this server but no motion: a packet in the writer's name with a
+/// much later sample number, forged or not, makes its reader drop the real ones.
 void DdsHost::renew_motion(Client& client)
 {
     const auto now = Clock::now();
@@ -352,7 +354,7 @@ void DdsHost::refuse(const ControllerId& controller, Refused reason)
 DdsHost::Client* DdsHost::add_client(const ControllerId& controller, const tactus_v5_Wanted& wanted)
 {
     const std::string name = name_of(wanted);
-    if (!is_valid_name(name)) // It would name a partition.
+    if (!is_valid_name(name)) // The name becomes a partition.
     {
         fault_log_.write(
             fmt::format("controller '{}' is refused: its name is not {}", name, kNameForm));
@@ -386,8 +388,9 @@ DdsHost::Client* DdsHost::add_client(const ControllerId& controller, const tactu
     return &clients_.back();
 }
 
-/// As in Catalogue: who isn't the controller can't end it, but makes its end be looked for; and one
-/// that only falls silent, or of whose writers only one ends, stays until its lease ends.
+/// Handles the end of an instance, as Catalogue does: another program cannot end a controller, but
+/// triggers a check. A controller that falls silent, or loses only one of its writers, stays until
+/// its lease ends.
 void DdsHost::on_end(const ControllerId& controller, std::uint64_t writer)
 {
     Participants& participants = domain_.participants();
@@ -444,7 +447,7 @@ void DdsHost::on_controller_gone(const ControllerId& controller)
     clients_.erase(clients_.begin() + (client - clients_.data()));
 }
 
-/// Called every kHalfLife.
+/// Halves the recent counts; called every kHalfLife.
 void DdsHost::forget()
 {
     constexpr auto kTimesInASecond = std::chrono::seconds(1) / kHalfLife;
@@ -460,8 +463,8 @@ void DdsHost::forget()
     }
 }
 
-/// The one of the process that got least of late, and in it the one that did; null when there is
-/// nothing more to do in this step.
+/// The controller that got least, in the process that got least recently; null if this step has
+/// nothing more to send.
 DdsHost::Client* DdsHost::next_to_serve()
 {
     Client* next = nullptr;
@@ -500,8 +503,8 @@ void DdsHost::serve(Clock::time_point end)
     }
 }
 
-/// Two controllers at a time get all objects: first those of a process of which none is under way,
-/// among them of the one that was let in longest ago.
+/// Admits controllers that wait for objects, kMaxJoining at a time. Processes with fewest
+/// admissions under way go first, then the process and the controller with the oldest admission.
 void DdsHost::let_in()
 {
     const auto now = Clock::now();

@@ -21,8 +21,8 @@ struct tactus_v5_Wanted; // idlc's type of a sample.
 namespace tactus::dds
 {
 
-/// Serves models on one DDS domain: announces them, gives pieces to whoever asks, under the credit
-/// that each controller grants, and shows objects. One thread.
+/// Serves models on one DDS domain: announces them, sends pieces on request under the credit that
+/// each controller grants, and shows objects. One thread.
 class DdsHost
 {
 public:
@@ -30,10 +30,11 @@ public:
     struct Counters
     {
         std::uint64_t pieces_sent{0};
-        std::uint64_t bytes_sent{0}; ///< Payload.
+        std::uint64_t bytes_sent{0}; ///< Bytes of payload.
         std::uint64_t requests{0};
-        std::uint64_t requests_refused{0}; ///< A bad name, an unknown piece, too many.
-        std::uint64_t renewed{0}; ///< Times that writers were replaced that were not heard.
+        /// Requests with a bad name or an unknown piece, and those beyond the rate limit.
+        std::uint64_t requests_refused{0};
+        std::uint64_t renewed{0}; ///< Replacements of writers that a controller did not receive.
     };
     struct Subscriber
     {
@@ -42,30 +43,31 @@ public:
         std::uint64_t bytes_sent{0};
     };
 
-    /// Announces the models. Refused: more than kMaxModels, one whose base mesh can't be read or
-    /// whose header is too long for the wire, and what Domain::join() refuses. `log` gets, at a
-    /// limited rate, a line when a controller comes or goes and one for what can't be served or is
-    /// refused. `scene`, a valid name (unchecked), is what controllers call all of the host's
-    /// objects together; empty: nothing.
+    /// Announces the models. Refused: more than kMaxModels, a base mesh that cannot be read, a
+    /// header too long for the wire, and the refusals of Domain::join(). `log` gets, at a limited
+    /// rate, a line when a controller arrives or leaves, and one for each failure or refusal.
+    /// `scene`, a valid name (unchecked), names all objects of the server together; empty: no
+    /// scene.
     [[nodiscard]] static Result<std::unique_ptr<DdsHost>, Refusal>
     create(std::uint32_t domain, std::vector<PublishedModel> models, Log log,
            std::string scene = {}, Party party = Party::host);
 
-    /// Waits until there is something to do, at most `timeout`. Signals don't end it early.
+    /// Waits until there is work, at most `timeout`. Signals do not end the wait.
     void wait(std::chrono::milliseconds timeout);
-    /// Sends what has moved, then takes requests, serves, which reads the models' files, and
-    /// announces when due, each for some milliseconds at most: call it again at once when wait()
-    /// does. First served is the process that got least lately, and in it the controller that did.
+    /// Sends motion, takes requests, serves pieces, which reads the models' files, and announces
+    /// when due. Each takes some milliseconds at most: call it again at once when wait() returns.
+    /// The process that recently got the least is served first, and within it the controller that
+    /// did.
     void step();
 
     [[nodiscard]] Counters counters() const;
     [[nodiscard]] std::vector<Subscriber> subscribers() const;
     [[nodiscard]] const std::vector<ModelPieces>& models() const noexcept { return models_; }
-    /// Shows, moves and removes objects of these models.
+    /// Publisher that shows, moves and removes objects of these models.
     [[nodiscard]] ObjectPublisher& objects() noexcept { return *objects_; }
-    /// By which controllers know this run of this host.
+    /// Epoch by which controllers identify this run of this server.
     [[nodiscard]] std::uint64_t epoch() const noexcept { return epoch_; }
-    /// For further topics of the same program; lives as long as the host.
+    /// Domain for further topics of the same program; lives as long as the server.
     [[nodiscard]] const Domain& domain() const noexcept { return domain_; }
 
 private:
@@ -74,28 +76,29 @@ private:
     {
         not_wanted,
         waits,
-        under_way, ///< It was let in; the objects are on their way to it.
+        under_way, ///< Admitted; the objects are in transit to the controller.
         done,
     };
-    /// All controllers of one process, as it names itself.
+    /// All controllers of one process, by the name that it reports.
     struct Process
     {
         std::string name;
-        std::uint64_t asked{0};     ///< Pieces, in the last second.
-        double got_bytes{0.0};      ///< Recently; halved every 250 ms.
-        Clock::time_point let_in{}; ///< When the last one was.
+        std::uint64_t asked{0};     ///< Pieces requested in the last second.
+        double got_bytes{0.0};      ///< Bytes received recently; halved every 250 ms.
+        Clock::time_point let_in{}; ///< Time of its last admission.
     };
     struct Client
     {
         Subscription subscription;
         std::shared_ptr<Process> process;
-        double got_bytes{0.0}; ///< As its process has.
+        double got_bytes{0.0}; ///< Bytes received recently, like Process::got_bytes.
         Joining joining{Joining::not_wanted};
         Clock::time_point let_in{};
-        std::uint64_t writer{0}; ///< Handle of the last request's.
-        std::uint64_t passed{0}; ///< The step in which there was nothing for it.
+        std::uint64_t writer{0}; ///< Handle of the last request's writer.
+        std::uint64_t passed{0}; ///< Last step in which nothing could be sent to it.
         Backoff motion_renewals{};
-        bool is_disputed{false}; ///< Somebody said that it is gone, perhaps another program.
+        /// True if a program, perhaps another one, ended this controller's instance.
+        bool is_disputed{false};
     };
 
     DdsHost(Domain domain, std::vector<ModelPieces> models, Log log, std::string scene);
@@ -111,9 +114,9 @@ private:
     [[nodiscard]] Client* add_client(const ControllerId& controller,
                                      const tactus_v5_Wanted& wanted);
     void on_end(const ControllerId& controller, std::uint64_t writer);
-    /// Of what a stranger wrote in a controller's name too, DDS tells no end while the stranger is
-    /// here: a controller goes with its writer or its participant. Looks at those of which somebody
-    /// said so, and at some others in turn.
+    /// Removes controllers that are gone: a controller ends with its writer or its participant. If
+    /// an unknown participant wrote in a controller's name too, DDS reports no end while that
+    /// participant is present. Checks disputed controllers, and some others in turn.
     void look_for_gone();
     void on_controller_gone(const ControllerId& controller);
     void forget();
@@ -122,7 +125,7 @@ private:
     void let_in();
     [[nodiscard]] Client* find(const ControllerId& controller);
 
-    Domain domain_; ///< First, so that it is left last.
+    Domain domain_; ///< First member, so that it is destroyed last.
     std::vector<ModelPieces> models_;
     std::string scene_;
     RateLimitedLog visits_log_;
@@ -131,10 +134,10 @@ private:
     Endpoint catalogue_;
     Endpoint wanted_;
     Entity waitset_;
-    std::unique_ptr<ObjectPublisher> objects_; ///< From create() on.
+    std::unique_ptr<ObjectPublisher> objects_; ///< Valid after create().
     std::vector<Client> clients_;
     std::vector<std::shared_ptr<Process>> processes_;
-    std::size_t looked_at_{0}; ///< Of clients_, by look_for_gone().
+    std::size_t looked_at_{0}; ///< Next of clients_ for look_for_gone().
     std::uint64_t steps_{0};
     bool has_more_work_{false};
     Clock::time_point last_announced_{};

@@ -16,13 +16,13 @@ namespace tactus::dds
 namespace
 {
 
-/// Between two looks for what doesn't come.
+/// Interval of the check for missing pieces.
 constexpr auto kLookEvery = std::chrono::milliseconds(20);
-/// A piece that was not asked for again for so long isn't wanted any more.
+/// Time after which a piece that is not requested again is no longer wanted.
 constexpr auto kForgotten = std::chrono::seconds(2);
-/// So long another host may come where all that are there have sent what is wrong.
+/// Time in which another server may appear after all present ones sent wrong bytes.
 constexpr auto kAnotherAfter = std::chrono::seconds(1);
-/// Hosts that are remembered as wrong, as passed, and as those that sent something.
+/// Maximum number of remembered servers: wrong ones, replaced ones and senders.
 constexpr std::size_t kMaxRemembered = 256;
 
 } // namespace
@@ -39,7 +39,7 @@ void DdsLink::request(std::span<const ContentKey> keys, std::uint32_t generation
 {
     if (state_ != LinkState::connected)
     {
-        return; // Asked again by the courier in the next session.
+        return; // The Courier repeats the request in the next session.
     }
     const auto now = Clock::now();
     for (const ContentKey key : keys)
@@ -58,7 +58,7 @@ bool DdsLink::distrust(ContentKey key)
     distrusted_since_ = distrusted_.empty() ? now : distrusted_since_;
     if (key.kind == ContentKind::base)
     {
-        // Where several sent parts of it none is blamed: the next time all are of one.
+        // If several servers sent parts, none is blamed: the next attempt takes all parts from one.
         if (base_from_.size() == 1)
         {
             distrust_host(*base_from_.begin());
@@ -73,7 +73,7 @@ bool DdsLink::distrust(ContentKey key)
     if (at != asked_.end() && at->second.has_come)
     {
         at->second = {now, at->second.last, now, at->second.generation};
-        if (is_trusted(offer_.host_epoch)) // Else when it is wished for again.
+        if (is_trusted(offer_.host_epoch)) // Otherwise the next request asks again.
         {
             exchange_.ask(offer_.host_epoch, offer_.model, {&key, 1}, at->second.generation);
         }
@@ -104,8 +104,8 @@ bool DdsLink::is_trusted(std::uint64_t host) const
     return std::ranges::find(distrusted_, host) == distrusted_.end();
 }
 
-/// All hosts but the one that is asked first: from the one after the last that was asked on, all
-/// round, and those that are trusted, if there is one.
+/// Other servers with the model, in rotation from the one after the last that was asked; only
+/// trusted ones if any server is trusted.
 std::vector<const Catalogue::Offer*> DdsLink::others() const
 {
     auto hosts = catalogue_.servers_of({.name = "", .hash = offer_.hash});
@@ -123,7 +123,7 @@ std::vector<const Catalogue::Offer*> DdsLink::others() const
     return hosts;
 }
 
-/// Hosts beyond the limit have the last number together.
+/// Number of a server; those beyond the limit share the last number.
 std::uint32_t DdsLink::number_of(std::uint64_t host)
 {
     const auto at = std::ranges::find(senders_, host);
@@ -138,7 +138,8 @@ std::uint32_t DdsLink::number_of(std::uint64_t host)
 
 void DdsLink::poll(PieceSink& sink)
 {
-    if (exchange_.steps() == seen_steps_) // Nobody has since our last poll.
+    // No other link has stepped the exchange since the last poll.
+    if (exchange_.steps() == seen_steps_)
     {
         exchange_.step();
     }
@@ -159,7 +160,7 @@ void DdsLink::poll(PieceSink& sink)
         handed_over_from_ = senders_[piece->key.revision];
         sink.receive(key, piece->bytes);
         const auto asked = asked_.find({key.kind, key.number});
-        if (asked != asked_.end() && asked->second.has_come) // It wasn't distrusted.
+        if (asked != asked_.end() && asked->second.has_come) // The sink did not distrust it.
         {
             asked_.erase(asked);
         }
@@ -167,7 +168,7 @@ void DdsLink::poll(PieceSink& sink)
     arrived_.clear();
 }
 
-/// What doesn't come for kSilence.
+/// Requests from other servers the pieces that have not arrived within kSilence.
 void DdsLink::ask_others()
 {
     const auto now = Clock::now();
@@ -197,7 +198,8 @@ void DdsLink::ask_others()
     }
 }
 
-/// Parts of a base mesh, which are proven together, only of the host that is asked first.
+/// Stores a piece until the next poll. Parts of a base mesh are verified together, so they are
+/// taken only from the server that is asked first.
 void DdsLink::receive(std::uint64_t host_epoch, ContentKey key, std::span<const std::byte> bytes)
 {
     if (key.kind == ContentKind::header)
@@ -235,7 +237,7 @@ void DdsLink::receive(std::uint64_t host_epoch, ContentKey key, std::span<const 
     bytes_received_ += kFrameBytes + bytes.size();
 }
 
-/// The one before doesn't answer, or not the truth.
+/// Replaces a server that does not answer or sent wrong bytes.
 void DdsLink::put_first(const Catalogue::Offer& offer)
 {
     if (told_.size() < kMaxRemembered && told_.insert(offer_.host_epoch).second)
@@ -251,7 +253,7 @@ void DdsLink::put_first(const Catalogue::Offer& offer)
     first_heard_ = Clock::now();
 }
 
-/// The model keeps its name where that host calls it another.
+/// Changes the server; the model keeps its name even if that server publishes another one.
 void DdsLink::take_over(const Catalogue::Offer& offer)
 {
     const std::string name = offer_.name;

@@ -18,18 +18,18 @@
 namespace tactus::dds
 {
 
-/// One model's pieces from any host on the domain that serves that model (that hash) at present.
-/// Their hashes prove them, so any host may send them.
+/// One model's pieces from any server on the domain that has that model (that hash) at present. The
+/// hashes prove the pieces, so any server may send them.
 ///
-/// A piece that doesn't come for kSilence is asked of others, kHostsAtOnce at the same time. One
-/// that answers in the place of a silent one is asked first from then on; one that has sent what
-/// was wrong is asked no more while there are others.
+/// A piece that does not arrive within kSilence is requested from other servers, kHostsAtOnce at a
+/// time. A server that answers in place of a silent one is asked first from then on; one that sent
+/// wrong bytes is not asked while there are others.
 ///
-/// When all hosts are gone, the link says so and waits; when one comes with the same hash, under
-/// whatever epoch, it is adopted and counted as a new session: the same bytes need no reloading.
+/// If all servers are gone, the link reports that and waits. If one with the same hash appears,
+/// under any epoch, it is adopted and counted as a new session: the same bytes need no reloading.
 ///
-/// Links of one exchange take turns in stepping it: what comes for one while another is polled
-/// waits until its own next poll.
+/// Links of one exchange take turns in stepping it: pieces for one link that arrive while another
+/// is polled wait until its own next poll.
 class DdsLink final : public ChunkLink, private PieceReceiver
 {
 public:
@@ -46,14 +46,15 @@ public:
 
 private:
     using Clock = std::chrono::steady_clock;
-    /// A piece that was asked for and hasn't come.
+    /// A requested piece that has not arrived.
     struct Asked
     {
-        Clock::time_point first{}; ///< When it was asked for first,
-        Clock::time_point last{};  ///< and last, by who wants it.
-        Clock::time_point since{}; ///< When it was asked of other hosts, or first.
+        Clock::time_point first{}; ///< Time of the first request.
+        Clock::time_point last{};  ///< Time of the caller's last request.
+        /// Time of the last request to other servers, otherwise of the first one.
+        Clock::time_point since{};
         std::uint32_t generation{0};
-        bool has_come{false}; ///< It is among what the next poll hands over.
+        bool has_come{false}; ///< True if the next poll delivers it.
     };
     using PieceId = std::pair<ContentKind, std::uint32_t>;
 
@@ -72,25 +73,25 @@ private:
 
     PieceExchange& exchange_;
     Catalogue& catalogue_;
-    Catalogue::Offer offer_; ///< Of the host that is asked first.
+    Catalogue::Offer offer_; ///< Offer of the server that is asked first.
     RateLimitedLog log_;
-    ContentHash refused_hash_{}; ///< Of the changed file that was last reported.
+    ContentHash refused_hash_{}; ///< Hash of the changed file that was last reported.
     LinkState state_{LinkState::connected};
     std::uint64_t session_{1};
     std::uint64_t seen_catalogue_{0};
     std::uint64_t seen_steps_{0};
-    std::vector<std::byte> arrived_;     ///< Framed, until the next poll; the number of the sender
-                                         ///< is in the place of the revision.
-    std::vector<std::uint64_t> senders_; ///< Hosts by that number.
-    std::uint64_t handed_over_from_{0};  ///< The host that sent what a sink has.
+    /// Framed pieces until the next poll; the sender's number is in the place of the revision.
+    std::vector<std::byte> arrived_;
+    std::vector<std::uint64_t> senders_; ///< Servers by that number.
+    std::uint64_t handed_over_from_{0};  ///< Server that sent the piece which a sink has.
     std::uint64_t bytes_received_{0};
     std::map<PieceId, Asked> asked_;
-    std::set<std::uint64_t> base_from_;     ///< Hosts of which parts of the base mesh came.
-    std::vector<std::uint64_t> distrusted_; ///< Hosts that sent what was wrong.
-    std::set<std::uint64_t> told_;          ///< Hosts of which a line told that they are passed.
-    Clock::time_point first_heard_{};       ///< The host that is asked first, for the last time.
-    Clock::time_point looked_{};            ///< For what doesn't come.
-    std::uint64_t last_arrival_{0};         ///< Of the host that was asked last of the others.
+    std::set<std::uint64_t> base_from_;     ///< Servers that sent parts of the base mesh.
+    std::vector<std::uint64_t> distrusted_; ///< Servers that sent wrong bytes.
+    std::set<std::uint64_t> told_;          ///< Servers whose replacement was logged.
+    Clock::time_point first_heard_{}; ///< Time when the server that is asked first was last heard.
+    Clock::time_point looked_{};      ///< Time of the last check for missing pieces.
+    std::uint64_t last_arrival_{0};   ///< Arrival number of the other server that was asked last.
     Clock::time_point distrusted_since_{};
 };
 

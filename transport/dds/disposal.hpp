@@ -11,8 +11,8 @@
 namespace tactus::dds
 {
 
-/// Deletes entities of Cyclone on a thread of its own, which begins with the first one: each writer
-/// takes some 10 ms, in which a host's other controllers would hear nothing.
+/// Deletes entities of Cyclone DDS on its own thread, which starts with the first one. Deleting a
+/// writer takes about 10 ms, in which a server's other controllers would receive nothing.
 class Disposal
 {
 public:
@@ -22,7 +22,7 @@ public:
     Disposal(const Disposal&) = delete;
     Disposal& operator=(const Disposal&) = delete;
 
-    /// `owner`: the only one of what has to be deleted. Null has no effect. Never waits; any
+    /// Deletes `owner` later; it must be the only owner. Null has no effect. Never waits; any
     /// thread.
     void dispose(std::shared_ptr<void> owner);
 

@@ -28,12 +28,12 @@ namespace tactus::dds
 namespace
 {
 
-/// Hosts have ports that everybody knows, ten on one machine, since Cyclone takes indices below the
-/// one that is named here; controllers have any, and look there.
-/// So controllers don't find each other: 64 of them on one machine would do nothing else for a
-/// minute. Hosts look nowhere. One lost sample costs up to 100 ms: nothing is lost on loopback but
-/// what overflows, and frequent heartbeats make many readers on few processors lose more and more.
-/// One receive thread, so that every thread's stack can be set by name.
+/// Servers have well-known ports, ten on one machine, since Cyclone uses indices below the maximum
+/// here. Controllers use arbitrary ports and search the well-known ones. Controllers therefore do
+/// not discover each other; with 64 on one machine discovery took a minute. Servers search nowhere.
+/// A lost sample costs up to 100 ms: on loopback only overflow loses samples, and frequent
+/// heartbeats make many readers on few processors lose ever more. There is one receive thread, so
+/// that every thread's stack can be set by name.
 constexpr const char* kConfiguration = R"(<CycloneDDS><Domain id="any">
 <General>
   <Interfaces><NetworkInterface name="lo" multicast="false"/></Interfaces>
@@ -57,13 +57,13 @@ constexpr const char* kConfiguration = R"(<CycloneDDS><Domain id="any">
   <Thread name="gc"><StackSize>256 kB</StackSize></Thread>
 </Threads>
 </Domain></CycloneDDS>)";
-/// Peers: all ports of hosts; or the one that discards, since without peers Cyclone takes the
-/// first.
+/// Peers: all ports of servers, or the discard port, since without peers Cyclone uses the first
+/// kind.
 constexpr const char* kLooksForHosts = "127.0.0.1";
 constexpr const char* kLooksNowhere = "127.0.0.1:9";
 
-/// By the specification of RTPS: what the first participant takes of domain 0, how far the domains
-/// are apart; and what ten hosts take.
+/// Ports by the RTPS specification: the first one of domain 0, the distance between domains, and
+/// the number that ten servers use.
 constexpr std::uint32_t kFirstPort = 7'410;
 constexpr std::uint32_t kPortsOfDomain = 250;
 constexpr std::uint32_t kPortsOfHosts = 20;
@@ -82,7 +82,7 @@ public:
     {
         std::string_view raw(data->message, data->size);
         raw = raw.substr(0, raw.find_last_not_of('\n') + 1);
-        const std::string text = printable(raw, 1'000); // It quotes what comes over the wire.
+        const std::string text = printable(raw, 1'000); // Messages may quote network data.
         MessageSink& sink = instance();
         const std::lock_guard lock(sink.mutex_);
         if ((data->priority & (DDS_LC_ERROR | DDS_LC_FATAL)) != 0 ||
@@ -109,11 +109,11 @@ private:
 struct ConfiguredDomain
 {
     std::weak_ptr<Entity> entity;
-    Party party{Party::host}; ///< It was configured for.
+    Party party{Party::host}; ///< Role that the configuration is for.
 };
 
-/// The domain with our configuration; the same one for everybody in the process, since Cyclone
-/// allows a domain id to be configured once. Null: nobody would find a host there.
+/// The domain in our configuration, shared by the process, since Cyclone allows one configuration
+/// for each domain id. Null if a server could not be found in it.
 std::shared_ptr<Entity> configured_domain(std::uint32_t id, Party party)
 {
     static std::mutex mutex;
@@ -200,7 +200,7 @@ std::set<std::uint32_t> domains_in(std::string_view udp_sockets)
     std::set<std::uint32_t> domains;
     std::istringstream lines{std::string(udp_sockets)};
     std::string line;
-    std::getline(lines, line); // The columns' names.
+    std::getline(lines, line); // Column names.
     while (std::getline(lines, line))
     {
         std::istringstream words(line);
@@ -222,7 +222,7 @@ std::set<std::uint32_t> domains_in(std::string_view udp_sockets)
 
 std::optional<std::string> why_unheard(std::uint32_t domain)
 {
-    std::ifstream file("/proc/net/udp"); // Another system has none, and no domain is known there.
+    std::ifstream file("/proc/net/udp"); // Missing on other systems, where no domain is known.
     std::set<std::uint32_t> domains =
         domains_in(std::string(std::istreambuf_iterator<char>(file), {}));
     domains.erase(domain);

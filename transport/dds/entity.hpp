@@ -19,7 +19,7 @@ public:
     Entity& operator=(const Entity&) = delete;
     ~Entity();
 
-    /// The C API's handle; negative values are its error codes.
+    /// Handle of the C API; negative values are its error codes.
     [[nodiscard]] std::int32_t get() const noexcept { return handle_; }
     [[nodiscard]] bool is_valid() const noexcept { return handle_ > 0; }
 
@@ -27,7 +27,7 @@ private:
     std::int32_t handle_{0};
 };
 
-/// A reader or writer below a subscriber or publisher of its own, which carries the partition.
+/// A reader or writer below its own subscriber or publisher, which carries the partition.
 struct Endpoint
 {
     Entity parent;

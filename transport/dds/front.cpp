@@ -25,12 +25,12 @@ namespace tactus::dds
 namespace
 {
 
-/// In the order of the wire.
+/// Budgets in the order of the wire.
 constexpr std::array kBudgetOrder{&Budgets::splits,   &Budgets::merges,    &Budgets::scanned,
                                   &Budgets::nodes,    &Budgets::triangles, &Budgets::pages,
                                   &Budgets::requests, &Budgets::regions,   &Budgets::work};
 static_assert(std::size(tactus_v5_Front{}.budgets) == kBudgetOrder.size());
-// All but what proxies look at.
+// `planes`, the budget of proxies, is not sent.
 static_assert(sizeof(Budgets) == (kBudgetOrder.size() + 1) * sizeof(std::uint32_t));
 static_assert(std::size(tactus_v5_Front{}.times) == kFrontTimes);
 
@@ -69,7 +69,7 @@ std::optional<FrontTool> tool_from(const tactus_v5_FrontTool& wire)
 
 std::optional<FrontObject> object_from(const tactus_v5_FrontObject& wire, std::uint32_t models)
 {
-    // A model may lie farther from its frame's origin than an object may be moved.
+    // A model may be farther from its frame's origin than an object may be moved.
     const Pose told = from_wire(wire.pose);
     const auto pose = checked_pose(told);
     const bool is_sound = pose || pose.error() == PoseRefusal::translation;
@@ -81,14 +81,14 @@ std::optional<FrontObject> object_from(const tactus_v5_FrontObject& wire, std::u
                        pose ? pose.value() : told};
 }
 
-/// Whether it is a chunk that a model may have, and comes after the last one of its list.
+/// True if the chunk's number is possible and above the last one of its list.
 template <typename Last>
 bool is_next_chunk(ChunkId chunk, const Last& last)
 {
     return chunk.value <= kMaxRecords >> kRecordsPerChunkLog2 && (!last || chunk > *last);
 }
 
-/// The models with their pages and wishes; none where these don't add up or aren't in order.
+/// Models with their pages and requests; none if the counts are inconsistent or the order is wrong.
 std::optional<std::vector<FrontModel>> models_from(const tactus_v5_Front& sample)
 {
     std::vector<FrontModel> models;
@@ -316,7 +316,8 @@ void FrontWriter::write(const Front& front)
     sample.refined = sequence_of<decltype(sample.refined)>(refined);
     sample.wished = sequence_of<decltype(sample.wished)>(wished);
     sample.regions = sequence_of<decltype(sample.regions)>(regions);
-    dds_write(writer_.handle, &sample); // One that fails is a lost one: the next is as good.
+    // A failed write counts as a lost sample; the next one replaces it.
+    dds_write(writer_.handle, &sample);
 }
 
 Result<std::unique_ptr<FrontReader>, Refusal> FrontReader::create(const Domain& domain)

@@ -16,22 +16,22 @@
 namespace tactus::dds
 {
 
-/// The controller's side. One thread, the transport thread.
+/// Publishes a controller's refinement state. One thread, the transport thread.
 class FrontWriter
 {
 public:
-    /// `domain` must outlive it; `controller_name` is valid (asserted).
+    /// `domain` must outlive the writer; `controller_name` is valid (asserted).
     [[nodiscard]] static Result<std::unique_ptr<FrontWriter>, Refusal>
     create(const Domain& domain, std::string controller_name);
 
-    /// Sends it to whoever looks; never waits. Models, objects, tools and pages are within their
-    /// limits, objects name one of the models (asserted).
+    /// Sends a refinement state to all readers; never waits. Models, objects, tools and pages are
+    /// within their limits, and objects name one of the models (asserted).
     void write(const Front& front);
 
-    /// Whether anybody reads it.
+    /// True if there is a reader.
     [[nodiscard]] bool is_watched() const { return is_matched(writer_); }
 
-    /// How many were sent.
+    /// Number of samples sent.
     [[nodiscard]] std::uint64_t sent() const noexcept { return sent_; }
 
 private:
@@ -43,33 +43,34 @@ private:
     std::uint64_t sent_{0};
 };
 
-/// A controller's newest front.
+/// Newest refinement state of a controller.
 struct SeenFront
 {
     ControllerId id{};
     std::uint64_t serial{0};
     Front front;
-    std::uint64_t writer{0}; ///< Handle of the last sample's.
-    bool is_disputed{false}; ///< Somebody said that it is gone, perhaps another program.
+    std::uint64_t writer{0}; ///< Handle of the last sample's writer.
+    /// True if a program, perhaps another one, ended this controller's instance.
+    bool is_disputed{false};
 };
 
-/// The viewer's side: the controllers on a domain, each at its newest. One thread.
+/// Reads the newest refinement state of each controller on a domain. One thread.
 class FrontReader
 {
 public:
-    /// Controllers that one reader keeps; fronts of further ones are passed over.
+    /// Maximum number of controllers; samples of further ones are ignored.
     static constexpr std::size_t kMaxSeen = 64;
 
-    /// `domain` must outlive it.
+    /// `domain` must outlive the reader.
     [[nodiscard]] static Result<std::unique_ptr<FrontReader>, Refusal> create(const Domain& domain);
 
-    /// Takes what has come, and forgets controllers that left or fell silent (500 ms). Bounded,
-    /// never waits.
+    /// Takes new samples, and removes controllers that left or fell silent (500 ms). Bounded, never
+    /// waits.
     void poll();
 
-    /// In the order in which they were first seen. Until the next poll().
+    /// States in the order of discovery. Valid until the next poll().
     [[nodiscard]] const std::vector<SeenFront>& fronts() const noexcept { return fronts_; }
-    /// Fronts that contradict themselves, with numbers that can't be or of controllers beyond
+    /// Number of samples refused: inconsistent, with numbers out of range, or of controllers beyond
     /// kMaxSeen.
     [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }
 

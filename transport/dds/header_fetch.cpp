@@ -17,13 +17,14 @@ namespace tactus::dds
 namespace
 {
 
-/// Parts asked for at once: 1.8 MB.
+/// Parts requested at once: 1.8 MB.
 constexpr std::size_t kPartsAtOnce = 64;
-/// Nothing came for so long: asked again. Longer than a round trip of any use to a hand.
+/// Silence after which missing parts are requested again; longer than any round trip that is usable
+/// for haptics.
 constexpr auto kAgain = std::chrono::milliseconds(100);
-/// So long another server may come where all that are there are wrong.
+/// Time in which another server may appear after all present ones sent wrong headers.
 constexpr auto kAnother = std::chrono::seconds(1);
-/// Hosts that are remembered as wrong.
+/// Maximum number of remembered wrong servers.
 constexpr std::size_t kMaxRefused = 256;
 
 } // namespace
@@ -75,7 +76,7 @@ void HeaderFetch::receive(std::uint64_t host_epoch, ContentKey key,
     }
 }
 
-/// While the host is there.
+/// Requests missing parts while the server is present.
 void HeaderFetch::ask()
 {
     if (!catalogue_.has_host(offer_.host_epoch))
@@ -123,7 +124,7 @@ HeaderSearch::HeaderSearch(PieceExchange& exchange, Catalogue& catalogue, ModelS
 
 HeaderSearch::State HeaderSearch::step()
 {
-    bool is_silent = true; // All that are asked.
+    bool is_silent = true; // True if all fetches are silent.
     for (std::size_t i = 0; i < fetches_.size();)
     {
         HeaderFetch& fetch = *fetches_[i];
@@ -168,8 +169,8 @@ void HeaderSearch::refuse(const Catalogue::Offer& offer)
                   { return fetch->offer().host_epoch == host; });
 }
 
-/// Asks others than those that are asked, in the order in which they were seen, as many at the same
-/// time. Where there are more, those that were asked first make room.
+/// Starts fetches from further servers, in the order of discovery, up to `most` at a time. If there
+/// are more, the oldest fetches end.
 void HeaderSearch::look_for_hosts(std::size_t most)
 {
     looked_ = Clock::now();
@@ -184,7 +185,7 @@ void HeaderSearch::look_for_hosts(std::size_t most)
                       return std::ranges::find(refused_, offer->host_epoch) != refused_.end() ||
                              std::ranges::any_of(fetches_, is_it);
                   });
-    // All round: those that come after the last one that was asked, then from the first.
+    // Rotation: servers after the last one that was asked, then from the first.
     const auto after = std::ranges::find_if(others, [this](const Catalogue::Offer* offer)
                                             { return offer->arrival > last_arrival_; });
     std::rotate(others.begin(), after, others.end());

@@ -15,27 +15,27 @@
 namespace tactus::dds
 {
 
-/// Fetches one model's header, part by part, from one host. What a controller needs to plan its
-/// pools, and before it can check anything else. One thread.
+/// Fetches one model's header, part by part, from one server. A controller needs the header to plan
+/// its pools and to verify everything else. One thread.
 class HeaderFetch final : private PieceReceiver
 {
 public:
     enum class State : std::uint8_t
     {
         under_way,
-        silent,  ///< Likewise, but nothing has come for kSilence.
-        done,    ///< header() is whole and has the right hash.
-        refused, ///< For good; objection() tells why.
+        silent,  ///< Under way, but nothing has arrived for kSilence.
+        done,    ///< header() is complete and has the right hash.
+        refused, ///< Final; objection() has the reason.
     };
 
-    /// Both must outlive it.
+    /// `exchange` and `catalogue` must outlive the fetch.
     HeaderFetch(PieceExchange& exchange, const Catalogue& catalogue, const Catalogue::Offer& offer);
     HeaderFetch(const HeaderFetch&) = delete;
     HeaderFetch& operator=(const HeaderFetch&) = delete;
     ~HeaderFetch() { exchange_.remove(*this); }
 
-    /// Asks for what is missing, and again where nothing comes. Never waits; between two calls the
-    /// exchange is to be stepped.
+    /// Requests missing parts, again after a timeout. Never waits; the exchange must be stepped
+    /// between two calls.
     State step();
 
     [[nodiscard]] const ContentHash& model() const override { return offer_.hash; }
@@ -57,14 +57,14 @@ private:
     PartIntake header_;
     State state_{State::under_way};
     std::string objection_;
-    std::size_t open_{0}; ///< Parts that were asked for last and haven't come.
+    std::size_t open_{0}; ///< Parts requested last that have not arrived.
     Clock::time_point asked_{};
-    Clock::time_point progress_; ///< Begun, or a part came, for the last time.
+    Clock::time_point progress_; ///< Time of the start or of the last part.
 };
 
-/// Finds a model and fetches its header from the first of its servers that answers: when one is
-/// silent for kSilence, goes, or sends what is wrong, all others are asked, kHostsAtOnce at the
-/// same time. One thread.
+/// Finds a model and fetches its header from the first of its servers that answers. If one is
+/// silent for kSilence, leaves, or sends wrong bytes, all others are asked, kHostsAtOnce at a time.
+/// One thread.
 class HeaderSearch
 {
 public:
@@ -72,21 +72,22 @@ public:
     {
         not_published,
         under_way,
-        done,    ///< offer() is that of the host that sent header().
-        refused, ///< All that offered it for a second were wrong; objection() tells the last why.
+        done, ///< offer() is that of the server that sent header().
+        /// Every server sent a wrong header for a second; objection() has the last reason.
+        refused,
     };
 
-    /// Both must outlive it.
+    /// `exchange` and `catalogue` must outlive the search.
     HeaderSearch(PieceExchange& exchange, Catalogue& catalogue, ModelSelector selector);
 
-    /// Never waits; between two calls the exchange is to be stepped. Goes on after a refusal: a
-    /// server that is right may come.
+    /// Never waits; the exchange must be stepped between two calls. Continues after a refusal,
+    /// since a correct server may appear.
     State step();
-    /// Its server has shown that it isn't to be asked.
+    /// Excludes the server of this offer from the search.
     void refuse(const Catalogue::Offer& offer);
 
     [[nodiscard]] const ModelSelector& selector() const noexcept { return selector_; }
-    /// Of the host that was asked last, or that sent the header.
+    /// Offer of the server that was asked last, or that sent the header.
     [[nodiscard]] const Catalogue::Offer& offer() const noexcept { return offer_; }
     [[nodiscard]] const std::string& objection() const noexcept { return objection_; }
     [[nodiscard]] std::vector<std::byte>& header() noexcept { return fetches_.front()->header(); }
@@ -99,13 +100,14 @@ private:
     Catalogue& catalogue_;
     ModelSelector selector_;
     Catalogue::Offer offer_;
-    std::vector<std::unique_ptr<HeaderFetch>> fetches_; ///< In the end the one that is done.
-    std::vector<std::uint64_t> refused_;                ///< Hosts that were wrong.
+    /// Open fetches; at the end only the complete one.
+    std::vector<std::unique_ptr<HeaderFetch>> fetches_;
+    std::vector<std::uint64_t> refused_; ///< Servers that sent wrong headers.
     std::string objection_;
     Clock::time_point refused_since_{};
-    Clock::time_point looked_{}; ///< For other hosts.
+    Clock::time_point looked_{}; ///< Time of the last search for other servers.
     std::uint64_t seen_catalogue_{0};
-    std::uint64_t last_arrival_{0}; ///< Of the host that was asked last.
+    std::uint64_t last_arrival_{0}; ///< Arrival number of the server that was asked last.
 };
 
 } // namespace tactus::dds

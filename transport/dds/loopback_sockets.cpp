@@ -22,7 +22,7 @@ namespace
 
 #ifdef SO_BINDTODEVICE
 
-/// Whether datagrams of every interface arrive there.
+/// True if the socket receives datagrams from every interface.
 bool receives_from_everywhere(int descriptor)
 {
     int kind = 0;
@@ -35,11 +35,11 @@ bool receives_from_everywhere(int descriptor)
            address.sin_addr.s_addr == htonl(INADDR_ANY);
 }
 
-/// This process' sockets of that kind, in ascending order.
+/// Sockets of this process that receive from every interface, ascending.
 std::vector<int> open_to_everywhere()
 {
     std::vector<int> found;
-    std::error_code ignored; // One that is gone by now is none.
+    std::error_code ignored; // A descriptor that is closed meanwhile is skipped.
     for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd", ignored))
     {
         const std::string name = entry.path().filename().string();

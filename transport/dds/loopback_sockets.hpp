@@ -9,11 +9,11 @@
 namespace tactus::dds
 {
 
-/// Cyclone 0.10 binds the sockets that it receives by to all interfaces, whichever it is told to
-/// use. Calls `open_sockets` and binds the UDP sockets that are open then, were not before and
-/// receive from every interface to the loopback device: nothing from outside arrives there. Returns
-/// why that failed. No other thread may open such a socket meanwhile. Linux only; elsewhere the
-/// sockets stay as they are.
+/// Restricts sockets to loopback: Cyclone 0.10 binds its receiving sockets to all interfaces, even
+/// when configured for one. Calls `open_sockets`, then binds each UDP socket that it opened for
+/// every interface to the loopback device, so nothing from outside arrives there. Returns the
+/// reason if that fails. No other thread may open such a socket meanwhile. Linux only; on other
+/// systems the sockets stay as they are.
 [[nodiscard]] std::optional<std::string>
 opened_on_loopback(const std::function<void()>& open_sockets);
 

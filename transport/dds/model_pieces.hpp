@@ -16,35 +16,36 @@
 namespace tactus::dds
 {
 
-/// A model under the name by which controllers ask for it.
+/// A model and the name by which controllers request it.
 struct PublishedModel
 {
-    std::string name; ///< Valid, and no other model of this host has it; nothing checks that.
+    std::string name; ///< Valid and unique on this server; not checked.
     ModelStore store;
 };
 
 /// A published model in the pieces that go over the wire: index pages, chunks, and header and base
-/// mesh in parts. One thread, that of the host; reading waits for the file.
+/// mesh in parts. One thread, that of the server; reading waits for the file.
 class ModelPieces
 {
 public:
-    /// Reads the base mesh, which is kept. Refused when that fails, or when header or base mesh are
-    /// larger than a controller takes.
+    /// Reads the base mesh and keeps it. Refused if that fails, or if header or base mesh are
+    /// larger than a controller accepts.
     [[nodiscard]] static Result<ModelPieces, Refusal> create(PublishedModel model);
 
     [[nodiscard]] const PublishedModel& model() const noexcept { return model_; }
     [[nodiscard]] const ModelStore& store() const noexcept { return model_.store; }
 
     [[nodiscard]] bool has(ContentKey key) const noexcept;
-    /// Bytes of a piece that there is.
+    /// Bytes of a piece, which must exist.
     [[nodiscard]] std::size_t bytes(ContentKey key) const noexcept;
-    /// Reads such a piece into `out`, verified; no allocation once that is large enough.
+    /// Reads a piece, which must exist, into `out` and verifies it; no allocation once `out` is
+    /// large enough.
     [[nodiscard]] Result<Done, Refusal> read(ContentKey key, std::vector<std::byte>& out) const;
 
 private:
     explicit ModelPieces(PublishedModel model) : model_(std::move(model)) {}
 
-    /// Header or base mesh; empty for other kinds.
+    /// All bytes of the header or base mesh; empty for other kinds.
     [[nodiscard]] std::span<const std::byte> whole(ContentKind kind) const noexcept;
 
     PublishedModel model_;

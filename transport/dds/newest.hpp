@@ -18,7 +18,7 @@
 namespace tactus::dds
 {
 
-/// Which controller a sample is of: by its participant's GUID.
+/// Controller of a sample: the GUID of its participant.
 template <typename Sample>
 ControllerId controller_of(const Sample& sample)
 {
@@ -27,11 +27,11 @@ ControllerId controller_of(const Sample& sample)
     return id;
 }
 
-/// Takes what has come on a topic whose instances are controllers, so that `seen` has each at its
-/// newest, in the order in which they were first seen, at most `seen_max` of them. Forgets those
-/// that ended. `read` makes a Seen of a sample, but for Seen::writer and Seen::is_disputed, or none
-/// where the sample can't be. Returns how many samples were refused: those, and those of
-/// controllers beyond `seen_max`; the participants' refusals count them as well. Bounded, never
+/// Takes new samples of a topic whose instances are controllers. `seen` then has the newest state
+/// of each controller, in the order of discovery, at most `seen_max`; ended ones are removed.
+/// `read` converts a sample to a Seen, except for Seen::writer and Seen::is_disputed, or returns
+/// none if the sample is invalid. Returns the number of refused samples: invalid ones, and those of
+/// controllers beyond `seen_max`. The participants' refusals count them as well. Bounded, never
 /// waits; allocates.
 template <typename Sample, typename Seen, typename Read>
 [[nodiscard]] std::uint64_t take_newest(const Endpoint& reader, Participants& participants,
@@ -58,7 +58,7 @@ template <typename Sample, typename Seen, typename Read>
         }
         return true;
     };
-    // Of who isn't the controller it is no news.
+    // Only the controller's own participant can end it.
     const auto end = [&](const ControllerId& controller, std::uint64_t writer)
     {
         const auto who = participants.writer_of(writer);

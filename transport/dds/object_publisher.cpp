@@ -23,14 +23,14 @@ namespace tactus::dds
 namespace
 {
 
-/// A pose is sent again this often, a beat apart.
+/// Repetitions of a pose, one a beat.
 constexpr int kRepeats = 3;
-/// An object that has rested for this long gets its record anew, for late joiners.
+/// Rest after which an object's record is sent again, for late joiners.
 constexpr auto kRest = std::chrono::milliseconds(500);
-/// Another writer of motion is made this often at most, and gets so long until it is heard.
+/// Least interval between new writers of motion, and the time until a new one takes over.
 constexpr auto kRenewalEvery = std::chrono::milliseconds(300);
 constexpr auto kHandOver = std::chrono::milliseconds(250);
-/// What it has.
+/// Predicate of a refusal, after the object's name.
 constexpr const char* kBadMaterial =
     "has a material with stiffness not above 0, friction, damping or viscosity below 0, dynamic "
     "friction above static friction, or a texture higher than a thirty-second of its length of "
@@ -97,7 +97,7 @@ Result<std::uint32_t, Refusal> ObjectPublisher::show(const ShownObject& object)
     const std::uint32_t number = free_.back();
     free_.pop_back();
     Slot& slot = slots_[number];
-    const bool is_listed = slot.is_listed; // Of an object that had the number before.
+    const bool is_listed = slot.is_listed; // State of the number's previous object.
     slot = {object, slot.generation + 1, true};
     slot.is_listed = is_listed;
     slot.shown.pose = pose.value();
@@ -224,8 +224,8 @@ void ObjectPublisher::wake(std::uint32_t object)
     }
 }
 
-/// One that finds no room in the writer is written in a later step. Such a write waits for 5 ms, so
-/// there is one in a step at most: a controller that died would else stop all motion.
+/// Writes an object's record. If the writer has no room, a later step does it. Such a write waits
+/// for 5 ms, so there is at most one a step: otherwise a dead controller would stop all motion.
 void ObjectPublisher::write_record(std::uint32_t object)
 {
     Slot& slot = slots_[object];
@@ -253,7 +253,7 @@ void ObjectPublisher::write_record(std::uint32_t object)
     }
 }
 
-/// Likewise. Nobody gets its number before.
+/// Writes the end of an object, under the same limit. Its number stays taken until then.
 void ObjectPublisher::write_end(std::uint32_t object)
 {
     tactus_v5_ObjectRecord record = {};
@@ -279,7 +279,7 @@ void ObjectPublisher::settle(Clock::time_point now)
                       {
                           return false;
                       }
-                      if (slot.owes_record) // It is listed already.
+                      if (slot.owes_record) // The object is already in awake_.
                       {
                           slot.is_shown ? write_record(object) : write_end(object);
                       }
@@ -304,7 +304,7 @@ void ObjectPublisher::send(std::span<const std::uint32_t> moved, Clock::time_poi
     sample.objects = static_cast<std::uint32_t>(count_);
     const auto count = static_cast<std::uint32_t>(moved.size());
     sample.moved = {count, count, objects.data(), false};
-    dds_write(motion_.handle, &sample); // A failure is made good by the next one.
+    dds_write(motion_.handle, &sample); // The next sample replaces a failed one.
     last_sample_ = now;
 }
 

@@ -17,47 +17,47 @@
 namespace tactus::dds
 {
 
-/// A host with objects is heard this often, whether they move or not: controllers take poses for
-/// stale after 100 ms of silence, four lost samples in a row do no harm.
+/// Interval at which a server with objects sends motion, whether they move or not. Controllers take
+/// poses for stale after 100 ms of silence, so four lost samples in a row do no harm.
 inline constexpr std::chrono::milliseconds kMotionBeat{20};
 
-/// Shows objects to controllers while a program runs: they come, move and go. DdsHost has one, and
-/// steps it. One thread. move() never waits; the others may, for 5 ms and once a step, where
-/// controllers don't take what was written.
+/// Shows objects to controllers while a program runs: objects are added, moved and removed. DdsHost
+/// has one, and steps it. One thread. move() never waits; the other calls may, for 5 ms and once a
+/// step, if controllers do not take what was written.
 class ObjectPublisher
 {
 public:
-    /// `domain` must outlive it; `models` are those that the host serves.
+    /// `domain` must outlive the publisher; `models` are the hashes that the server has.
     [[nodiscard]] static Result<std::unique_ptr<ObjectPublisher>, Refusal>
     create(const Domain& domain, std::vector<ContentHash> models);
 
-    /// The object is there from now on; its number, by which it is moved, pushed and removed. In
-    /// telemetry it has the same. Refused, with nothing shown: a bad name, material or pose, a
-    /// model that isn't served, or kMaxObjects are there.
+    /// Adds an object. Returns its number for move(), feel(), remove() and telemetry. Refused, with
+    /// nothing shown: a bad name, material or pose, a model that the server lacks, or kMaxObjects
+    /// reached.
     [[nodiscard]] Result<std::uint32_t, Refusal> show(const ShownObject& object);
-    /// It stands there from the next step() on. Refused, with nothing changed, when the numbers
-    /// aren't a pose. There must be such an object (asserted), as for remove().
+    /// Sets the pose from the next step() on. Refused, with nothing changed, if the numbers are not
+    /// a pose. The object must exist (asserted), also for the calls below.
     [[nodiscard]] Result<Done, PoseRefusal> move(std::uint32_t object, const Pose& pose);
-    /// It feels so from now on. Refused, with nothing changed, when the numbers aren't a material.
-    /// May wait as show(), where nobody took what was said before.
+    /// Sets the material. Refused, with nothing changed, if the numbers are not a material. May
+    /// wait like show() if controllers have not taken earlier samples.
     [[nodiscard]] Result<Done, Refusal> feel(std::uint32_t object, const Material& material);
-    /// It is gone; another one may get its number, once controllers were told.
+    /// Removes an object. Its number is reused only after controllers were notified.
     void remove(std::uint32_t object);
 
-    /// Sends what has moved, all in one sample where it fits, and says that the host is there.
-    /// Call it after moving, and every kMotionBeat at least. 0.1 us and less where all rests.
+    /// Sends all motion, in one sample if it fits, and the sign that the server is present. Call it
+    /// after moving, and at least every kMotionBeat. 0.1 us or less if nothing moves.
     void step();
 
-    /// Another writer takes the place of the one that tells what moves, as soon as it is heard by
-    /// as many, or after 250 ms: until then both are there, so no controller misses one. Three
-    /// times a second at most; false when it is not due.
+    /// Replaces the writer of motion. The new one takes over once it has as many readers, or after
+    /// 250 ms; until then both exist, so no controller misses a sample. Three times a second at
+    /// most; false if it is not due.
     bool try_renew_motion(std::chrono::steady_clock::time_point now);
 
-    /// When step() has something to do though nothing moves; far off when nothing was ever shown.
+    /// Time when step() has work though nothing moves; far in the future if nothing was ever shown.
     [[nodiscard]] std::chrono::steady_clock::time_point next_beat() const noexcept;
 
     [[nodiscard]] std::size_t objects() const noexcept { return count_; }
-    /// Null where there is none of that number.
+    /// Null if there is no object of that number.
     [[nodiscard]] const ShownObject* find(std::uint32_t object) const noexcept;
 
 private:
@@ -67,10 +67,10 @@ private:
         ShownObject shown;
         std::uint32_t generation{0};
         bool is_shown{false};
-        bool is_listed{false};   ///< In awake_.
-        bool has_moved{false};   ///< Since it was sent.
-        bool owes_record{false}; ///< What was written last isn't how it stands.
-        int repeats{0};          ///< Of its pose, in case that samples get lost.
+        bool is_listed{false};   ///< True if the object is in awake_.
+        bool has_moved{false};   ///< True if the object moved since the last sample.
+        bool owes_record{false}; ///< True if the last record written is outdated.
+        int repeats{0};          ///< Repetitions of its pose, in case samples are lost.
         Clock::time_point moved{};
         Clock::time_point sent{};
     };
@@ -89,11 +89,11 @@ private:
     std::vector<ContentHash> models_;
     Endpoint records_;
     Endpoint motion_;
-    Endpoint next_motion_; ///< Takes its place.
+    Endpoint next_motion_; ///< Writer that replaces `motion_`.
     Clock::time_point renewed_{};
     std::vector<Slot> slots_;
-    std::vector<std::uint32_t> free_;  ///< Numbers that were used.
-    std::vector<std::uint32_t> awake_; ///< Numbers of those that don't rest.
+    std::vector<std::uint32_t> free_;  ///< Free numbers that were used before.
+    std::vector<std::uint32_t> awake_; ///< Numbers of the objects that are not at rest.
     std::vector<std::uint32_t> due_;
     std::size_t count_{0};
     std::uint64_t serial_{0};

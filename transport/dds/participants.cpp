@@ -23,7 +23,7 @@ namespace tactus::dds
 namespace
 {
 
-/// Handles that are remembered: of writers long gone, too.
+/// Maximum number of remembered handles, including those of deleted writers.
 constexpr std::size_t kMaxKnown = 16'384;
 constexpr std::string_view kTopicRoot = "tactus/v";
 
@@ -34,9 +34,9 @@ ParticipantId id_of(const dds_guid_t& guid)
     return id;
 }
 
-/// Takes what DDS has published since the last call: calls `visit(sample)` with what is there and
-/// `forget(sample)`, of which the key alone is set, with what is gone. That is taken from the
-/// reader `kept` as well, which would keep it without end. 1 us without news.
+/// Takes DDS's changes since the last call: calls `visit(sample)` for present entries and
+/// `forget(sample)`, with only the key set, for ended ones. These are also taken from the reader
+/// `kept`, which would keep them forever. 1 us without changes.
 template <typename Sample, typename Visit, typename Forget>
 void take_news(std::int32_t news, std::int32_t kept, Visit&& visit, Forget&& forget)
 {
@@ -59,7 +59,7 @@ void take_news(std::int32_t news, std::int32_t kept, Visit&& visit, Forget&& for
         });
 }
 
-/// Calls `visit(about, info)` with what DDS tells of a participant; never for an unknown one.
+/// Calls `visit(about, info)` with DDS's data of a participant; never for an unknown one.
 template <typename Visit>
 void read_participant(std::int32_t reader, const ParticipantId& who, Visit&& visit)
 {
@@ -87,7 +87,7 @@ std::string property(const dds_qos_t* qos, const char* name)
     return text;
 }
 
-/// The version that a topic is of; nothing for one that isn't ours in any.
+/// Protocol version of a topic; none for a topic that is not of Tactus.
 std::optional<std::string> version_of(const char* topic)
 {
     std::string_view name(topic == nullptr ? "" : topic);
@@ -195,8 +195,9 @@ void Participants::report_other_versions(RateLimitedLog& log)
         [](const dds_builtintopic_endpoint_t&) {});
 }
 
-/// Cyclone keeps some KB of each participant that was heard until its lease ends, which its own
-/// word sets, and has no bound: all that can be done is to say so.
+/// Reports processes with many participants. Cyclone keeps some KB of each participant until its
+/// lease ends, without a bound, and a participant chooses its own lease; reporting is the only
+/// defence.
 void Participants::report_crowds(RateLimitedLog& log)
 {
     take_news<dds_builtintopic_participant_t>(
@@ -328,7 +329,7 @@ bool Participants::is_called(const ParticipantId& who, const std::string& server
 
 std::string Participants::certificate_of(const ParticipantId& who) const
 {
-    constexpr std::uint8_t kSecured = 0x80; // Without security a GUID begins with the vendor's 01.
+    constexpr std::uint8_t kSecured = 0x80; // Without security, a GUID begins with the vendor's 01.
     constexpr std::size_t kBytes = 6;
     if ((own_[0] & kSecured) == 0 || (who[0] & kSecured) == 0)
     {

@@ -18,13 +18,13 @@ namespace tactus::dds
 namespace
 {
 
-/// A sign of life and the credit, also when there is nothing to ask for.
+/// Interval of the sign of life with the credit, even without requests.
 constexpr auto kRenewal = std::chrono::milliseconds(200);
-/// Nothing came for this long though something was asked for: the credit is written off.
+/// Silence after a request, after which the credit is written off.
 constexpr auto kWriteOff = std::chrono::milliseconds(400);
 /// Samples taken in one step; the rest waits in the reader for the next one.
 constexpr std::size_t kPiecesPerStep = 256;
-/// Hosts whose credit is kept though they are gone: one that was thought dead goes on counting.
+/// Servers that are gone but whose credit is kept: one that was thought dead continues its count.
 constexpr std::size_t kHostsKept = 64;
 
 } // namespace
@@ -76,7 +76,7 @@ void PieceExchange::ask_for_objects(std::uint64_t host_epoch)
     if (host.objects == Objects::not_wanted)
     {
         host.objects = Objects::waits;
-        host.last_sent = {}; // At once.
+        host.last_sent = {}; // Send at once.
     }
 }
 
@@ -122,7 +122,7 @@ void PieceExchange::step()
         }
         else
         {
-            host.wishes.clear(); // Asked again by who wishes, of whoever serves the model then.
+            host.wishes.clear(); // The requester asks again, then any server of the model.
             host.awaits_pieces = false;
         }
     }
@@ -209,7 +209,7 @@ void PieceExchange::keep_credit(Host& host)
     {
         host.credit.write_off();
         host.last_progress = now;
-        if (++host.write_offs > 1) // It may be deaf to our writers, by a forged packet.
+        if (++host.write_offs > 1) // A forged packet may have made the server ignore our writers.
         {
             if (auto old = wanted_->try_renew(now))
             {
@@ -224,8 +224,8 @@ void PieceExchange::keep_credit(Host& host)
     }
 }
 
-/// All wishes, or a sign of life. They count as sent even if that fails: a lost request, which is
-/// made again.
+/// Sends the requests, or a sign of life. They count as sent even if that fails: a lost request is
+/// repeated.
 void PieceExchange::send(Host& host)
 {
     const auto now = Clock::now();

@@ -22,12 +22,12 @@
 namespace tactus::dds
 {
 
-/// When nothing came of a host for so long though it was asked, others that serve the same are
-/// asked, so many at the same time: most may be strangers that never answer.
+/// Silence after which other servers with the same model are asked, and how many at the same time:
+/// most may be unknown participants that never answer.
 inline constexpr std::chrono::milliseconds kSilence{300};
 inline constexpr std::size_t kHostsAtOnce = 64;
 
-/// Gets the pieces of one model. The bytes are not verified, and valid only during the call.
+/// Receives the pieces of one model. The bytes are not verified, and valid only during the call.
 class PieceReceiver
 {
 public:
@@ -39,41 +39,44 @@ protected:
     ~PieceReceiver() = default;
 };
 
-/// A controller's side of wishes and pieces, of all its models and hosts: one pair of endpoints,
-/// and a credit for each host. One thread; no call waits.
+/// A controller's requests and pieces, for all its models and servers: one pair of endpoints, and a
+/// credit for each server. One thread; no call waits.
 class PieceExchange
 {
 public:
-    /// `domain` and `catalogue` must outlive it. `controller_name` is a valid one.
+    /// `domain` and `catalogue` must outlive the exchange. `controller_name` must be valid.
     [[nodiscard]] static Result<std::unique_ptr<PieceExchange>, Refusal>
     create(const Domain& domain, Catalogue& catalogue, std::string controller_name);
 
-    /// What comes of its model goes to the receiver until it is taken out.
+    /// Sends the pieces of its model to the receiver until remove().
     void add(PieceReceiver& receiver) { receivers_.push_back(&receiver); }
     void remove(PieceReceiver& receiver) { std::erase(receivers_, &receiver); }
 
-    /// Tells the host that we are there, though nothing is wished for yet.
+    /// Announces the controller to the server before the first request.
     void meet(std::uint64_t host_epoch) { static_cast<void>(host_of(host_epoch)); }
 
-    /// Wishes for pieces of one of a host's models, most urgent first; they leave with the next
-    /// step(). A newer generation goes before what is still waiting.
+    /// Requests pieces of one of a server's models, most urgent first; they are sent with the next
+    /// step(). A newer generation goes before requests that still wait.
     void ask(std::uint64_t host_epoch, std::uint32_t model, std::span<const ContentKey> keys,
              std::uint32_t generation);
 
-    /// The host's objects are wanted; it says when they may be read, which is_let_in() tells.
+    /// Requests the server's objects. The server admits the controller when they may be read;
+    /// is_let_in() reports that.
     void ask_for_objects(std::uint64_t host_epoch);
     [[nodiscard]] bool is_let_in(std::uint64_t host_epoch) const;
-    /// Makes room for the next one. `hears_motion` false: asks the host for another writer of
-    /// motion, whose readers a forged packet can make deaf.
+    /// Reports to the server that the objects have arrived, so that it admits the next controller.
+    /// If `hears_motion` is false, requests another writer of motion: a forged packet can make
+    /// readers ignore a writer.
     void tell_objects_are_here(std::uint64_t host_epoch, bool hears_motion);
-    /// They aren't wanted any more; who wants them again waits again.
+    /// Withdraws the request for objects. A later request waits for admission again.
     void leave_objects(std::uint64_t host_epoch);
 
-    /// Refreshes the catalogue, hands over what has come, sends wishes and what is due.
+    /// Refreshes the catalogue, delivers received pieces, sends requests and signs of life that are
+    /// due.
     void step();
-    /// What is served now, as of the last step().
+    /// Models served as of the last step().
     [[nodiscard]] const Catalogue& catalogue() const noexcept { return catalogue_; }
-    /// How often that was called.
+    /// Number of calls of step().
     [[nodiscard]] std::uint64_t steps() const noexcept { return steps_; }
 
 private:
@@ -91,9 +94,9 @@ private:
         CreditWindow credit{kCreditPieces};
         std::vector<HostPiece> wishes;
         std::uint32_t generation{0};
-        std::uint64_t granted_sent{0}; ///< As last told to the host.
-        std::uint32_t write_offs{0};   ///< Since the last sample came.
-        bool awaits_pieces{false};     ///< Something was asked for since the last sample came.
+        std::uint64_t granted_sent{0}; ///< Count in the last request to the server.
+        std::uint32_t write_offs{0};   ///< Write-offs since the last sample.
+        bool awaits_pieces{false};     ///< True if there was a request since the last sample.
         bool is_let_in{false};
         Objects objects{Objects::not_wanted};
         Clock::time_point last_sent{};
@@ -113,8 +116,9 @@ private:
     Catalogue& catalogue_;
     std::string controller_name_;
     ControllerId controller_;
-    std::unique_ptr<WriterLanes> wanted_; ///< From create() on.
-    std::shared_ptr<void> old_wanted_; ///< Writers before the last renewal: hosts may go by them.
+    std::unique_ptr<WriterLanes> wanted_; ///< Valid after create().
+    /// Writers before the last renewal: servers may identify this controller by them.
+    std::shared_ptr<void> old_wanted_;
     Endpoint chunks_;
     std::vector<PieceReceiver*> receivers_;
     std::vector<Host> hosts_;

@@ -14,14 +14,14 @@
 namespace tactus::dds
 {
 
-/// Bytes in front of each piece in a payload: its WireKey and its length.
+/// Bytes before each piece in a payload: its WireKey and its length.
 inline constexpr std::size_t kFrameBytes = sizeof(WireKey) + sizeof(std::uint32_t);
 
 /// Appends one piece to a payload. No allocation while the payload's capacity suffices.
 void append_piece(std::vector<std::byte>& payload, const WireKey& key,
                   std::span<const std::byte> bytes);
 
-/// Reads a payload from outside, piece by piece.
+/// Reads an untrusted payload, piece by piece.
 class PieceReader
 {
 public:
@@ -33,10 +33,10 @@ public:
 
     explicit PieceReader(std::span<const std::byte> payload) noexcept : reader_(payload) {}
 
-    /// The next piece; nothing at the end and where the framing is broken.
+    /// The next piece; none at the end or if the framing is broken.
     [[nodiscard]] std::optional<Piece> next() noexcept;
 
-    /// Whether the payload did not end with a whole piece.
+    /// True if the payload did not end with a whole piece.
     [[nodiscard]] bool is_broken() const noexcept { return reader_.failed(); }
 
 private:

@@ -11,11 +11,12 @@ struct tactus_v5_Placement;
 namespace tactus::dds
 {
 
-/// A pose to the wire, and from it as it came: see checked_pose().
+/// Conversion of a pose to and from the wire, unchecked: see checked_pose().
 [[nodiscard]] tactus_v5_Placement to_wire(const Pose& pose) noexcept;
 [[nodiscard]] Pose from_wire(const tactus_v5_Placement& wire) noexcept;
 
-/// A material likewise; see is_sound(). 0 is the stiffness of one that has none of its own.
+/// Conversion of a material to and from the wire, unchecked: see is_sound(). A stiffness of 0 on
+/// the wire means none of its own.
 void put_material(const Material& material, tactus_v5_ObjectRecord& wire) noexcept;
 [[nodiscard]] Material material_of(const tactus_v5_ObjectRecord& wire) noexcept;
 

@@ -17,7 +17,7 @@ namespace tactus::dds
 namespace
 {
 
-/// What a line says; empty where the place that refuses says more.
+/// Text of a log line; empty if the refusing code logs more.
 std::string reason_of(Refused reason, std::uint32_t number)
 {
     switch (reason)
@@ -84,7 +84,7 @@ void Refusals::count(const ParticipantId& peer, Refused reason, std::uint32_t nu
     has_news_ = true;
 }
 
-/// Names are looked up and lines written without the lock, for which Cyclone's threads may wait.
+/// Looks up names and writes lines without the lock, for which Cyclone's threads may wait.
 void Refusals::report(RateLimitedLog& log,
                       const std::function<std::string(const ParticipantId&)>& name_of)
 {
@@ -104,7 +104,7 @@ void Refusals::report(RateLimitedLog& log,
     }
 }
 
-/// Those that are due, of the peers that have a name by now.
+/// Lines that are due, for the peers in `names`.
 std::vector<std::string> Refusals::take_lines(std::span<const std::string> names)
 {
     std::vector<std::string> lines;

@@ -17,62 +17,64 @@
 namespace tactus::dds
 {
 
-/// A participant's GUID: names a controller on the wire.
+/// GUID of a participant: names a controller on the wire.
 using ParticipantId = std::array<std::uint8_t, 16>;
 
-/// Why something that another program said on the domain changed nothing here. Poses that an object
-/// moves to are counted beside the object (PoseRefusal).
+/// Reason why a sample of another program on the domain was refused. Refused poses of moving
+/// objects are counted at the object (PoseRefusal).
 enum class Refused : std::uint8_t
 {
-    identity,      ///< A sample names another host or controller than it comes from.
-    object_number, ///< An object from kMaxObjects on,
-    model_number,  ///< or a model from kMaxModels on.
+    identity,      ///< Sample that names another server or controller than its sender.
+    object_number, ///< Object number from kMaxObjects on.
+    model_number,  ///< Model number from kMaxModels on.
     object_name,
     object_material,
-    object_pose, ///< Where it comes.
-    not_served,  ///< An object of a model that its host doesn't serve.
-    model_name,  ///< Or that of its scene.
+    object_pose, ///< Pose of a new object.
+    not_served,  ///< Object of a model that its server lacks.
+    model_name,  ///< Invalid name of a model or of its scene.
     model_room,  ///< More models than are remembered.
-    controller,  ///< Its name is none, or there are too many.
-    wish,        ///< For a piece that there isn't.
-    telemetry,   ///< Or a front: names or numbers that are none, or too many to watch.
-    rate,        ///< More pieces asked for in a second than a host takes in.
+    controller,  ///< Invalid name of a controller, or too many controllers.
+    wish,        ///< Request for a piece that does not exist.
+    /// Telemetry or refinement state with invalid names or numbers, or of too many controllers.
+    telemetry,
+    rate, ///< More pieces requested in a second than a server accepts.
 };
 inline constexpr std::size_t kRefusedKinds = 13;
 
-/// What of one participant was refused.
+/// Refusals of one participant.
 struct PeerRefusals
 {
-    ParticipantId id{}; ///< Zeros: of many, or of writers that were gone when they were heard.
-    std::string name;   ///< The program with its process and machine.
-    std::array<std::uint64_t, kRefusedKinds> counts{}; ///< In the order of Refused.
+    /// GUID; zeros: several participants, or writers that were gone when their samples arrived.
+    ParticipantId id{};
+    std::string name;                                  ///< Program, process and machine.
+    std::array<std::uint64_t, kRefusedKinds> counts{}; ///< Counts in the order of Refused.
 };
 
-/// In the order of Refused: keys of the report.
+/// Names in the order of Refused, as keys of the report.
 [[nodiscard]] const std::array<const char*, kRefusedKinds>& refused_names() noexcept;
 
-/// What was refused, of whom and why. Any thread.
+/// Counts of refusals by participant and reason. Any thread.
 class Refusals
 {
 public:
-    /// Participants that are told apart; those that come later are counted together.
+    /// Maximum number of participants counted separately; later ones are counted together.
     static constexpr std::size_t kMaxPeers = 64;
 
-    /// `number` is that of the object or model, for the line.
+    /// Counts one refusal. `number` is that of the object or model, for the log line.
     void count(const ParticipantId& peer, Refused reason, std::uint32_t number = 0);
 
-    /// Writes a line for each participant and reason when the first one was refused, the tenth, the
-    /// hundredth, and so on. What is told of where it is refused has none here.
+    /// Logs, for each participant and reason, the first refusal, the tenth, the hundredth, and so
+    /// on. Refusals that are logged where they happen have no line here.
     void report(RateLimitedLog& log,
                 const std::function<std::string(const ParticipantId&)>& name_of);
 
-    /// In the order in which they were first refused something.
+    /// Participants in the order of their first refusal.
     [[nodiscard]] std::vector<PeerRefusals> list() const;
 
 private:
     struct Reason
     {
-        std::uint32_t first{0}; ///< Number of the first object or model.
+        std::uint32_t first{0}; ///< Number of the first refused object or model.
         std::uint64_t told_at{1};
     };
     struct Peer

@@ -25,14 +25,13 @@ namespace
 /// Samples taken in one poll; the rest waits for the next.
 constexpr std::size_t kRecordsPerPoll = 1'024;
 constexpr std::size_t kMotionPerPoll = 128;
-/// A host that says how many objects it has should have told of them by then.
+/// Time after which the objects of a server count as complete, even if it announced more.
 constexpr auto kCompleteMax = std::chrono::seconds(2);
-/// A host tells of its models every second: the model of an object should be known by then.
+/// Time in which a server announces an object's model: it does so every second.
 constexpr auto kServedMax = std::chrono::seconds(2);
-/// What a host says of its objects after so long, it says after what it said before.
+/// Delay after which a server's count of objects includes its earlier changes.
 constexpr auto kDispute = std::chrono::milliseconds(40);
-/// A host with objects is heard every 20 ms; one that isn't for so long is asked for another
-/// writer.
+/// Silence after which a server is asked for another writer of motion; it sends every 20 ms.
 constexpr auto kMotionLost = std::chrono::milliseconds(300);
 
 } // namespace
@@ -72,7 +71,7 @@ void SceneReader::poll(std::span<const std::uint64_t> hosts, const Take& take)
         look_at_strangers(epoch, host, take);
         if (!host.is_complete && Clock::now() - host.since > kCompleteMax)
         {
-            host.is_complete = true; // As far as can be told.
+            host.is_complete = true; // Complete as far as can be known.
         }
         if (host.is_complete)
         {
@@ -121,8 +120,8 @@ void SceneReader::join(std::uint64_t epoch, Host& host)
     host.since = host.heard = Clock::now();
 }
 
-/// What a host that was gone says when it is back is read by other readers: those that there were
-/// don't tell what it removed meanwhile.
+/// Replaces the readers when a server returns: the old ones do not report its removals in the
+/// meantime.
 void SceneReader::watch(std::uint64_t epoch, Host& host)
 {
     const bool was_gone = std::exchange(host.is_gone, !exchange_.catalogue().has_host(epoch));
@@ -153,7 +152,7 @@ void SceneReader::drop_unconfirmed(Host& host, const Take& take)
 
 void SceneReader::take_records(std::uint64_t epoch, Host& host, const Take& take)
 {
-    std::map<std::uint64_t, bool> writers; // Asked once a call.
+    std::map<std::uint64_t, bool> writers; // Result by writer, to query each one once a call.
     const auto is_there = [&](std::uint64_t writer)
     {
         const auto [known, is_new] = writers.try_emplace(writer, false);
@@ -183,7 +182,7 @@ void SceneReader::take_records(std::uint64_t epoch, Host& host, const Take& take
             {
                 if (!is_there(info.publication_handle))
                 {
-                    return; // It is gone, not the object.
+                    return; // The writer is gone, not the object.
                 }
                 host.disputed.erase(record.object);
                 host.strangers.erase(record.object);
@@ -196,7 +195,7 @@ void SceneReader::take_records(std::uint64_t epoch, Host& host, const Take& take
         });
 }
 
-/// Why nothing came of it; none when it is fine.
+/// Processes one record; returns the reason of a refusal, or none.
 std::optional<Refused> SceneReader::take_record(Host& host, const tactus_v5_ObjectRecord& record,
                                                 const Take& take)
 {
@@ -249,8 +248,8 @@ std::optional<Refused> SceneReader::take_record(Host& host, const tactus_v5_Obje
     return std::nullopt;
 }
 
-/// Another writer counts from its own beginning: what a packet in the last one's name counted up
-/// to is forgotten.
+/// Restarts the serial numbers for another writer: a packet in the last one's name may have raised
+/// them.
 void SceneReader::begin_with(Host& host, std::uint64_t writer)
 {
     if (host.motion_writer == 0 || host.motion_writer == writer)
@@ -264,8 +263,8 @@ void SceneReader::begin_with(Host& host, std::uint64_t writer)
     }
 }
 
-/// A packet in a writer's name that tells of a much later sample makes Cyclone take all others of
-/// that writer for old.
+/// Records that motion was heard. A packet in a writer's name with a much later sample number makes
+/// Cyclone drop all others of that writer.
 void SceneReader::hear(std::uint64_t epoch, Host& host, std::uint64_t writer)
 {
     const auto now = Clock::now();
@@ -302,7 +301,8 @@ void SceneReader::take_motion(std::uint64_t epoch, Host& host, const Take& take)
                 const auto known = host.objects.find(moved.object);
                 if (known == host.objects.end() || known->second.generation != moved.generation)
                 {
-                    continue; // Its record is on its way, or it is gone or a stranger.
+                    // The object's record is still in transit, or the object is gone or a stranger.
+                    continue;
                 }
                 SeenObject& object = known->second;
                 is_news = is_news && motion.serial > object.serial;
@@ -312,8 +312,8 @@ void SceneReader::take_motion(std::uint64_t epoch, Host& host, const Take& take)
                     take(SceneNews::moves, object);
                 }
             }
-            // One that is passed over as old is as good as none: by and by another writer is asked
-            // for.
+            // Samples that are ignored as old count as silence: eventually another writer is
+            // requested.
             if (is_news)
             {
                 host.motion_serial = motion.serial;
@@ -324,7 +324,7 @@ void SceneReader::take_motion(std::uint64_t epoch, Host& host, const Take& take)
         });
 }
 
-/// The host says how many there are.
+/// Removes disputed objects if the server's count of objects confirms it.
 void SceneReader::settle_disputed(Host& host, std::uint32_t objects, const Take& take)
 {
     const auto now = Clock::now();
@@ -345,7 +345,7 @@ void SceneReader::settle_disputed(Host& host, std::uint32_t objects, const Take&
     }
 }
 
-/// Those whose model is served by now come; the others are told of once.
+/// Adds strangers whose model has become available, and logs each of the others once.
 void SceneReader::look_at_strangers(std::uint64_t epoch, Host& host, const Take& take)
 {
     const auto now = Clock::now();
@@ -374,7 +374,7 @@ void SceneReader::look_at_strangers(std::uint64_t epoch, Host& host, const Take&
     }
 }
 
-/// Whether the pose was accepted; counted either way.
+/// Applies a pose; true if accepted. Counts it either way.
 bool SceneReader::try_move(SeenObject& object, std::uint64_t serial, const tactus_v5_Placement& to)
 {
     const auto refuse = [&](PoseRefusal refusal)

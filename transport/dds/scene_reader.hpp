@@ -27,24 +27,24 @@ struct tactus_v5_Placement;
 namespace tactus::dds
 {
 
-/// What has come of an object's poses.
+/// Counts of an object's poses.
 struct PoseCounts
 {
     std::uint64_t accepted{0};
-    std::array<std::uint64_t, kPoseRefusals> refused{}; ///< In the order of PoseRefusal.
+    std::array<std::uint64_t, kPoseRefusals> refused{}; ///< Counts in the order of PoseRefusal.
 
     [[nodiscard]] std::uint64_t refused_in_all() const noexcept;
 };
 
-/// An object as its host shows it at present.
+/// An object as its server shows it at present.
 struct SeenObject
 {
     std::uint64_t host_epoch{0};
-    std::uint32_t number{0}; ///< On that host.
+    std::uint32_t number{0}; ///< Number on that server.
     std::uint32_t generation{0};
-    ShownObject shown; ///< Its pose has a rotation of length 1.
+    ShownObject shown; ///< Object; its pose has a rotation of length 1.
     std::uint64_t serial{0};
-    std::int64_t host_time_ns{0}; ///< Of the pose; 0: it came with the object.
+    std::int64_t host_time_ns{0}; ///< Server time of the pose; 0: the pose came with the object.
     PoseCounts counts;
 };
 
@@ -52,51 +52,52 @@ enum class SceneNews : std::uint8_t
 {
     comes,
     moves,
-    feels, ///< Otherwise than before.
+    feels, ///< The material changed.
     goes,
 };
 
-/// The controller's side of objects: those of the hosts that it follows, checked. A host lets in a
-/// few controllers at a time, so the objects come a little later than the host is followed. What is
-/// older than what is here, or no pose, is counted and passed over. An object of a model that its
-/// host doesn't serve isn't there: it comes when the host serves it. The objects of a host that is
-/// gone stay as they are; when it is back what it doesn't show any more goes. One thread, that of
-/// the exchange; no call waits.
+/// The controller's side of objects: those of the servers that it follows, checked. A server admits
+/// a few controllers at a time, so the objects arrive a little later than the server is followed.
+/// Outdated and invalid poses are counted and ignored. An object of a model that its server lacks
+/// is hidden until the server has it. The objects of a server that is gone stay as they are; when
+/// it returns, those it no longer shows are removed. One thread, that of the exchange; no call
+/// waits.
 class SceneReader
 {
 public:
-    /// Both must outlive it. `log` gets, at a limited rate, a line for each object of a model that
-    /// its host doesn't serve within two seconds.
+    /// `domain` and `exchange` must outlive the reader. `log` gets, at a limited rate, a line for
+    /// each object of a model that its server lacks for two seconds.
     SceneReader(const Domain& domain, PieceExchange& exchange, Log log = {})
         : domain_(domain), exchange_(exchange), log_(std::move(log))
     {
     }
 
-    /// Follows these hosts and no others, and tells what has become of their objects; an object
-    /// that is another one under its number goes and comes. Bounded. What `take`, not empty, gets
-    /// is valid during its call.
+    /// Follows exactly these servers and reports changes of their objects to `take`, which must not
+    /// be empty; its argument is valid during the call. An object that is replaced under its number
+    /// is removed and added. Bounded.
     void poll(std::span<const std::uint64_t> hosts,
               const std::function<void(SceneNews, const SeenObject&)>& take);
 
-    /// Whether the host was heard in the last poll: all its objects stand as they were told.
+    /// True if the server was heard in the last poll: its objects are as last reported.
     [[nodiscard]] bool was_heard(std::uint64_t host_epoch) const;
-    /// Whether all that the host shows is here.
+    /// True if all objects that the server shows have arrived.
     [[nodiscard]] bool is_complete(std::uint64_t host_epoch) const;
 
-    /// By number, until the next poll(); empty for a host that isn't followed.
+    /// Objects by number, valid until the next poll(); empty for a server that is not followed.
     [[nodiscard]] const std::map<std::uint32_t, SeenObject>&
     objects(std::uint64_t host_epoch) const;
 
-    /// How often a host's motion was lost though the host was there, and came by another writer.
+    /// Number of times that motion from a present server was lost and then received from another
+    /// writer.
     [[nodiscard]] std::uint64_t motion_regained() const noexcept { return motion_regained_; }
 
-    /// Hosts whose objects can't be read; a line each, of the last poll.
+    /// Servers whose objects cannot be read, one line each, as of the last poll.
     [[nodiscard]] const std::string& fault() const noexcept { return fault_; }
 
 private:
     using Clock = std::chrono::steady_clock;
     using Take = std::function<void(SceneNews, const SeenObject&)>;
-    /// An object of a model that its host doesn't serve.
+    /// An object of a model that its server lacks.
     struct Stranger
     {
         SeenObject object;
@@ -105,24 +106,26 @@ private:
     };
     struct Host
     {
-        Endpoint records; ///< Once it has let us in.
+        Endpoint records; ///< Valid once the server has admitted the controller.
         Endpoint motion;
         std::map<std::uint32_t, SeenObject> objects;
-        std::map<std::uint32_t, Stranger> strangers; ///< By number: none that is an object.
-        /// Of which somebody said that they went, perhaps another program, and when.
+        /// Strangers by number; none of them is in `objects`.
+        std::map<std::uint32_t, Stranger> strangers;
+        /// Objects that a program, perhaps another one, ended, and the time of that.
         std::map<std::uint32_t, Clock::time_point> disputed;
-        /// Here from before the host was gone, and not told of since it is back.
+        /// Objects from before the server was gone, not confirmed since its return.
         std::set<std::uint32_t> unconfirmed;
         std::uint64_t seen_catalogue{0};
         bool was_heard{false};
         bool is_complete{false};
         bool is_gone{false};
         Clock::time_point since{};
-        Clock::time_point heard{};      ///< Its motion, or that it may be.
-        std::uint64_t motion_writer{0}; ///< Handle of the last one that was heard.
-        std::uint64_t motion_serial{0}; ///< What it had counted up to.
+        /// Time of its last motion, or of the subscription to it.
+        Clock::time_point heard{};
+        std::uint64_t motion_writer{0}; ///< Handle of the writer of motion that was heard last.
+        std::uint64_t motion_serial{0}; ///< Highest serial number from that writer.
 
-        /// As far as the host has told of them.
+        /// Number of objects that the server has described so far.
         [[nodiscard]] std::size_t known() const
         {
             return objects.size() - unconfirmed.size() + strangers.size();

@@ -14,7 +14,7 @@ namespace tactus::dds
 namespace
 {
 
-/// Longer than a lost datagram takes to be sent again.
+/// Time after which pieces count as missing; longer than the repetition of a lost datagram takes.
 constexpr auto kOverdue = std::chrono::milliseconds(300);
 
 } // namespace
@@ -50,7 +50,7 @@ std::shared_ptr<void> Subscription::try_heal(Backoff::Clock::time_point now)
 {
     if (lost_ <= given_up_)
     {
-        given_up_ = lost_; // Late ones have come.
+        given_up_ = lost_; // Late pieces have arrived.
         overdue_since_ = now;
         return nullptr;
     }
@@ -68,12 +68,12 @@ bool Subscription::send_one(std::uint64_t host_epoch, std::span<const ModelPiece
 {
     if (!has_work() || !writers_.is_matched())
     {
-        return false; // Written before the reader is known, a sample would reach nobody.
+        return false; // A sample written before the reader is known would be lost.
     }
     const std::uint64_t pieces = fill(models, room, log);
     if (pieces == 0 || !write(host_epoch, pieces, false, room.payload))
     {
-        return false; // The pieces count as lost: the controller asks again.
+        return false; // The pieces count as lost: the controller requests them again.
     }
     sent_ += pieces;
     pieces_sent_ += pieces;

@@ -22,19 +22,19 @@
 namespace tactus::dds
 {
 
-/// Room that all subscriptions use in turn.
+/// Buffers shared by all subscriptions.
 struct PieceBuffers
 {
     std::vector<std::byte> payload;
     std::vector<std::byte> piece;
 };
 
-/// One controller, on the host: its wishes, its credit, and writers of its own in a partition of
-/// its own, so that no other controller waits for it.
+/// One controller, on the server: its requests, its credit, and its own writers in its own
+/// partition, so that no other controller waits for it.
 class Subscription
 {
 public:
-    /// What a request says about the credit.
+    /// Credit in a request.
     struct Credit
     {
         std::uint64_t seen{0};
@@ -42,8 +42,8 @@ public:
         std::uint64_t received{0};
     };
 
-    /// The first request's `seen` is where counting starts: a controller that was thought dead and
-    /// speaks again goes on counting.
+    /// Counting starts at the first request's `seen`: a controller that was thought dead and
+    /// returns continues its count.
     [[nodiscard]] static Result<Subscription, Refusal> create(const Domain& domain,
                                                               const ControllerId& controller,
                                                               std::string controller_name,
@@ -52,31 +52,31 @@ public:
     [[nodiscard]] const ControllerId& controller() const noexcept { return controller_; }
     [[nodiscard]] const std::string& controller_name() const noexcept { return controller_name_; }
 
-    /// Pieces that there are.
+    /// Adds a request; the piece must exist.
     void wish(const HostPiece& piece, std::uint32_t generation) { wishes_.add(piece, generation); }
-    /// Requests may come in another order than they were sent in: the counts only grow. Nobody has
-    /// seen more than was sent, nor grants more than kCreditPieces beyond what it has seen.
+    /// Updates the credit. Requests may arrive out of order, so the counts only grow. `seen` is at
+    /// most the number sent, and `granted` at most kCreditPieces more than `seen`.
     void set_credit(const Credit& credit) noexcept;
-    /// Makes new writers where pieces are missing for 300 ms that the controller says were
-    /// sent and never came: who forged a packet in a writer's name has made its readers deaf to it.
-    /// Returns what owns the old ones when it did so, which is less often each time; null else.
+    /// Creates new writers if the controller reports for 300 ms that pieces never arrived: a forged
+    /// packet in a writer's name makes its readers ignore that writer. Returns the owner of the old
+    /// ones; null if nothing was done. Repetitions get rarer each time.
     [[nodiscard]] std::shared_ptr<void> try_heal(Backoff::Clock::time_point now);
 
-    /// Whether send_one() would find something to do, were the controller's reader there.
+    /// True if send_one() has something to send, provided that the controller's reader is present.
     [[nodiscard]] bool has_work() const noexcept
     {
         return !wishes_.empty() && sent_ < credit_.granted;
     }
-    /// Sends one sample of as many wished pieces as credit and payload allow. A piece that can't be
-    /// read is skipped and named in the log. False when nothing was sent.
+    /// Sends one sample of as many requested pieces as credit and payload allow. A piece that
+    /// cannot be read is skipped and logged. False if nothing was sent.
     bool send_one(std::uint64_t host_epoch, std::span<const ModelPieces> models, PieceBuffers& room,
                   RateLimitedLog& log);
-    /// Tells the controller that it may read the objects. False while its reader is not there.
+    /// Notifies the controller that it may read the objects. False while its reader is not present.
     bool let_in(std::uint64_t host_epoch);
 
     [[nodiscard]] std::uint64_t pieces_sent() const noexcept { return pieces_sent_; }
     [[nodiscard]] std::uint64_t bytes_sent() const noexcept { return bytes_sent_; }
-    /// Pieces that wait to be sent.
+    /// Number of pieces that wait to be sent.
     [[nodiscard]] std::size_t wishes() const noexcept { return wishes_.size(); }
 
 private:
@@ -94,8 +94,8 @@ private:
     WriterLanes writers_;
     WishQueue wishes_;
     Credit credit_;
-    std::uint64_t lost_{0}; ///< Pieces that were sent and didn't come, as it last said.
-    std::uint64_t given_up_{UINT64_MAX}; ///< Those of them that nothing is done about any more.
+    std::uint64_t lost_{0};              ///< Pieces sent that did not arrive, as last reported.
+    std::uint64_t given_up_{UINT64_MAX}; ///< Lost pieces that are not healed any more.
     Backoff::Clock::time_point overdue_since_{};
     std::uint64_t sent_{0};
     std::uint64_t pieces_sent_{0};

@@ -13,28 +13,29 @@
 namespace tactus::dds
 {
 
-/// A bounded string of a sample, up to its end or as much as there is room for. Of the sample.
+/// Text of a bounded string in a sample, up to its end or its capacity. Valid as long as the
+/// sample.
 template <std::size_t Size>
 [[nodiscard]] std::string_view text_of(const char (&text)[Size]) noexcept // NOLINT: idlc's type.
 {
     return {static_cast<const char*>(text), ::strnlen(static_cast<const char*>(text), Size)};
 }
 
-/// Whether a sample tells that its instance ended, and who ended it: its own writer, if that was a
-/// true one. The last data of an instance that anybody ended before they were taken only show that
-/// somebody did: not who, since they name who wrote them.
+/// True if a sample reports the end of its instance; its writer is the one that ended it, if that
+/// writer is genuine. If the instance was ended before its last data were taken, these data show
+/// the end but name their own writer.
 [[nodiscard]] inline bool tells_end(const dds_sample_info_t& info) noexcept
 {
     return info.instance_state != DDS_ALIVE_INSTANCE_STATE && !info.valid_data;
 }
 
-/// Samples that take_each() takes by one call.
+/// Samples that take_each() takes with one call of DDS.
 inline constexpr std::uint32_t kTakenAtOnce = 16;
 
 /// Takes up to `samples_max` samples and calls `visit(const Sample&, const dds_sample_info_t&)` for
-/// each. The samples are Cyclone's own, on loan: a buffer of ours would be silently truncated to
-/// or, with `_release` set, freed by Cyclone. In a sample without valid_data only key fields are
-/// set. Returns how many it took.
+/// each. The samples are on loan from Cyclone: a buffer of ours would be silently truncated to or,
+/// with `_release` set, freed by Cyclone. A sample without valid_data has only key fields. Returns
+/// the number of samples taken.
 template <typename Sample, typename Visit>
 std::size_t take_each(std::int32_t reader, std::size_t samples_max, Visit&& visit)
 {
@@ -42,7 +43,7 @@ std::size_t take_each(std::int32_t reader, std::size_t samples_max, Visit&& visi
     std::size_t taken = 0;
     while (taken < samples_max)
     {
-        std::array<void*, batch> samples{}; // All null: asks for a loan.
+        std::array<void*, batch> samples{}; // Null pointers request a loan.
         std::array<dds_sample_info_t, batch> infos{};
         const std::int32_t count =
             dds_take(reader, samples.data(), infos.data(), samples.size(), batch);

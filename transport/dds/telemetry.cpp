@@ -32,10 +32,12 @@ constexpr unsigned kHasGripper = 16;
 constexpr unsigned kHostGone = 1;
 constexpr unsigned kStatic = 2;
 constexpr unsigned kFollowsPoses = 4;
-/// And its stage from this bit on. One that is here is 0, as it is with who tells no stages.
+/// First bit of the stage. A resident model is 0, which is also the value of senders without
+/// stages.
 constexpr unsigned kStageShift = 3;
 
-/// There and back: the stages go round, and so often round is where they began.
+/// Wire code of a stage, its distance from `resident` modulo the number of stages. The function is
+/// its own inverse.
 constexpr unsigned stage_code(ModelStage stage)
 {
     return (static_cast<unsigned>(stage) + kModelStages -
@@ -170,7 +172,7 @@ bool is_sound(const ToolTelemetry& tool)
            all_finite(tool.torque_nm) && std::isfinite(tool.gripper_m);
 }
 
-/// Of an object that nothing is known of yet the upper bound is infinite.
+/// The upper bound of an object is infinite while nothing is known.
 bool is_sound(const PairTelemetry& pair, std::uint32_t tools)
 {
     return pair.tool < tools && pair.kind <= AnswerKind::within_tolerance &&
@@ -184,7 +186,7 @@ ModelIdentity identity_of(const tactus_v5_ModelTelemetry& wire)
     return identity;
 }
 
-/// Everything but tools, pairs and models, to the wire or from it.
+/// Copies all fields except tools, pairs and models, in either direction.
 template <typename From, typename To>
 void copy_counts(const From& from, To& to)
 {
@@ -203,7 +205,7 @@ void copy_counts(const From& from, To& to)
     to.faults_seen = from.faults_seen;
 }
 
-/// None where a name is none, a number can't be, or there is too much of something.
+/// None if a name is invalid, a number impossible, or a count too large.
 std::optional<WatchedController> watched_from(const tactus_v5_Telemetry& sample)
 {
     WatchedController news;
@@ -305,7 +307,8 @@ void TelemetryWriter::write(const Telemetry& telemetry)
     sample.tools = {telemetry.tool_count, telemetry.tool_count, tools.data(), false};
     sample.pairs = {telemetry.pair_count, telemetry.pair_count, pairs.data(), false};
     sample.models = {telemetry.model_count, telemetry.model_count, models.data(), false};
-    dds_write(writer_.handle, &sample); // One that fails is a lost one: the next is as good.
+    // A failed write counts as a lost sample; the next one replaces it.
+    dds_write(writer_.handle, &sample);
 }
 
 Result<std::unique_ptr<TelemetryReader>, Refusal> TelemetryReader::create(const Domain& domain)

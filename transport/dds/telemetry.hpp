@@ -17,23 +17,23 @@
 namespace tactus::dds
 {
 
-/// Controllers that one reader keeps; news of further ones are passed over.
+/// Maximum number of controllers of one reader; samples of further ones are ignored.
 inline constexpr std::size_t kMaxWatched = 256;
 
-/// The controller's side. One thread, the transport thread.
+/// Publishes a controller's telemetry. One thread, the transport thread.
 class TelemetryWriter
 {
 public:
-    /// `domain` must outlive it; `controller_name` is valid and `models`, in the order of
+    /// `domain` must outlive the writer. `controller_name` is valid and `models`, in the order of
     /// Telemetry::models, are at most kMaxShownModels (both asserted).
     [[nodiscard]] static Result<std::unique_ptr<TelemetryWriter>, Refusal>
     create(const Domain& domain, std::string controller_name, std::vector<ModelIdentity> models);
 
-    /// Sends it to whoever watches; never waits. `telemetry.model_count` is that of the models,
-    /// tools and pairs are within its arrays (asserted).
+    /// Sends a sample to all readers; never waits. `telemetry.model_count` is the number of models;
+    /// tools and pairs are within their arrays (asserted).
     void write(const Telemetry& telemetry);
 
-    /// How many were sent.
+    /// Number of samples sent.
     [[nodiscard]] std::uint64_t sent() const noexcept { return sent_; }
 
 private:
@@ -47,37 +47,38 @@ private:
     std::uint64_t sent_{0};
 };
 
-/// A controller as its last sample shows it.
+/// Newest telemetry of a controller.
 struct WatchedController
 {
     ControllerId id{};
-    std::string name; ///< Valid.
+    std::string name; ///< Name; valid.
     std::uint64_t serial{0};
-    std::vector<ModelIdentity> models; ///< In the order of Telemetry::models.
+    std::vector<ModelIdentity> models; ///< Models in the order of Telemetry::models.
     Telemetry telemetry;
-    std::uint64_t writer{0}; ///< Handle of the last sample's.
-    bool is_disputed{false}; ///< Somebody said that it is gone, perhaps another program.
+    std::uint64_t writer{0}; ///< Handle of the last sample's writer.
+    /// True if a program, perhaps another one, ended this controller's instance.
+    bool is_disputed{false};
 };
 
-/// The host's side: the controllers on a domain, each at its newest. One thread.
+/// Reads the newest telemetry of each controller on a domain. One thread.
 class TelemetryReader
 {
 public:
-    /// `domain` must outlive it.
+    /// `domain` must outlive the reader.
     [[nodiscard]] static Result<std::unique_ptr<TelemetryReader>, Refusal>
     create(const Domain& domain);
 
-    /// Takes what has come, and forgets controllers that left or fell silent (500 ms). Bounded,
-    /// never waits.
+    /// Takes new samples, and removes controllers that left or fell silent (500 ms). Bounded, never
+    /// waits.
     void poll();
 
-    /// In the order in which they were first seen; at most kMaxWatched. Until the next poll().
+    /// Controllers in the order of discovery, at most kMaxWatched. Valid until the next poll().
     [[nodiscard]] const std::vector<WatchedController>& controllers() const noexcept
     {
         return controllers_;
     }
-    /// Samples with names that are none or numbers that aren't finite, and those of controllers
-    /// beyond kMaxWatched.
+    /// Number of samples refused: invalid names, numbers that are not finite, or controllers beyond
+    /// kMaxWatched.
     [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }
 
 private:

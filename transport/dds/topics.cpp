@@ -22,13 +22,14 @@ namespace tactus::dds
 namespace
 {
 
-/// A writer's call may wait this long for room before it gives up.
+/// Longest wait of a writer's call for room.
 constexpr std::int64_t kBlockingMax = DDS_MSECS(5);
-/// Who says nothing for this long is gone: catalogue (hosts) and wishes (controllers).
+/// Silence after which a participant is gone: for the catalogue (servers) and requests
+/// (controllers).
 constexpr std::int64_t kLiveliness = DDS_MSECS(500);
 
-// The bounds of transport/idl/tactus.idl. When a constant on the right grows, the wire changes with
-// it: raise the bound there and the protocol's version.
+// Bounds of transport/idl/tactus.idl. If a constant on the right grows, the wire changes: raise the
+// bound there and the protocol's version.
 static_assert(tactus_v5_max_name_bytes == kMaxNameBytes);
 static_assert(tactus_v5_max_tools == kMaxTools);
 static_assert(tactus_v5_max_models == kMaxShownModels);
@@ -42,7 +43,7 @@ static_assert(tactus_v5_max_front_objects == kMaxFrontObjects);
 static_assert(tactus_v5_max_front_pages == kMaxFrontPages);
 static_assert(tactus_v5_max_front_wishes == kMaxFrontWishes);
 static_assert(tactus_v5_max_front_regions == kMaxFrontRegions);
-static_assert(kMaxModels <= UINT16_MAX); // PieceName::model.
+static_assert(kMaxModels <= UINT16_MAX); // Type of PieceName::model.
 static_assert(sizeof(tactus_v5_Wanted::controller) == sizeof(ControllerId));
 static_assert(sizeof(tactus_v5_CatalogueEntry::model_hash) == sizeof(ContentHash));
 
@@ -53,7 +54,7 @@ struct TopicTraits
     dds_topic_filter_sample_sampleinfo_arg_fn is_honest;
     bool is_kept_for_late_joiners;
     bool has_liveliness;
-    bool is_best_effort; ///< Only the newest counts: what is lost isn't sent again.
+    bool is_best_effort; ///< Only the newest sample counts: a lost one is not sent again.
     std::int32_t depth;  ///< Samples per instance.
 };
 
@@ -68,7 +69,7 @@ bool refuse(const dds_sample_info_t* info, void* context, Refused reason, std::u
     return false;
 }
 
-/// Whether a sample of a host comes from that host.
+/// True if a sample of a server comes from that server.
 template <typename Sample>
 bool is_of_its_host(const Sample& sample, const dds_sample_info_t* info, void* context)
 {
@@ -105,7 +106,7 @@ bool is_honest_motion(const void* sample, const dds_sample_info_t* info, void* c
     return is_of_its_host(*static_cast<const tactus_v5_Motion*>(sample), info, context);
 }
 
-/// Wishes to other hosts take no room either.
+/// Drops requests to other servers as well, so they take no room.
 bool is_honest_wish(const void* sample, const dds_sample_info_t* info, void* context)
 {
     const auto& wanted = *static_cast<const tactus_v5_Wanted*>(sample);
@@ -130,12 +131,12 @@ bool is_honest_front(const void* sample, const dds_sample_info_t* info, void* co
 
 const TopicTraits& traits_of(Topic topic)
 {
-    // The depths of wishes and pieces are hardly ever reached: wishes are few and bounded by their
-    // kind, pieces are under credit. What one stuck writer of several holds back while the others'
-    // counts go on is bounded by its depth alone: what is pushed out of it is asked for again. All
-    // are keep-last, so that no writer ever waits for a reader. Readers have no other limits: one
-    // that is full would hold up all reception of its process. What the filters let through bounds
-    // them.
+    // The depths of requests and pieces are rarely reached: requests are few and of bounded kinds,
+    // pieces are limited by credit. Only the depth bounds the samples that one stuck writer of
+    // several holds back while the counts of the others go on; a sample pushed out of it is
+    // requested again. All topics are keep-last, so that no writer waits for a reader. Readers have
+    // no other limits, since a full reader would block all reception of its process; the filters
+    // bound them.
     static const std::array<TopicTraits, 7> traits{{
         {"tactus/v5/catalogue", &tactus_v5_CatalogueEntry_desc, is_honest_entry, true, true, false,
          1},
@@ -223,7 +224,7 @@ Result<Endpoint, Refusal> make_reader(const Domain& domain, Topic topic,
                                       const std::string& partition)
 {
     const TopicTraits& traits = traits_of(topic);
-    const Entity type(make_topic(domain, traits)); // The filter is this one's alone.
+    const Entity type(make_topic(domain, traits)); // The filter belongs to this reader alone.
     if (!type.is_valid())
     {
         return refused(traits, type.get());

@@ -13,21 +13,21 @@
 namespace tactus::dds
 {
 
-/// In the topics' names: who speaks another one is not heard.
+/// Version in the topics' names; programs with another version are not heard.
 inline constexpr std::uint32_t kProtocolVersion = 5;
 
-/// Names of pieces in one request.
+/// Maximum number of pieces in one request.
 inline constexpr std::uint32_t kMaxWishes = 256;
-/// Names that a host keeps waiting for one controller.
+/// Maximum number of pieces that a server keeps waiting for one controller.
 inline constexpr std::uint32_t kMaxWaiting = 1'024;
-/// Objects in one sample of motion.
+/// Maximum number of objects in one sample of motion.
 inline constexpr std::uint32_t kMaxMoved = 64;
-/// Pieces that may be under way from one host to one controller: at 0.6 KB a piece and 20 ms from
-/// request to arrival 6,400 a second. Readers keep at least as many samples.
+/// Maximum number of pieces in transit from one server to one controller: at 0.6 KB a piece and 20
+/// ms from request to arrival, 6,400 a second. Readers keep at least as many samples.
 inline constexpr std::uint32_t kCreditPieces = 128;
-/// Payload of one sample, in bytes: fits the type's bound and leaves a UDP datagram room.
+/// Payload of one sample, in bytes: within the type's bound and below a UDP datagram.
 inline constexpr std::size_t kPayloadBytes = 60'000;
-/// Most bytes of a header and of a base mesh that a controller fetches.
+/// Maximum bytes of a header and of a base mesh that a controller fetches.
 inline constexpr std::size_t kMaxHeaderBytes = std::size_t{8} << 20U;
 inline constexpr std::size_t kMaxBaseBytes = std::size_t{1} << 20U;
 
@@ -42,25 +42,25 @@ enum class Topic : std::uint8_t
     front
 };
 
-/// Creates a writer or reader with the topic's quality of service (docs/protocol.md). No call on it
-/// blocks for more than 5 ms. The domain must outlive it.
+/// Creates a writer with the topic's quality of service (docs/protocol.md). No call on it blocks
+/// for more than 5 ms. The domain must outlive it.
 [[nodiscard]] Result<Endpoint, Refusal> make_writer(const Domain& domain, Topic topic,
                                                     const std::string& partition);
-/// Samples that name another host or controller than their writer's participant never get into the
-/// reader, nor those of objects and models with numbers that can't be.
+/// Creates a reader likewise. It drops samples that name another server or controller than their
+/// writer's participant, and those with impossible numbers of objects or models.
 [[nodiscard]] Result<Endpoint, Refusal> make_reader(const Domain& domain, Topic topic,
                                                     const std::string& partition);
 
-/// Of all controllers, for readers.
+/// Partition of all controllers, for readers.
 inline constexpr const char* kAnyPartition = "*";
-/// Where a host tells of its objects.
+/// Partition in which a server publishes its objects.
 [[nodiscard]] std::string host_partition(std::uint64_t host_epoch);
-/// Where one controller gets its pieces.
+/// Partition in which one controller receives its pieces.
 [[nodiscard]] std::string controller_partition(const std::string& name, const ControllerId& id);
 
-/// How many a writer has on the other side.
+/// Number of readers that a writer is matched with.
 [[nodiscard]] std::uint32_t readers_of(const Endpoint& writer);
-/// Whether a reader or writer has anybody there.
+/// True if a writer has a reader, or a reader a writer.
 [[nodiscard]] bool is_matched(const Endpoint& writer);
 [[nodiscard]] bool has_publisher(const Endpoint& reader);
 

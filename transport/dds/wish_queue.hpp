@@ -14,22 +14,22 @@
 namespace tactus::dds
 {
 
-/// A piece of one of a host's models.
+/// A piece of one of a server's models.
 struct HostPiece
 {
-    std::uint32_t model{0}; ///< Its number on the host.
+    std::uint32_t model{0}; ///< Number of the model on the server.
     ContentKey key;
 
     constexpr bool operator==(const HostPiece&) const noexcept = default;
 };
 
-/// What one controller waits for at its host: newest generation first, within it in the order of
-/// asking; each piece once. When it is full the last ones are forgotten: the oldest generation.
+/// Requests of one controller that wait on the server: newest generation first, within it in the
+/// order of request; each piece once. When full, the last ones are dropped: the oldest generation.
 ///
-/// A table of fixed size, a list through it in that order, and a hash of the pieces whose factor is
-/// drawn at random, so that no controller can choose pieces that collide. Adding and taking cost
-/// the same however many wait; a piece of another generation than the one before it costs a walk
-/// over those that are newer.
+/// A table of fixed size, a list through it in that order, and a hash of the pieces with a random
+/// factor, so that no controller can choose pieces that collide. The cost of adding and taking does
+/// not depend on the number waiting; a piece of another generation than the one before it costs a
+/// walk over the newer ones.
 class WishQueue
 {
 public:
@@ -50,7 +50,7 @@ public:
         }
     }
 
-    /// Generations count up and may wrap.
+    /// Adds a request. Generations count up and may wrap.
     void add(const HostPiece& piece, std::uint32_t generation)
     {
         if (const Index known = find(piece); known != kNone)
@@ -63,7 +63,7 @@ public:
             ++forgotten_;
             if (before == slots_[end_].previous)
             {
-                return; // It would be the last one.
+                return; // The new request would be the last one.
             }
             take_out(slots_[end_].previous);
         }
@@ -73,7 +73,7 @@ public:
     [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
     [[nodiscard]] std::uint64_t forgotten() const noexcept { return forgotten_; }
-    /// The most urgent one; there must be one.
+    /// The most urgent request; the queue must not be empty.
     [[nodiscard]] const HostPiece& front() const noexcept
     {
         return slots_[slots_[end_].next].piece;
@@ -88,9 +88,9 @@ private:
     {
         HostPiece piece;
         std::uint32_t generation{0};
-        Index next{0}; ///< In the order of the queue, or in that of the free ones.
+        Index next{0}; ///< Next slot in the order of the queue, or in that of the free slots.
         Index previous{0};
-        Index chained{kNone}; ///< The next one of its chain.
+        Index chained{kNone}; ///< Next slot of its hash chain.
     };
 
     [[nodiscard]] Index& chain_of(const HostPiece& piece) noexcept
@@ -112,7 +112,8 @@ private:
         return slot;
     }
 
-    /// The last one that is as new or newer; the end, which is before the first, without any.
+    /// Last slot of the same or a newer generation; `end_`, which is before the first, if there is
+    /// none.
     [[nodiscard]] Index place_before(std::uint32_t generation) const noexcept
     {
         const auto is_older = [&](Index slot) {
@@ -122,7 +123,7 @@ private:
         Index before = end_;
         if (last_ != end_ && slots_[last_].generation == generation)
         {
-            before = last_; // Most come so.
+            before = last_; // The common case.
         }
         while (!is_older(slots_[before].next))
         {
@@ -160,12 +161,12 @@ private:
         --size_;
     }
 
-    std::vector<Slot> slots_; ///< The one behind the last is the list's end.
+    std::vector<Slot> slots_; ///< Slots; the additional last one is the list's end.
     std::vector<Index> chains_;
     std::uint64_t factor_{1};
     Index end_;
     Index free_{kNone};
-    Index last_{end_}; ///< Added last; the end when it was taken out.
+    Index last_{end_}; ///< Slot added last; `end_` once it was taken out.
     std::size_t size_{0};
     std::uint64_t forgotten_{0};
 };

@@ -41,7 +41,8 @@ bool WriterLanes::write(const void* sample, const void* probe, std::size_t bytes
     {
         turn_ = (turn_ + 1) % lanes_.size();
         Lane& lane = lanes_[turn_];
-        if (lane.is_open && turn_ != 0 && !dds::is_matched(lane.writer)) // It lost its reader.
+        // The writer lost its reader.
+        if (lane.is_open && turn_ != 0 && !dds::is_matched(lane.writer))
         {
             lane.is_open = lane.is_probed = false;
         }
@@ -83,7 +84,7 @@ std::shared_ptr<void> WriterLanes::try_renew(Backoff::Clock::time_point now)
     return old;
 }
 
-/// Brings the first one that isn't open a step further.
+/// Advances the first writer that is not open by one step.
 void WriterLanes::open_next(const void* probe)
 {
     const auto next = std::ranges::find(lanes_, false, &Lane::is_open);

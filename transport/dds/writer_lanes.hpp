@@ -15,12 +15,12 @@
 namespace tactus::dds
 {
 
-/// Writers of one topic in one partition that take turns. Reliable delivery keeps the order of each
-/// writer, so a datagram that is lost holds back what its own writer sent after it, not the rest.
-/// What goes through lanes may come in another order.
+/// Several writers of one topic in one partition that take turns. Reliable delivery keeps the order
+/// of each writer, so a lost datagram delays only the later samples of its own writer. Samples may
+/// arrive in another order than they were written.
 ///
-/// There is one at first; a next one joins after some traffic, when its reader has answered a
-/// probe: what is written before both sides know each other is lost.
+/// There is one writer at first; the next one joins after some traffic, when its reader has
+/// answered a probe: samples written before both sides know each other are lost.
 class WriterLanes
 {
 public:
@@ -28,25 +28,25 @@ public:
     [[nodiscard]] static Result<WriterLanes, Refusal> create(const Domain& domain, Topic topic,
                                                              const std::string& partition);
 
-    /// Whether the first of them has a reader.
+    /// True if the first writer has a reader.
     [[nodiscard]] bool is_matched() const { return dds::is_matched(lanes_[0].writer); }
-    /// Writes by the next one that is open; without a reader to nobody. `probe` is a sample of the
-    /// same type that may be lost, `bytes` what the sample takes in a writer's memory until its
-    /// reader has answered. False when the sample is lost: no writer takes more than kUnackedMax.
+    /// Writes with the next open writer; without a reader the sample is lost. `probe` is a sample
+    /// of the same type that may be lost, `bytes` the sample's size in a writer's memory until its
+    /// reader has answered. False if the sample is lost: no writer holds more than kUnackedMax.
     bool write(const void* sample, const void* probe, std::size_t bytes = 0);
 
     [[nodiscard]] std::size_t open() const;
 
-    /// Makes a new writer in the place of them all: where a packet in a writer's name told its
-    /// reader of a much later sample, forged or not, that reader takes all others for old as long
-    /// as the writer is there. Returns what owns the old ones, whose deletion takes a while; null
-    /// when it is not due: Cyclone keeps a little of each writer that was.
+    /// Replaces all writers by a new one. A packet in a writer's name with a much later sample
+    /// number, forged or not, makes its reader drop all further samples of that writer. Returns the
+    /// owner of the old writers, whose deletion takes a while; null if it is not due: Cyclone keeps
+    /// a little memory of each former writer.
     [[nodiscard]] std::shared_ptr<void> try_renew(Backoff::Clock::time_point now);
 
     static constexpr std::size_t kLanes = 4;
-    /// So much a reader that never answers costs its writer, a second of a stream.
+    /// Memory that a reader that never answers costs its writer: a second of a stream.
     static constexpr std::size_t kUnackedMax = std::size_t{1} << 20U;
-    /// Samples before a next lane is made.
+    /// Samples before the next lane is created.
     static constexpr std::uint64_t kSamplesALane = 64;
 
 private:
@@ -55,7 +55,8 @@ private:
         Endpoint writer;
         bool is_probed{false};
         bool is_open{false};
-        std::size_t unacked_bytes{0}; ///< Since all was answered, as was last looked.
+        /// Bytes since all samples were acknowledged, as of the last check.
+        std::size_t unacked_bytes{0};
     };
 
     WriterLanes(const Domain& domain, Topic topic, std::string partition);

@@ -10,21 +10,21 @@
 namespace tactus
 {
 
-/// What a LoopbackLink does to the pieces that pass. Shares are in 0 .. 1, per piece and
+/// Faults that a LoopbackLink applies to passing pieces. Shares are in 0 .. 1, per piece and
 /// independent.
 struct LoopbackFaults
 {
     std::uint64_t seed{1};
     double loss{0.0};
     double duplicates{0.0};
-    double damage{0.0};               ///< One bit of the piece is flipped.
-    double mix_ups{0.0};              ///< The piece comes under the key of the one before.
-    std::uint32_t delay_polls_min{0}; ///< A piece is delivered this many polls after it came.
-    std::uint32_t delay_polls_max{0}; ///< Unequal delays reorder.
+    double damage{0.0};  ///< Share of pieces with one bit flipped.
+    double mix_ups{0.0}; ///< Share of pieces delivered under the key of the one before.
+    std::uint32_t delay_polls_min{0}; ///< Least delay of a piece, in polls.
+    std::uint32_t delay_polls_max{0}; ///< Greatest delay; unequal delays reorder.
 };
 
 /// An in-process stand-in for a network: wraps another link and delays, loses, repeats, reorders,
-/// damages and mixes up its pieces, the same way for the same seed. For tests; it allocates.
+/// damages and mixes up its pieces, reproducibly from a seed. For tests; it allocates.
 class LoopbackLink final : public ChunkLink, private PieceSink
 {
 public:
@@ -36,9 +36,9 @@ public:
     [[nodiscard]] std::uint64_t session() const override { return session_; }
     [[nodiscard]] std::uint64_t bytes_received() const override { return bytes_received_; }
 
-    /// The host goes away, and with it everything on its way.
+    /// Removes the server and all pieces in transit.
     void lose_host();
-    /// It, or another one, comes back.
+    /// Restores a server, the same or another one.
     void regain_host();
 
 private:

@@ -74,7 +74,7 @@ ModelStore::ModelStore(ModelStore&& other) noexcept
     : path_(std::move(other.path_))
     , file_(std::exchange(other.file_, -1))
     , file_bytes_(other.file_bytes_)
-    , bytes_(std::move(other.bytes_)) // Keeps its address, so header_ stays valid.
+    , bytes_(std::move(other.bytes_)) // The buffer keeps its address, so header_ stays valid.
     , header_(other.header_)
     , hash_(other.hash_)
     , chunks_(std::move(other.chunks_))
@@ -112,7 +112,7 @@ bool ModelStore::has(ContentKey key) const noexcept
     case ContentKind::chunk:
         return key.number < header_.counts().chunks();
     case ContentKind::header:
-        break; // Of header_bytes().
+        break; // The content of header_bytes().
     }
     return false;
 }
@@ -145,7 +145,7 @@ Result<Done, Refusal> ModelStore::read(ContentKey key, std::vector<std::byte>& o
 Result<Done, Refusal> ModelStore::open_file(const std::filesystem::path& path)
 {
     path_ = path;
-    // Not blocking, so that a named pipe without a writer is refused below instead of waited for.
+    // Non-blocking, so that a named pipe without a writer is refused below instead of waited for.
     file_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     struct stat status = {};
     if (file_ < 0 || ::fstat(file_, &status) != 0)
@@ -174,7 +174,7 @@ Result<Done, Refusal> ModelStore::read_header()
     {
         return done;
     }
-    // The magic first: a foreign file shall not be called a short model.
+    // The magic comes first: a foreign file must not be called a short model.
     if (available < kSpmMagic.size() ||
         std::memcmp(start.data(), kSpmMagic.data(), kSpmMagic.size()) != 0)
     {
@@ -244,7 +244,7 @@ Result<Done, Refusal> ModelStore::check_base() const
 Result<Done, Refusal> ModelStore::read_index()
 {
     const ModelCounts counts = header_.counts();
-    // By pages, so that a lying header cannot make us allocate more than its file has.
+    // Page by page, so that a forged header cannot make us allocate more than its file has.
     std::vector<std::byte> coded;
     std::array<ChunkEntry, kChunksPerIndexPage> entries{};
     for (IndexPageId page{0}; page.value < counts.index_pages(); ++page.value)
@@ -311,7 +311,7 @@ ModelStore::Extent ModelStore::extent_of(ContentKey key) const noexcept
 Result<Done, Refusal> ModelStore::read_at(std::uint64_t offset, std::span<std::byte> out,
                                           const std::string& what) const
 {
-    // Stated by the file, so it may be anything; pread takes signed offsets.
+    // The file states the offset, so it may have any value; pread takes signed offsets.
     constexpr std::uint64_t offset_max = std::numeric_limits<off_t>::max();
     std::size_t done = 0;
     while (done < out.size() && offset <= offset_max - out.size())

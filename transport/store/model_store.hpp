@@ -22,13 +22,13 @@ namespace tactus
 /// Read-only access to one .spm file. Reads with pread, never mmap: a file that is truncated while
 /// it is served gives an error instead of SIGBUS.
 ///
-/// Memory: the header and 18 B a chunk (sizes and hashes); chunks are read when asked for.
+/// Memory: the header and 18 B a chunk (sizes and hashes); chunks are read on request.
 class ModelStore
 {
 public:
-    /// Checks everything but the chunks' content: size, header, root hash, base mesh, index pages,
-    /// and that all extents lie within the file. Cost: reads header, base and index. Refused in one
-    /// line with the path, as is read().
+    /// Checks everything except the chunks' content: size, header, root hash, base mesh, index
+    /// pages, and that all extents lie within the file. Cost: reads header, base mesh and index.
+    /// Refused in one line with the path, like read().
     [[nodiscard]] static Result<ModelStore, Refusal> open(const std::filesystem::path& path);
 
     ModelStore(ModelStore&& other) noexcept;
@@ -38,19 +38,19 @@ public:
     ~ModelStore();
 
     [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
-    /// Header and bytes are the store's, and go with it where it is moved to.
+    /// Header and its bytes belong to the store, and move with it.
     [[nodiscard]] const ModelHeader& header() const noexcept { return header_; }
     [[nodiscard]] std::span<const std::byte> header_bytes() const noexcept { return bytes_; }
     [[nodiscard]] const ContentHash& hash() const noexcept { return hash_; }
     [[nodiscard]] std::uint32_t revision() const noexcept { return header_.fields().revision; }
 
-    /// Whether the model has a piece of this name.
+    /// True if the model has this piece.
     [[nodiscard]] bool has(ContentKey key) const noexcept;
-    /// Bytes of a piece's coded form. The key must be one that the model has (asserted).
+    /// Bytes of a piece's coded form. The model must have the key (asserted).
     [[nodiscard]] std::size_t coded_bytes(ContentKey key) const noexcept;
 
     /// Reads a piece in its coded form into `out` (resized; no allocation once it is large enough)
-    /// and verifies its hash. Refuses a key that the model doesn't have.
+    /// and verifies its hash. Refuses a key that the model lacks.
     [[nodiscard]] Result<Done, Refusal> read(ContentKey key, std::vector<std::byte>& out) const;
 
 private:
@@ -76,7 +76,7 @@ private:
     std::filesystem::path path_;
     int file_{-1};
     std::uint64_t file_bytes_{0};
-    std::vector<std::byte> bytes_; ///< The header; header_ looks into it.
+    std::vector<std::byte> bytes_; ///< Bytes of the header; header_ refers to them.
     ModelHeader header_;
     ContentHash hash_{};
     std::vector<ChunkEntry> chunks_;

@@ -29,18 +29,18 @@ namespace tactus
 namespace
 {
 
-/// As much as a model may want: what it doesn't need it doesn't take.
+/// Upper limit for a model's memory; it takes only its need.
 constexpr std::size_t kAllBytes = std::size_t{1} << 40U;
 constexpr std::uint32_t kUnlimited = std::numeric_limits<std::uint32_t>::max();
-/// Between two frames in which nothing came.
+/// Pause between two frames without arrivals.
 constexpr std::chrono::milliseconds kPause{1};
-/// The faces round the nearest point are as far away as it is, but for rounding.
+/// Factor for the distance of the faces around the nearest point: equal except for rounding.
 constexpr double kAsFar = 1.0 + 1e-9;
 
-/// Times what a tree usually takes: then each block may hold a single face.
+/// Factor on a tree's usual room; at this one each block may hold a single face.
 constexpr std::uint32_t kMostRoom = 16;
 
-/// Nothing waits for these frames: they do what there is to do.
+/// Budgets without limits: no deadline applies to these frames.
 constexpr Budgets all_at_once()
 {
     Budgets budgets;
@@ -68,15 +68,15 @@ std::string piece_count(std::uint64_t pieces)
 struct StaticModel::Parts
 {
     ServedModel served;
-    std::optional<ModelHeader> header; ///< Views `served`.
+    std::optional<ModelHeader> header; ///< View of `served`.
     std::unique_ptr<std::byte, AlignedDelete> memory;
     std::optional<Arena> arena;
     std::optional<Frame> frame;
     std::optional<Courier> courier;
 
-    /// With so many times the tree's usual room.
+    /// Builds the frame with `room` times the tree's usual room.
     [[nodiscard]] std::optional<Refusal> start(std::uint32_t room);
-    /// As far as there is room.
+    /// Loads and refines as far as there is room.
     [[nodiscard]] std::optional<Refusal> refine(std::chrono::milliseconds patience);
 };
 
@@ -177,7 +177,7 @@ Result<std::unique_ptr<StaticModel>, Refusal> StaticModel::load(ServedModel serv
     auto parts = std::make_unique<Parts>();
     parts->served = std::move(served);
     parts->header = ModelHeader::parse(parts->served.header).value();
-    // The usual room is what meshes need whose faces share their corners; needles need more.
+    // The usual room suffices for meshes whose faces share their corners; needles need more.
     for (std::uint32_t room = 1; room <= kMostRoom; room *= 2)
     {
         auto refusal = parts->start(room);
@@ -207,7 +207,7 @@ const ModelHeader& StaticModel::header() const noexcept
 namespace
 {
 
-/// One thread's questions, one after the other.
+/// Queries of one thread, one after the other.
 class Asker
 {
 public:
@@ -221,7 +221,7 @@ public:
         surface_.distances_m = distances_m_;
     }
 
-    /// Both of the model's frame.
+    /// Distance of a point; point and answer are in the model's frame.
     [[nodiscard]] PointDistance ask(const Vec3& point_m)
     {
         WalkBudget budget{kUnlimited, kUnlimited};

@@ -15,29 +15,30 @@
 #include <memory>
 #include <span>
 
-// Thread: any. Several threads may ask one model at once.
+// Thread: any. Several threads may query one model at once.
 namespace tactus
 {
 
-/// From a point to the surface of a model's source mesh, in metres of the source's frame.
+/// Distance from a point to the surface of a model's source mesh, in metres of the source's frame.
 struct PointDistance
 {
-    double lower_m{0.0};           ///< The distance is at least this
-    double upper_m{kInfinity};     ///< and at most this: the two differ by rounding.
-    Vec3 nearest_m{0.0, 0.0, 0.0}; ///< Of the surface; where several points are, one of them.
+    double lower_m{0.0};       ///< Lower bound of the distance.
+    double upper_m{kInfinity}; ///< Upper bound; the two differ by rounding.
+    /// Nearest point of the surface; one of them if there are several.
+    Vec3 nearest_m{0.0, 0.0, 0.0};
     Side side{Side::unsigned_distance};
 };
 
-/// The whole of a model, refined to its source mesh: distances without hands, frames and time.
+/// A whole model, refined to its source mesh: distance queries without tools, frames and time.
 class StaticModel
 {
 public:
-    /// Of a model's file. Refused when it can't be read, is damaged or has no room in memory. About
-    /// 200 bytes and two microseconds a face.
+    /// Opens a model's file. Refused if it cannot be read, is damaged or does not fit into memory.
+    /// About 200 bytes and two microseconds a face.
     [[nodiscard]] static Result<std::unique_ptr<StaticModel>, Refusal>
     open(const std::filesystem::path& path);
-    /// The same of a model that anybody serves; refused as well when nothing more came for
-    /// `patience`. The link is not used afterwards.
+    /// Loads a model from any source; refused also if nothing arrives for `patience`. The link is
+    /// not used afterwards.
     [[nodiscard]] static Result<std::unique_ptr<StaticModel>, Refusal>
     load(ServedModel served, std::chrono::milliseconds patience = std::chrono::seconds(10));
 
@@ -49,10 +50,10 @@ public:
 
     [[nodiscard]] const ModelHeader& header() const noexcept;
 
-    /// The answer to each point, of the source's frame; as many `answers` as points. Refused, with
-    /// nothing written, when one is not finite or farther than 2^36 quanta from the model's corner,
-    /// some 4,000 to a million diagonals. Some microseconds a point, less where points that follow
-    /// one another are near.
+    /// Distances of points in the source's frame; `answers` has as many elements as `points_m`.
+    /// Refused, with nothing written, if a point is not finite or farther than 2^36 quanta from the
+    /// model's corner, some 4,000 to a million diagonals. Some microseconds a point, less if
+    /// successive points are near each other.
     [[nodiscard]] Result<Done, Refusal> distances(std::span<const Vec3> points_m,
                                                   std::span<PointDistance> answers) const;
 

@@ -13,7 +13,7 @@ namespace tactus
 namespace
 {
 
-/// Wishes that wait for one poll; beyond it the oldest are forgotten, as a host would do.
+/// Requests that wait for one poll; beyond it the oldest are dropped, as on a server.
 constexpr std::size_t kWaitingMax = 1'024;
 
 } // namespace
@@ -54,7 +54,7 @@ void StoreLink::poll(PieceSink& sink)
     }
 }
 
-/// A base mesh is read as a whole for each of its parts, mostly one.
+/// Reads one piece. A base mesh is read as a whole for each of its parts, usually one.
 bool StoreLink::try_read(ContentKey key)
 {
     const bool is_base = key.kind == ContentKind::base;

@@ -17,16 +17,17 @@
 namespace tactus
 {
 
-/// Serves a model from a local file through the same door as a host would (`--transport file`).
+/// Serves a model from a local file with the same interface as a server (`--transport file`).
 class StoreLink final : public ChunkLink
 {
 public:
-    /// `log` gets a line for each piece that can't be read, at a limited rate.
+    /// `log` gets a line for each piece that cannot be read, at a limited rate.
     StoreLink(ModelStore store, Log log);
 
-    /// 1,024 pieces may wait for poll(): of more the oldest are forgotten.
+    /// Up to 1,024 pieces may wait for poll(); beyond that the least urgent requests of the call,
+    /// then the oldest, are dropped.
     void request(std::span<const ContentKey> keys, std::uint32_t generation) override;
-    /// Reads all that wait.
+    /// Reads and delivers all waiting pieces.
     void poll(PieceSink& sink) override;
     [[nodiscard]] LinkState state() const override { return LinkState::connected; }
     [[nodiscard]] std::uint64_t session() const override { return 1; }
@@ -41,14 +42,14 @@ private:
 
     ModelStore store_;
     RateLimitedLog log_;
-    std::vector<ContentKey> waiting_; ///< Most urgent last.
+    std::vector<ContentKey> waiting_; ///< Waiting pieces, most urgent last.
     std::vector<std::byte> piece_;
     std::set<std::pair<ContentKind, std::uint32_t>> damaged_;
     std::uint64_t bytes_received_{0};
 };
 
-/// Opens a file as the model `name`, a valid one, which nothing checks. Refused as
-/// ModelStore::open(). Allocates; on any thread but the haptic one.
+/// Opens a file as the model `name`, which must be valid (unchecked). Refused like
+/// ModelStore::open(). Allocates; any thread, except the haptic one.
 [[nodiscard]] Result<ServedModel, Refusal> serve_from_file(const std::filesystem::path& path,
                                                            const std::string& name, Log log);
 
