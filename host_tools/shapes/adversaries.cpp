@@ -10,7 +10,7 @@
 
 #include <cmath>
 
-/// Meshes that are hard on everything downstream: needles, poles, thin walls, loose pieces.
+/// Meshes that are difficult for all later stages: needles, poles, thin walls, separate pieces.
 namespace tactus
 {
 
@@ -24,7 +24,7 @@ using detail::kPi;
 using detail::portable_cos;
 using detail::portable_sin;
 
-/// Both poles and the fans round them, after the grid's vertices.
+/// Adds both poles and the fans around them, after the grid's vertices.
 void add_poles(const Grid& grid, double radius_m, TriangleMesh& mesh)
 {
     const auto south = static_cast<std::uint32_t>(mesh.positions.size());
@@ -39,7 +39,7 @@ void add_poles(const Grid& grid, double radius_m, TriangleMesh& mesh)
     }
 }
 
-/// The border of a square grid of cells + 1 vertices a side, counter-clockwise seen from above.
+/// Border of a square grid of cells + 1 vertices a side, counter-clockwise seen from above.
 std::vector<std::uint32_t> border_of(const Grid& grid, std::uint32_t cells)
 {
     std::vector<std::uint32_t> border;
@@ -62,7 +62,7 @@ std::vector<std::uint32_t> border_of(const Grid& grid, std::uint32_t cells)
     return border;
 }
 
-/// splitmix64: a counter through a mixer, the same everywhere.
+/// splitmix64: a counter with a mixing function, the same on every machine.
 class Random
 {
 public:
@@ -173,7 +173,7 @@ TriangleMesh make_plate(std::uint32_t cells, double thickness_m)
             }
         }
     }
-    grid.add_faces(mesh); // The lower side, turned over, and a copy of it above.
+    grid.add_faces(mesh); // The lower side, flipped, and its copy above.
     const std::uint32_t above = grid.columns * grid.rows;
     const std::size_t below_faces = mesh.faces.size();
     for (std::size_t f = 0; f < below_faces; ++f)

@@ -42,7 +42,7 @@ double fraction(std::uint32_t part, std::uint32_t whole)
     return static_cast<double>(part) / static_cast<double>(whole);
 }
 
-/// The parts per icosahedron edge whose 20 n^2 is nearest.
+/// Parts of an icosahedron edge for which 20 n^2 is nearest to `faces`.
 std::uint32_t choose_subdivision(std::uint32_t faces)
 {
     std::uint32_t n = 1;
@@ -60,8 +60,8 @@ struct Cells
     std::uint32_t rows;
 };
 
-/// The columns x rows nearest to `cells` with a ratio within 2 of the one asked for; of equally
-/// near ones the one that is nearest to that ratio.
+/// Grid of columns x rows whose cell count is nearest to `cells`, with a ratio within 2 of the
+/// requested one; of equally near ones that with the nearest ratio.
 Cells choose_cells(std::uint32_t cells, double columns_per_row, Cells least)
 {
     const double ideal = std::sqrt(static_cast<double>(cells) * columns_per_row);
@@ -126,7 +126,7 @@ std::uint64_t mix(std::uint64_t x)
     return x ^ (x >> 31U);
 }
 
-/// Uniform in [0, 1), from the high 53 bits.
+/// Number uniform in [0, 1), from the high 53 bits.
 double unit_interval(std::uint64_t bits)
 {
     return std::ldexp(static_cast<double>(bits >> 11U), -53);
@@ -139,7 +139,7 @@ double lattice_value(std::uint64_t octave, double x, double y)
     return unit_interval(mix(mix(mix(octave + 1) + column) + row));
 }
 
-/// A lattice of random values, blended with two continuous derivatives.
+/// Lattice of random values, blended with two continuous derivatives.
 double smooth_noise(std::uint64_t octave, double x, double y)
 {
     const double column = std::floor(x);
@@ -154,7 +154,7 @@ double smooth_noise(std::uint64_t octave, double x, double y)
     return low * (1.0 - t) + high * t;
 }
 
-/// Four octaves, whose shortest wave is 1/32 of the side whatever the face count is.
+/// Sum of four octaves, whose shortest wave is 1/32 of the side for any face count.
 double terrain_height_m(double x, double y)
 {
     double height = 0.0;
@@ -190,18 +190,19 @@ TriangleMesh make_terrain(std::uint32_t faces)
 constexpr std::uint32_t kTeeth = 8;
 constexpr std::uint32_t kProfileEdges = 4 * kTeeth; ///< Root, flank, tip, flank.
 
-/// Corners of the gear's outline, counter-clockwise.
+/// Corner of the gear's outline, counter-clockwise.
 Point outline_corner(std::uint32_t corner)
 {
-    static constexpr std::array<double, 4> kPlace{0.0, 0.4, 0.5, 0.9}; // In one tooth's pitch.
+    // Places within one tooth's pitch.
+    static constexpr std::array<double, 4> kPlace{0.0, 0.4, 0.5, 0.9};
     const double radius_m = corner % 4 < 2 ? 0.04 : 0.05;
     const double turn = (static_cast<double>(corner / 4 % kTeeth) + kPlace[corner % 4]) / kTeeth;
     return {radius_m * portable_cos(2.0 * kPi * turn), radius_m * portable_sin(2.0 * kPi * turn),
             0.0};
 }
 
-/// A cut through the gear's rim, `outside` being a point of the outline: up the outer wall, inward
-/// over the top, down the bore, back outward below.
+/// Adds a cut through the gear's rim at `outside`, a point of the outline: up the outer wall,
+/// inward over the top, down the bore, back outward below.
 void add_gear_column(const Point& outside, std::uint32_t wall, std::uint32_t top,
                      TriangleMesh& mesh)
 {
@@ -254,7 +255,7 @@ TriangleMesh make_gear(std::uint32_t faces)
     return mesh;
 }
 
-/// Corners of what a lathe makes, from the axis below to the axis above; in metres.
+/// Outlines of solids of revolution, from the axis below to the axis above; in metres.
 constexpr std::array<detail::OutlinePoint, 6> kPegOutline{
     {{0.0, -0.03}, {0.009, -0.03}, {0.01, -0.029}, {0.01, 0.029}, {0.009, 0.03}, {0.0, 0.03}}};
 constexpr std::array<detail::OutlinePoint, 7> kSocketOutline{{{0.0, -0.03},
@@ -272,7 +273,7 @@ TriangleMesh make_turned(std::uint32_t faces, std::span<const detail::OutlinePoi
     return detail::make_turned(outline, segments, rings);
 }
 
-/// The cells a side whose 4 c (c + 2) is nearest.
+/// Plate with the cells a side for which 4 c (c + 2) is nearest to `faces`.
 TriangleMesh make_plate(std::uint32_t faces)
 {
     constexpr double kThickness_m = 0.01;

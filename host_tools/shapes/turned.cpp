@@ -23,7 +23,7 @@ double length_of(const OutlinePoint& a, const OutlinePoint& b)
     return std::sqrt(out * out + up * up);
 }
 
-/// The outline in as many pieces, each next one cut from the edge whose pieces are the longest.
+/// Outline cut into `pieces` pieces; each cut divides the edge with the longest pieces.
 std::vector<OutlinePoint> cut(std::span<const OutlinePoint> outline, std::uint32_t pieces)
 {
     const std::size_t edges = outline.size() - 1;

@@ -9,9 +9,9 @@
 namespace tactus::detail
 {
 
-/// Two triangles per cell of a columns x rows grid of vertices, the mesh's first ones, wrapping
-/// where asked. Faces turn from the column axis to the row axis. `columns` and `rows` count
-/// vertices, so an axis that doesn't wrap has one cell less.
+/// Two triangles for each cell of a columns x rows grid of vertices, which are the mesh's first
+/// ones. An axis may wrap. Faces turn from the column axis to the row axis. `columns` and `rows`
+/// count vertices, so an axis that does not wrap has one cell less.
 struct Grid
 {
     std::uint32_t columns{0};

@@ -14,7 +14,7 @@ namespace
 
 using Point = std::array<double, 3>;
 
-/// a x wa + b x wb + c x wc, pushed out to the unit sphere.
+/// Point a x wa + b x wb + c x wc, projected onto the unit sphere.
 Point blend(const Point& a, double wa, const Point& b, double wb, const Point& c, double wc)
 {
     Point p{};
@@ -60,7 +60,7 @@ public:
     }
 
 private:
-    /// The cyclic permutations of (0, +-1, +-golden ratio).
+    /// Adds the cyclic permutations of (0, +-1, +-golden ratio).
     void add_corners()
     {
         const double golden = 0.5 * (1.0 + std::sqrt(5.0));
@@ -79,7 +79,7 @@ private:
         }
     }
 
-    /// Neighbours are 63 degrees apart, all others 116 or more.
+    /// True for neighbours, which are 63 degrees apart; all others are 116 or more.
     [[nodiscard]] bool is_edge(std::uint32_t a, std::uint32_t b) const
     {
         const Point& p = mesh_.positions[a];
@@ -114,7 +114,7 @@ private:
                                         static_cast<double>(i), p[c], static_cast<double>(j)));
     }
 
-    /// The vertex `i` steps from a towards b.
+    /// Vertex `i` steps from a towards b.
     [[nodiscard]] std::uint32_t on_edge(std::uint32_t a, std::uint32_t b, std::uint32_t i) const
     {
         if (i == 0 || i == n_)
@@ -124,7 +124,7 @@ private:
         return a < b ? edge_start_[a][b] + i - 1 : edge_start_[b][a] + (n_ - i) - 1;
     }
 
-    /// Vertex (i, j) of a side lies i steps towards b and j steps towards c.
+    /// Adds one side; its vertex (i, j) lies i steps towards b and j steps towards c.
     void add_side(std::uint32_t a, std::uint32_t b, std::uint32_t c)
     {
         if (determinant(mesh_.positions[a], mesh_.positions[b], mesh_.positions[c]) < 0.0)

@@ -9,8 +9,8 @@
 namespace tactus::detail
 {
 
-/// The unit sphere as an icosahedron whose edges are cut into `n` parts each: 20 n^2 faces,
-/// 10 n^2 + 2 vertices.
+/// Unit sphere: an icosahedron whose edges are cut into `n` parts each, 20 n^2 faces, 10 n^2 + 2
+/// vertices.
 [[nodiscard]] TriangleMesh make_icosphere(std::uint32_t n);
 
 } // namespace tactus::detail

@@ -10,12 +10,12 @@ namespace tactus::detail
 
 inline constexpr double kPi = 3.14159265358979323846;
 
-/// sin for |x| < 1e3, within 1e-13: libm's last bits differ between machines, and a generated mesh
-/// must not. Half turns are taken off with pi in two parts, the rest by Taylor's series, whose next
-/// term is below 2e-18 on [-pi/2, pi/2].
+/// Sine for |x| < 1e3, within 1e-13: libm's last bits differ between machines, and those of a
+/// generated mesh must not. Multiples of pi are subtracted in two parts; Taylor's series of the
+/// rest has its next term below 2e-18 on [-pi/2, pi/2].
 [[nodiscard]] inline double portable_sin(double x)
 {
-    constexpr double kPiHigh = 3.14159265346825122833; // 33 bits: its multiples are exact.
+    constexpr double kPiHigh = 3.14159265346825122833; // 33 bits: multiples are exact.
     constexpr double kPiLow = 1.21542010130123844986e-10;
     const double turns = std::floor(x / kPi + 0.5);
     const double r = (x - turns * kPiHigh) - turns * kPiLow;

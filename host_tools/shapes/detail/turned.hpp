@@ -10,17 +10,17 @@
 namespace tactus::detail
 {
 
-/// A corner of an outline that is turned round the z axis.
+/// Corner of an outline that is rotated around the z axis.
 struct OutlinePoint
 {
     double from_axis_m{0.0};
     double z_m{0.0};
 };
 
-/// What a lathe makes: the outline's first and last corners are on the axis, the first one below;
-/// what is outside lies on its right. It is cut so that `rings` circles of `segments` vertices each
-/// lie between them, one at each corner: 2 x segments x rings faces. As many rings as the outline
-/// has corners between its ends, and 3 segments, at least.
+/// Solid of revolution of an outline. Its first and last corners are on the axis, the first one
+/// below; the outside lies on its right. Between them it is cut into `rings` circles of `segments`
+/// vertices each, one at each corner: 2 x segments x rings faces. `rings` is at least the number of
+/// corners between the ends, `segments` at least 3.
 [[nodiscard]] TriangleMesh make_turned(std::span<const OutlinePoint> outline,
                                        std::uint32_t segments, std::uint32_t rings);
 
