@@ -12,7 +12,7 @@ namespace tactus
 namespace
 {
 
-/// In steps, along each axis: vertices this near are one in their files.
+/// Distance in steps, along each axis, below which vertices are one in their files.
 constexpr double kApart = 0.5;
 
 std::uint64_t cell_of(const Vec3& steps)
@@ -34,7 +34,7 @@ Vec3 rounded(const Vec3& steps)
 
 } // namespace
 
-/// The number of the first vertex near a place; as many as there are where none is.
+/// Number of the first vertex near a place, or the number of vertices if none is near.
 std::size_t CommonPlaces::first_near(const Vec3& steps) const
 {
     std::size_t first = vertices_.size();

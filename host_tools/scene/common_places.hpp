@@ -13,22 +13,22 @@
 #include <unordered_map>
 #include <vector>
 
-// Any thread, but not the haptic one: it allocates, and works on its own data alone.
+// Any thread, except the haptic one: it allocates, and works on its own data alone.
 namespace tactus
 {
 
-/// The vertices that models on one grid have in common but for a rounding of their files. Where the
-/// middle between two places of the grid lies between such vertices, they would be a step apart.
+/// Common vertices of models on one grid, equal except for the rounding of their files. Without
+/// this class, two such vertices on different sides of a rounding boundary of the grid would end up
+/// a step apart.
 class CommonPlaces
 {
 public:
     explicit CommonPlaces(double step_m) : step_m_(step_m) {}
 
-    /// Looks at vertices which lie in one of the boxes. One that is less than half a step, along
-    /// each axis, from a vertex looked at before, and would be rounded apart from it, is put on
-    /// that one's place of the grid. `grid_place_m` and the boxes are in the mesh's frame. Returns
-    /// how far a vertex was moved, at most. Linear in the vertices; those in a box are kept, at 80
-    /// B each.
+    /// Aligns vertices in the boxes. If a vertex is less than half a step, along each axis, from an
+    /// earlier one and would be rounded to another place, it is put on the grid place of that one.
+    /// `grid_place_m` and the boxes are in the mesh's frame. Returns the greatest distance that a
+    /// vertex was moved. Linear in the vertices; those in a box are kept, at 80 B each.
     double settle(TriangleMesh& mesh, const Vec3& grid_place_m,
                   std::span<const Eigen::AlignedBox3d> boxes);
 
@@ -36,8 +36,9 @@ private:
     [[nodiscard]] std::size_t first_near(const Vec3& steps) const;
 
     double step_m_;
-    std::vector<Vec3> vertices_; ///< In steps from the grid's place.
-    std::unordered_multimap<std::uint64_t, std::uint32_t> of_cell_; ///< Keys: cells a step wide.
+    std::vector<Vec3> vertices_; ///< Vertices, in steps from the grid's place.
+    /// Vertices by cell; a cell is a step wide.
+    std::unordered_multimap<std::uint64_t, std::uint32_t> of_cell_;
 };
 
 } // namespace tactus

@@ -10,7 +10,7 @@ namespace tactus
 namespace
 {
 
-constexpr std::size_t kNamed = 3; ///< More of them would hide the reason.
+constexpr std::size_t kNamed = 3; ///< More names would hide the reason.
 
 } // namespace
 

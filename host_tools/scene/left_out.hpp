@@ -10,19 +10,19 @@
 namespace tactus
 {
 
-/// What of a scene is left out, for notes: one line a reason, which names what it holds for.
+/// Ignored parts of a scene, for notes: one line for each reason, with the names of the parts.
 class LeftOut
 {
 public:
     void add(const std::string& reason, const std::string& what);
 
-    /// "A, B, C and 4 more left out: REASON", ordered by the reasons.
+    /// Lines "A, B, C and 4 more left out: REASON", ordered by the reasons.
     [[nodiscard]] std::vector<std::string> notes() const;
 
 private:
     struct Things
     {
-        std::string named; ///< The first ones.
+        std::string named; ///< Names of the first parts.
         std::size_t count{0};
     };
     std::map<std::string, Things> by_reason_;

@@ -21,7 +21,7 @@ nlohmann::ordered_json material_json(const Material& material)
     nlohmann::ordered_json json = nlohmann::ordered_json::object();
     for (const MaterialKey& key : kMaterialKeys)
     {
-        // Without a dynamic friction it would be read as the static one.
+        // A missing dynamic friction would be read as the static one.
         const bool is_said = key.value == &Material::dynamic_friction
                                  ? material.static_friction != 0.0
                                  : material.*key.value != Material{}.*key.value;

@@ -17,29 +17,27 @@ namespace tactus
 /// An object that shows a model.
 struct PlacedModel
 {
-    std::string name;     ///< Valid, and no other object's.
-    std::size_t model{0}; ///< Of PlacedModels::files.
+    std::string name;     ///< Name; valid and unique.
+    std::size_t model{0}; ///< Index into PlacedModels::files.
     Pose pose;
     Material material;
 };
 
-/// A scene whose objects show models that are made already: what spm_publish serves, and hrtc
-/// touches without a host.
+/// A scene whose objects show existing models, as spm_publish serves it and hrtc touches it without
+/// a server.
 struct PlacedModels
 {
-    std::vector<std::filesystem::path> files; ///< Each once, in the order in which they come up.
-    std::vector<PlacedModel>
-        objects;                    ///< 1 to kMaxObjects; those that hands go through aren't here.
-    std::vector<std::string> notes; ///< What else of a file that was read is not here.
+    std::vector<std::filesystem::path> files; ///< Files, each once, in order of appearance.
+    std::vector<PlacedModel> objects;         ///< Touched objects, 1 to kMaxObjects.
+    std::vector<std::string> notes;           ///< Notes on content of the file that is ignored.
 };
 
-/// Reads a scene file of which each touched object names its model, as spm_build writes them.
-/// Whether the models are there is not looked at. A refusal is one line that begins with the file's
-/// name.
+/// Reads a scene file in which each touched object names its model, as spm_build writes it. The
+/// existence of the models is not checked. A refusal is one line that begins with the file's name.
 [[nodiscard]] Result<PlacedModels, Refusal> read_placed_models(const std::filesystem::path& path);
 
-/// The text of such a file: each object with name, pose, material and model. Of files only the
-/// names count.
+/// Text of such a file: each object with name, pose, material and model. Only the names of `files`
+/// are used, without folders.
 [[nodiscard]] std::string scene_text(const PlacedModels& scene);
 
 } // namespace tactus

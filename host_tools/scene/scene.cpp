@@ -21,7 +21,7 @@ namespace tactus
 namespace
 {
 
-/// What `read` returns, or why it can't with the file's name in front.
+/// Result of `read`, or its SceneFault as a refusal after the file's name.
 template <typename Read>
 auto refusing(const std::filesystem::path& path, const Read& read)
     -> Result<decltype(read()), Refusal>
@@ -48,7 +48,7 @@ void mirror(TriangleMesh& mesh)
     }
     for (auto& face : mesh.faces)
     {
-        std::swap(face[1], face[2]); // The outside stays outside.
+        std::swap(face[1], face[2]); // Mirroring must keep the outside.
     }
 }
 

@@ -16,7 +16,7 @@
 namespace tactus
 {
 
-/// Whether a path ends in .gltf or .glb, in either case of letters.
+/// True if a path ends in .gltf or .glb, in either case of letters.
 [[nodiscard]] bool has_scene_extension(const std::filesystem::path& path);
 
 /// A glTF 2.0 scene (docs/scene-files.md): its objects, and the meshes that they show. Every
@@ -24,30 +24,30 @@ namespace tactus
 class Scene
 {
 public:
-    /// Reads .gltf and .glb: 1 to kMaxObjects objects, one of them touched at least. Costs the
-    /// file's bytes and some 100 bytes for each value of its JSON, which are bounded, too; of the
-    /// buffers only those are read that say where instances stand.
+    /// Reads .gltf and .glb with 1 to kMaxObjects objects, at least one of them touched. Costs the
+    /// file's bytes and some 100 bytes for each value of its JSON, which are bounded too; of the
+    /// buffers only those with the poses of instances are read.
     [[nodiscard]] static Result<Scene, Refusal> open(const std::filesystem::path& path);
 
     ~Scene();
     Scene(Scene&&) noexcept;
     Scene& operator=(Scene&&) noexcept;
 
-    /// In the order of the file's nodes.
+    /// Objects in the order of the file's nodes.
     [[nodiscard]] const std::vector<SceneObject>& objects() const noexcept { return objects_; }
 
-    /// What of the file is left out or can't be told, one line each: hidden nodes, and what
+    /// Notes on ignored or unreadable content, one line each: hidden nodes, and content that
     /// extensions add, move or hide.
     [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
 
-    /// What a modeller called the mesh, as a valid name; not unique. "mesh7" where it has none.
+    /// Name of the mesh in the file, as a valid name; not unique. "mesh7" if it has none.
     [[nodiscard]] std::string mesh_name(const MeshUse& use) const;
 
-    /// The same for messages: mesh 'arm' (meshes[7]).
+    /// Description of the mesh for messages: mesh 'arm' (meshes[7]).
     [[nodiscard]] std::string mesh_place(const MeshUse& use) const;
 
-    /// The mesh of an object, in the object's frame: at most kMaxFaces faces, finite coordinates,
-    /// indices in range. Buffers that it lies in are read and kept; nothing is welded or repaired.
+    /// Mesh of an object, in the object's frame: at most kMaxFaces faces, finite coordinates,
+    /// indices in range. Buffers that it uses are read and kept; nothing is welded or repaired.
     [[nodiscard]] Result<SceneMesh, Refusal> read_mesh(const MeshUse& use);
 
 private:

@@ -12,8 +12,9 @@ namespace tactus
 /// A mesh of a scene file.
 struct SceneMesh
 {
-    TriangleMesh mesh;    ///< Without faces: nothing of it has a surface.
-    std::string left_out; ///< What has none, such as "2 primitives of LINES"; empty: nothing.
+    TriangleMesh mesh; ///< Mesh; no faces: no part of it has a surface.
+    /// Parts without a surface, such as "2 primitives of LINES"; empty: none.
+    std::string left_out;
 };
 
 } // namespace tactus

@@ -13,12 +13,12 @@
 namespace tactus
 {
 
-/// A mesh of a scene file as an object shows it. A node that mirrors shows another shape than its
-/// mesh, which no pose can make of it.
+/// Use of a scene file's mesh by an object. A node that mirrors shows another shape than its mesh,
+/// and no pose can convert one into the other.
 struct MeshUse
 {
-    std::size_t mesh{0};     ///< Of the file's meshes.
-    bool is_mirrored{false}; ///< At the plane x = 0 of the mesh's frame.
+    std::size_t mesh{0};     ///< Index into the file's meshes.
+    bool is_mirrored{false}; ///< True if mirrored at the plane x = 0 of the mesh's frame.
 
     [[nodiscard]] auto operator<=>(const MeshUse&) const = default;
 };
@@ -26,13 +26,14 @@ struct MeshUse
 /// A node of a scene file that is an object.
 struct SceneObject
 {
-    std::string name;            ///< Valid, and no other object's.
-    std::string place;           ///< The node, for messages: node 'Arm' (nodes[3]).
-    std::string model;           ///< An .spm beside the scene file; empty: none is named.
-    std::optional<MeshUse> mesh; ///< None: a model is named instead.
-    Pose pose;                   ///< In the world, in metres; one that checked_pose() takes.
+    std::string name;            ///< Name; valid and unique.
+    std::string place;           ///< Description of the node for messages: node 'Arm' (nodes[3]).
+    std::string model;           ///< Name of an .spm beside the scene file; empty: none.
+    std::optional<MeshUse> mesh; ///< Mesh; none if a model is named instead.
+    Pose pose;                   ///< Pose in the world, in metres; one that checked_pose() accepts.
     Material material;
-    bool is_touched{true}; ///< False: hands go through, and the rest needn't be fit for them.
+    /// False if tools pass through the object; the rest may then be unfit for touch.
+    bool is_touched{true};
 };
 
 } // namespace tactus

@@ -19,12 +19,11 @@ namespace tactus
 namespace
 {
 
-/// Places nearer than this part of an object's size are one. Coordinates of floats differ by a
-/// tenth of it.
+/// Share of an object's size within which places are equal; ten times the rounding of floats.
 constexpr double kSamePlace = 1e-6;
 constexpr double kSameTurn = 1e-9;
 constexpr std::size_t kLeastCommon = 2;
-/// In one corner, each model is compared with so many others.
+/// Number of others with which a model is compared in one corner.
 constexpr std::size_t kPairsOfEach = 16;
 
 std::uint64_t mixed(std::uint64_t hash, std::int64_t value)
@@ -54,7 +53,7 @@ void SharedGrids::add(std::size_t model, const Pose& pose, const TriangleMesh& m
     {
         return;
     }
-    // A power of 16, so that objects of similar size have the same.
+    // A power of 16, so that objects of similar size have the same one.
     const int exponent = 4 * static_cast<int>(std::floor(std::ilogb(kSamePlace * size_m) / 4.0));
     const double step_m = std::ldexp(1.0, exponent + 4);
     const Eigen::Matrix3d rotation = Eigen::Quaterniond(pose.rotation.data()).toRotationMatrix();
@@ -65,7 +64,8 @@ void SharedGrids::add(std::size_t model, const Pose& pose, const TriangleMesh& m
     {
         turn = mixed(turn, in_steps(entry, kSameTurn));
     }
-    for (const double coarser : {1.0, 16.0}) // Neighbours may be 16 times as large, and some more.
+    // Neighbours may be 16 times as large, and a little more.
+    for (const double coarser : {1.0, 16.0})
     {
         const int step_log2 = std::ilogb(step_m * coarser);
         for (const auto& position : mesh.positions)
@@ -96,8 +96,7 @@ void SharedGrids::sort_corners()
     corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
 }
 
-/// To half of the most that there may be, so that there is room for as many again before the next
-/// time.
+/// Reduces the corners to half of the maximum, so that as many can follow before the next time.
 void SharedGrids::thin_out()
 {
     sort_corners();
@@ -121,7 +120,7 @@ std::vector<std::size_t> SharedGrids::first_of_each()
         }
         return model;
     };
-    // By steps, too: one corner in common is so in small steps and in large ones.
+    // The key contains the step: one common corner counts for small and large steps.
     std::map<std::array<std::int64_t, 3>, std::size_t> common;
     const auto meet = [&](const Corner& one, const Corner& other)
     {

@@ -11,36 +11,38 @@
 #include <utility>
 #include <vector>
 
-// Any thread, but not the haptic one: it allocates, and works on its own data alone.
+// Any thread, except the haptic one: it allocates, and works on its own data alone.
 namespace tactus
 {
 
-/// Which models of a scene have vertices in common where their objects stand: tiles of one ground,
-/// parts of one assembly. On grids of their own the two sides of such a border are rounded apart.
+/// Finds models of a scene with common vertices in the poses of their objects: tiles of one ground,
+/// parts of one assembly. With separate grids, the two sides of such a border would be rounded
+/// differently.
 class SharedGrids
 {
     struct Corner
     {
-        std::uint64_t place{0}; ///< A hash of the place in the world, the rotation and the scale.
+        std::uint64_t place{0}; ///< Hash of the place in the world, the rotation and the scale.
         std::uint32_t model{0};
-        std::int32_t step_log2{0}; ///< Places within 2 to this power metres count as one.
+        std::int32_t step_log2{0}; ///< Places within 2 to this power metres are equal.
 
         friend auto operator<=>(const Corner&, const Corner&) = default;
     };
 
 public:
-    /// Where there are more corners, those with lower hashes are kept, of all models alike.
+    /// Maximum number of corners; beyond it those with the lowest hashes are kept, independent of
+    /// the model.
     static constexpr std::size_t kCornersMax = std::size_t{1} << 23U;
     static constexpr std::size_t kCornerBytes = sizeof(Corner);
 
     explicit SharedGrids(std::size_t models, std::size_t corners_max = kCornersMax);
 
-    /// An object shows the model, whose mesh this is. Linear in its vertices.
+    /// Adds an object that shows the model, whose mesh this is. Linear in its vertices.
     void add(std::size_t model, const Pose& pose, const TriangleMesh& mesh);
 
-    /// For each model the first of those that it meets, directly or by way of others; itself where
-    /// it meets none. Two models meet when two of their vertices or more are in the same places and
-    /// their objects are turned and scaled alike: else no grid fits both.
+    /// For each model, the first of those that it meets, directly or through others; itself if it
+    /// meets none. Two models meet if at least two of their vertices coincide and their objects
+    /// have the same rotation and scale; otherwise no grid fits both.
     [[nodiscard]] std::vector<std::size_t> first_of_each();
 
 private:
@@ -50,11 +52,11 @@ private:
     std::size_t models_;
     std::size_t corners_max_;
     std::vector<Corner> corners_;
-    std::uint64_t kept_{~std::uint64_t{0}}; ///< Corners with hashes up to this one.
+    std::uint64_t kept_{~std::uint64_t{0}}; ///< Upper limit of the hashes of kept corners.
 };
 
-/// The place in an object's frame where the world's origin lies: grids through it are one grid in
-/// the world for all objects that are turned and scaled alike.
+/// Place of the world's origin in an object's frame: grids through it are one grid in the world for
+/// all objects with the same rotation and scale.
 [[nodiscard]] std::array<double, 3> world_origin_in(const Pose& pose);
 
 } // namespace tactus

@@ -14,14 +14,14 @@ namespace tactus::detail
 namespace
 {
 
-/// Indices are 32-bit, and the largest value names nothing.
+/// Indices are 32-bit, and the largest value is no index.
 constexpr std::uint64_t kMaxCount = 0xFFFF'FFFE;
 
 template <typename T>
 T value_at(const char* at)
 {
     T value{};
-    std::memcpy(&value, at, sizeof(value)); // Nothing says that it is aligned.
+    std::memcpy(&value, at, sizeof(value)); // Data may be unaligned.
     return value;
 }
 
@@ -84,8 +84,8 @@ std::size_t GltfAccessor::bytes_of(Component component)
     }
 }
 
-/// The bytes from `user`'s byteOffset to the end of its bufferView. `stride` becomes the view's,
-/// where it has one.
+/// Bytes from `user`'s byteOffset to the end of its bufferView. Sets `stride` to the view's, if it
+/// has one.
 std::string_view GltfAccessor::view_of(GltfFile& file, const JsonAt& user, std::size_t& stride)
 {
     const JsonAt root = file.root();
@@ -231,7 +231,7 @@ std::uint32_t GltfAccessor::whole_at(const char* at, Component component)
     }
 }
 
-/// None: the element is 0.
+/// Bytes of an element; null if the element is 0.
 const char* GltfAccessor::element(std::size_t i) const
 {
     const std::size_t index_bytes = bytes_of(sparse_component_);
@@ -257,7 +257,7 @@ std::uint32_t GltfAccessor::index(std::size_t i) const
     return at == nullptr ? 0 : whole_at(at, component_);
 }
 
-/// Normalized signed integers reach from -1 to 1, both included; the least value is -1, too.
+/// Normalized signed integers range from -1 to 1, both included; the least value is -1, too.
 double GltfAccessor::number_at(const char* at) const
 {
     const auto scaled = [this](double value, double largest)

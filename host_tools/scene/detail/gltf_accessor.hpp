@@ -14,13 +14,13 @@
 namespace tactus::detail
 {
 
-/// Throws, with the way out: what is compressed isn't decoded here.
+/// Throws a refusal of compressed data, with a remedy; they are not decoded here.
 [[noreturn]] void refuse_compressed(const JsonAt& json, std::string_view extension);
 
 /// accessors[index] of a glTF file, of type SCALAR, VEC3 or VEC4: numbers in a buffer, with a
-/// stride and perhaps some that are replaced (sparse). All bounds are checked when it is made,
-/// which costs nothing an element but for sparse ones; elements are decoded when they are asked
-/// for. The file must outlive it. Functions throw a SceneFault.
+/// stride and possibly some replaced ones (sparse). The constructor checks all bounds, at no cost
+/// for each element except for sparse ones; elements are decoded on access. The file must outlive
+/// the accessor. Functions throw a SceneFault.
 class GltfAccessor
 {
 public:
@@ -29,17 +29,17 @@ public:
     [[nodiscard]] std::size_t count() const noexcept { return count_; }
     [[nodiscard]] const JsonAt& json() const noexcept { return json_; }
 
-    /// Throws unless the elements can be indices: unsigned whole numbers.
+    /// Throws unless the elements can be indices: unsigned integers.
     void require_indices() const;
-    /// Throws unless they can be positions: VEC3 of floats, or of small integers where the file
-    /// has the extension KHR_mesh_quantization.
+    /// Throws unless the elements can be positions: VEC3 of floats, or of small integers if the
+    /// file has the extension KHR_mesh_quantization.
     void require_positions(const GltfFile& file) const;
-    /// Throws unless an element is that many numbers.
+    /// Throws unless an element has `width` numbers.
     void require_width(std::size_t width) const;
 
-    /// Element `i` < count() of an accessor that passed the check above.
+    /// Element `i` < count() of an accessor that passed require_indices().
     [[nodiscard]] std::uint32_t index(std::size_t i) const;
-    /// `Width` numbers, which are finite, or it throws.
+    /// Element `i` of `Width` numbers; throws if one is not finite.
     template <std::size_t Width>
     [[nodiscard]] std::array<double, Width> numbers(std::size_t i) const
     {
@@ -49,7 +49,7 @@ public:
     }
 
 private:
-    /// Codes of the standard, and of OpenGL.
+    /// Codes of the standard, which are those of OpenGL.
     enum class Component : std::uint16_t
     {
         i8 = 5120,
@@ -58,7 +58,7 @@ private:
         u16 = 5123,
         u32 = 5125,
         f32 = 5126,
-        f64 = 5130, ///< From KHR_accessor_float64.
+        f64 = 5130, ///< Code from KHR_accessor_float64.
     };
 
     [[nodiscard]] static Component component_of(const JsonAt& json);
@@ -75,15 +75,15 @@ private:
 
     JsonAt json_;
     Component component_;
-    std::size_t width_; ///< Numbers of an element: 1, 3 or 4.
+    std::size_t width_; ///< Numbers in an element: 1, 3 or 4.
     std::size_t count_;
     bool is_normalized_{false};
-    std::string_view base_; ///< From the first element on; empty: all are 0.
+    std::string_view base_; ///< Bytes from the first element on; empty: all elements are 0.
     std::size_t stride_{0};
     std::size_t sparse_count_{0};
     Component sparse_component_{Component::u8};
-    std::string_view sparse_indices_; ///< Strictly rising.
-    std::string_view sparse_values_;  ///< One element behind the other.
+    std::string_view sparse_indices_; ///< Indices, strictly ascending.
+    std::string_view sparse_values_;  ///< Elements, contiguous.
 };
 
 } // namespace tactus::detail

@@ -33,7 +33,7 @@ constexpr std::string_view kBodies = "adds bodies and moves nodes by them; the n
                                      "are touched, where the file has them at first";
 
 constexpr auto kKnown = std::to_array<KnownExtension>({
-    // Read.
+    // Extensions that are read.
     {"KHR_accessor_float64", Use::read, ""},
     {"KHR_draco_mesh_compression", Use::read, ""},
     {"KHR_mesh_quantization", Use::read, ""},
@@ -42,7 +42,7 @@ constexpr auto kKnown = std::to_array<KnownExtension>({
     {"EXT_mesh_gpu_instancing", Use::read, ""},
     {"EXT_meshopt_compression", Use::read, ""},
     {"MSFT_lod", Use::read, ""},
-    // What adds or moves something.
+    // Extensions that add or move something.
     {"KHR_animation_pointer", Use::named, kLater},
     {"KHR_animation2", Use::named, kLater},
     {"KHR_behavior", Use::named, kLater},
@@ -92,7 +92,7 @@ constexpr auto kKnown = std::to_array<KnownExtension>({
     {"VRMC_springBone", Use::named, kLater},
     {"VRM", Use::named, kLater},
     {"VRMC_vrm", Use::named, kLater},
-    // For eyes and ears, and data about what is there.
+    // Extensions for sight and sound, and data about the content.
     {"KHR_audio", Use::none, ""},
     {"KHR_audio_", Use::none, ""},
     {"KHR_blend", Use::none, ""},
@@ -139,7 +139,7 @@ constexpr auto kKnown = std::to_array<KnownExtension>({
     {"NV_materials_mdl", Use::none, ""},
 });
 
-/// Where an extension stands: how often, and where first.
+/// Number of places of an extension, and the first one.
 struct Places
 {
     std::size_t count{0};
@@ -181,7 +181,7 @@ public:
     [[nodiscard]] const std::map<std::string, Places>& found() const noexcept { return found_; }
 
 private:
-    /// The member if it is an array, else an empty one. Its reader refuses what is wrong.
+    /// Member if it is an array, otherwise an empty one; the reader of the content refuses faults.
     static const nlohmann::json& array_of(const nlohmann::json& thing, const char* key)
     {
         static const nlohmann::json kNone = nlohmann::json::array();

@@ -24,7 +24,7 @@ namespace
 {
 
 constexpr std::string_view kGlbMagic = "glTF";
-constexpr std::size_t kGlbHeaderBytes = 12;  ///< Magic, version, length of all.
+constexpr std::size_t kGlbHeaderBytes = 12;  ///< Magic, version, total length.
 constexpr std::size_t kChunkHeaderBytes = 8; ///< Length and type.
 constexpr std::uint32_t kJsonChunk = 0x4E4F'534A;
 constexpr std::uint32_t kBinaryChunk = 0x004E'4942;
@@ -46,7 +46,7 @@ std::string bytes_of(const std::filesystem::path& path)
     return std::move(bytes).value();
 }
 
-/// What stands behind "base64," of a data URI; throws where it is something else.
+/// Data after "base64," of a data URI; throws for another form.
 std::string decoded(std::string_view uri, const JsonAt& buffer)
 {
     constexpr std::string_view kMark = ";base64,";
@@ -70,8 +70,8 @@ std::string decoded(std::string_view uri, const JsonAt& buffer)
     return bytes;
 }
 
-/// A relative file name of a URI: "%20" is a blank. A '%' that no two hexadecimal digits follow is
-/// one of the name's own: programs write names as they are.
+/// Relative file name of a URI: "%20" is a blank. A '%' without two hexadecimal digits after it is
+/// kept: some programs write names unescaped.
 std::string unescaped(std::string_view uri)
 {
     std::string name;
@@ -122,7 +122,8 @@ JsonAt GltfFile::root() const
     return {*json_, ""};
 }
 
-/// Header, JSON, and in most files one binary chunk; what follows is of extensions.
+/// Reads header, JSON, and the binary chunk that most files have; further chunks belong to
+/// extensions.
 void GltfFile::take_chunks(std::string_view bytes)
 {
     if (bytes.size() < kGlbHeaderBytes || u32_at(bytes, 8) > bytes.size() ||
@@ -237,8 +238,8 @@ std::string GltfFile::load(const JsonAt& buffer, std::size_t index, std::uint64_
     return std::move(bytes).value();
 }
 
-/// The file that a URI names: as the standard reads it or, where no such file is there, as some
-/// programs write it, with the characters themselves and with backslashes between folders.
+/// File that a URI names, as the standard reads it. If it does not exist: as some programs write
+/// it, unescaped and with backslashes between folders.
 std::string GltfFile::file_of(const JsonAt& uri) const
 {
     const std::string& text = uri.text();

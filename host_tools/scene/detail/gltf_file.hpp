@@ -16,15 +16,16 @@
 namespace tactus::detail
 {
 
-/// Of the file, of each buffer, and of all buffers together: as far as a GLB's own counts go.
+/// Maximum bytes of the file, of each buffer, and of all buffers together: the range of a GLB's
+/// counts.
 inline constexpr std::uint64_t kMaxGltfBytes = 0xFFFF'FFFF;
 
-/// A glTF 2.0 file: its JSON and its buffers. Functions throw a SceneFault where it is none.
+/// A glTF 2.0 file: its JSON and its buffers. Functions throw a SceneFault if it is invalid.
 class GltfFile
 {
 public:
-    /// Reads .gltf and .glb, told apart by their first bytes, and looks at version and extensions;
-    /// of the buffers nothing.
+    /// Reads .gltf and .glb, distinguished by their first bytes, and checks version and extensions,
+    /// but no buffers.
     explicit GltfFile(const std::filesystem::path& path);
     ~GltfFile();
     GltfFile(GltfFile&&) noexcept;
@@ -32,23 +33,23 @@ public:
 
     [[nodiscard]] JsonAt root() const;
 
-    /// Whether the file can't be understood without that extension.
+    /// True if the file requires that extension.
     [[nodiscard]] bool requires_extension(std::string_view name) const;
 
-    /// What of the file as a whole is left out, one line each.
+    /// Notes on content of the whole file that is ignored, one line each.
     [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
 
-    /// Whether buffers[index] says where its bytes are.
+    /// True if buffers[index] states where its bytes are.
     [[nodiscard]] bool has_buffer(std::size_t index) const;
 
-    /// The bytes of buffers[index], as many as its byteLength says: from the file's own binary
-    /// chunk, a data URI or a file beside it. Read once, at the first call; then kept.
+    /// Bytes of buffers[index], as many as its byteLength: from the file's own binary chunk, a data
+    /// URI or a file beside it. Read at the first call, then kept.
     [[nodiscard]] std::string_view buffer(std::size_t index);
 
-    /// Of all buffers read so far.
+    /// Bytes of all buffers read so far.
     [[nodiscard]] std::uint64_t buffer_bytes() const noexcept { return buffer_bytes_; }
 
-    /// Of a node, mesh or the like, for messages: node 'Arm' (nodes[3]).
+    /// Description of a node, mesh or the like, for messages: node 'Arm' (nodes[3]).
     [[nodiscard]] std::string described(const std::string& list, std::size_t index) const;
 
 private:
@@ -59,8 +60,9 @@ private:
     [[nodiscard]] std::string file_of(const JsonAt& uri) const;
 
     std::filesystem::path folder_;
-    std::unique_ptr<nlohmann::json> json_; ///< At a fixed address: JsonAt points into it.
-    std::optional<std::string> binary_;    ///< Of a GLB that has one.
+    /// JSON at a fixed address, since JsonAt points into it.
+    std::unique_ptr<nlohmann::json> json_;
+    std::optional<std::string> binary_; ///< Binary chunk of a GLB, if any.
     std::vector<std::string> required_;
     std::vector<std::string> notes_;
     std::vector<std::optional<std::string>> buffers_;

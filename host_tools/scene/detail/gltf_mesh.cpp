@@ -32,7 +32,8 @@ constexpr std::size_t kTriangles = 4;
 constexpr std::size_t kStrip = 5;
 constexpr std::uint64_t kAnyMode = 0xFFFF'FFFF;
 
-/// To remember which vertex of the mesh an element became costs 4 bytes for each of the accessor.
+/// Elements that cost as much as one read: the map from elements to vertices takes 4 bytes for each
+/// element of the accessor.
 constexpr std::uint64_t kElementsPerRead = 16;
 constexpr std::uint32_t kUnseen = 0xFFFF'FFFF;
 
@@ -42,7 +43,7 @@ std::size_t mode_of(const JsonAt& primitive)
     return mode ? mode->index_below(kModes.size(), "modes") : kTriangles;
 }
 
-/// An extension may have primitives of modes that glTF doesn't have.
+/// True for a primitive in a mode that only an extension defines.
 bool is_of_an_extension(const JsonAt& primitive)
 {
     const auto mode = primitive.find("mode");
@@ -50,7 +51,7 @@ bool is_of_an_extension(const JsonAt& primitive)
            primitive.find("extensions");
 }
 
-/// What has a surface that this reader can't tell.
+/// Refuses deformable surfaces, which this reader cannot render.
 void refuse_what_moves(const JsonAt& primitive)
 {
     if (primitive.size_of("targets") > 0)
@@ -61,7 +62,7 @@ void refuse_what_moves(const JsonAt& primitive)
     }
 }
 
-/// A compressed primitive has an uncompressed form, too, unless the file says that it needs the
+/// Refuses a compressed primitive. It has an uncompressed form too, unless the file requires the
 /// extension or the accessor has no data.
 void refuse_what_is_compressed(const GltfFile& file, const JsonAt& primitive, std::size_t positions)
 {
@@ -80,13 +81,13 @@ std::size_t accessor_of(const GltfFile& file, const JsonAt& json)
     return json.index_below(file.root().size_of("accessors"), "accessors");
 }
 
-/// Whether an accessor has no elements. The standard has none such, but programs write it.
+/// True if an accessor has no elements. The standard forbids that, but programs write it.
 bool is_empty(const GltfFile& file, std::size_t accessor)
 {
     return file.root().at("accessors").at(accessor).at("count").json() == 0;
 }
 
-/// Why a primitive has no surface; empty when it may have one.
+/// Reason why a primitive has no surface; empty if it may have one.
 std::string why_no_surface(const GltfFile& file, const JsonAt& primitive)
 {
     if (is_of_an_extension(primitive))
@@ -112,8 +113,8 @@ std::size_t faces_of(std::size_t mode, std::size_t corners)
     return mode == kTriangles ? corners / 3 : corners - 2;
 }
 
-/// The places of a face's corners among those of its primitive, in the standard's order, which
-/// keeps the winding.
+/// Indices of a face's corners within its primitive, in the standard's order, which keeps the
+/// winding.
 std::array<std::size_t, 3> corners_of(std::size_t mode, std::size_t face)
 {
     if (mode == kTriangles)
@@ -127,14 +128,14 @@ std::array<std::size_t, 3> corners_of(std::size_t mode, std::size_t face)
     return {face + 1, face + 2, 0};
 }
 
-/// One mesh, primitive by primitive. Vertices of an accessor that primitives share are shared.
+/// Builds one mesh, primitive by primitive. Primitives that share an accessor share its vertices.
 class MeshBuilder
 {
 public:
     explicit MeshBuilder(GltfFile& file) : file_(file) {}
 
-    /// `charge` is told how much work is ahead, and may throw. Returns why the primitive has no
-    /// surface and is left out; empty otherwise.
+    /// Adds a primitive. `charge` receives the work ahead, and may throw. Returns the reason why
+    /// the primitive has no surface and is ignored; empty otherwise.
     template <typename Charge>
     [[nodiscard]] std::string add(const JsonAt& primitive, const Charge& charge)
     {
@@ -208,7 +209,7 @@ private:
 
     GltfFile& file_;
     TriangleMesh mesh_;
-    /// By accessor, which vertex each element became.
+    /// Vertices of each accessor's elements, by accessor.
     std::map<std::size_t, std::vector<std::uint32_t>> vertices_;
 };
 
@@ -255,7 +256,7 @@ SceneMesh GltfMeshes::read(std::size_t index)
         const JsonAt mesh = file_.root().at("meshes").at(index);
         const std::size_t count = mesh.size_of("primitives");
         MeshBuilder builder(file_);
-        std::map<std::string, std::size_t> left_out; // By reason.
+        std::map<std::string, std::size_t> left_out; // Counts by reason.
         for (std::size_t i = 0; i < count; ++i)
         {
             const JsonAt primitive = mesh.at("primitives").at(i);

@@ -11,9 +11,9 @@
 namespace tactus::detail
 {
 
-/// How often a file's meshes may read the bytes of its buffers: this many elements of accessors for
-/// each byte, and a million besides. Meshes may share accessors; a small file must not become
-/// gigabytes of triangles by that.
+/// Limit of reads of buffers by a file's meshes: this many elements of accessors for each byte, and
+/// a million more. Meshes may share accessors, and a small file must not expand to gigabytes of
+/// triangles.
 inline constexpr std::uint64_t kReadsPerByte = 64;
 inline constexpr std::uint64_t kFreeReads = 1'000'000;
 
@@ -31,7 +31,7 @@ private:
     void charge(std::uint64_t reads, const JsonAt& primitive);
 
     GltfFile& file_;
-    std::uint64_t reads_{0}; ///< Of all meshes so far.
+    std::uint64_t reads_{0}; ///< Elements read by all meshes so far.
 };
 
 } // namespace tactus::detail

@@ -27,20 +27,21 @@ namespace tactus::detail
 namespace
 {
 
-/// How far the axes of an object may be from equal in length and from perpendicular, as a share of
-/// their length: files keep single precision, and rounding adds up along a chain of parents.
+/// Tolerance of an object's axes against equal length and right angles, as a share of their length:
+/// files have single precision, and rounding accumulates along a chain of parents.
 constexpr double kShapeTolerance = 1e-5;
 
-/// Instances may be turned by normalized integers of 8 bits.
+/// Tolerance for instances, whose rotations may be normalized integers of 8 bits.
 constexpr double kInstanceUnitTolerance = 0.02;
 
 constexpr std::size_t kNoParent = std::numeric_limits<std::size_t>::max();
 constexpr std::string_view kModelExtension = ".spm";
-/// The way out where a node can't be touched as it is.
+/// Remedies for a node that cannot be touched as it is.
 constexpr std::string_view kLeaveOut = "or leave it out by extras.tactus.touch = false";
 constexpr std::string_view kKeep = "extras.tactus.touch = true keeps it";
 
-/// there = linear x here + translation; from a node's frame to its parent's, or to the world.
+/// Affine map: there = linear x here + translation; from a node's frame to its parent's, or to the
+/// world.
 struct Affine
 {
     Mat3 linear{Mat3::Identity()};
@@ -67,7 +68,7 @@ std::array<double, N> numbers(const JsonAt& json)
     return values;
 }
 
-/// Column by column, as the standard has it.
+/// Matrix in column order, as in the standard.
 Affine read_matrix(const JsonAt& json)
 {
     const auto m = numbers<16>(json);
@@ -87,7 +88,7 @@ Affine read_matrix(const JsonAt& json)
     return affine;
 }
 
-/// `json` has the quaternion, or the one that an instance is turned by.
+/// Rotation of a quaternion; `json` is the place for messages.
 Mat3 rotation_of(const std::array<double, 4>& quaternion, const JsonAt& json, double tolerance)
 {
     const auto [x, y, z, w] = quaternion;
@@ -131,7 +132,7 @@ Affine read_transform(const JsonAt& node)
     return affine;
 }
 
-/// Who is whose parent, and the nodes in an order in which parents come first.
+/// Parents of all nodes, and an order of the nodes in which parents come first.
 class NodeTree
 {
 public:
@@ -192,7 +193,7 @@ private:
         }
     }
 
-    /// What no root leads to hangs in a circle.
+    /// Refuses nodes in a cycle, which no root reaches.
     [[noreturn]] void refuse_cycle(const GltfFile& file) const
     {
         std::vector<bool> is_reached(parents_.size(), false);
@@ -202,7 +203,8 @@ private:
         }
         const auto lost =
             static_cast<std::size_t>(std::ranges::find(is_reached, false) - is_reached.begin());
-        std::size_t node = lost; // Perhaps only below the circle: after so many steps it is in it.
+        // The first node may be below the cycle; after this many steps it is in it.
+        std::size_t node = lost;
         for (std::size_t i = 0; i < parents_.size(); ++i)
         {
             node = parents_[node];
@@ -215,7 +217,7 @@ private:
     std::vector<std::size_t> order_;
 };
 
-/// Which nodes the file's scene shows: its roots and all below them.
+/// Nodes that the file's scene shows: its roots and all nodes below them.
 std::vector<bool> find_shown(const GltfFile& file, const NodeTree& tree)
 {
     const JsonAt root = file.root();
@@ -246,7 +248,7 @@ std::vector<bool> find_shown(const GltfFile& file, const NodeTree& tree)
     return is_shown;
 }
 
-/// Why a node is not there for eyes, though the scene has it; empty where it is.
+/// Reasons why nodes of the scene are invisible; empty for visible ones.
 class HiddenNodes
 {
 public:
@@ -290,7 +292,7 @@ private:
         }
     }
 
-    std::vector<std::string_view> reasons_; ///< One for each node.
+    std::vector<std::string_view> reasons_; ///< Reasons by node.
 };
 
 Material read_material(const JsonAt& json)
@@ -310,7 +312,7 @@ Material read_material(const JsonAt& json)
     return material;
 }
 
-/// The file "x.spm" of a model that can be published as "x".
+/// File name "x.spm" of a model that can be published as "x".
 std::string read_model(const JsonAt& json)
 {
     const std::string& name = json.text();
@@ -324,8 +326,8 @@ std::string read_model(const JsonAt& json)
     return name;
 }
 
-/// `extras` may hold anything of others; "tactus" is ours. Returns whether it says that the object
-/// is to be touched.
+/// Reads `extras`, which may hold other programs' data; "tactus" is ours. Returns true if it
+/// requests that the object be touched.
 bool read_extras(const JsonAt& node, SceneObject& object)
 {
     const auto extras = node.find("extras");
@@ -348,21 +350,21 @@ bool read_extras(const JsonAt& node, SceneObject& object)
     return touch && object.is_touched;
 }
 
-/// In range but for rounding: 0.001 as a float is a little below.
+/// Scale moved into the range if only rounding put it outside: 0.001 as a float is a little below.
 double rounded_into_range(double scale)
 {
     const double nearest = std::clamp(scale, kPoseScaleMin, kPoseScaleMax);
     return std::abs(scale - nearest) <= kShapeTolerance * nearest ? nearest : scale;
 }
 
-/// Whether it makes a point or a line of everything.
+/// True if the map reduces everything to a point or a line.
 bool leaves_no_surface(const Mat3& linear)
 {
-    const Vec3 axes = linear.jacobiSvd().singularValues(); // The largest first.
+    const Vec3 axes = linear.jacobiSvd().singularValues(); // Singular values, the largest first.
     return axes[1] <= kShapeTolerance * kShapeTolerance * axes[0];
 }
 
-/// Makes a pose of where the node stands, which must be a similarity, mirrored or not.
+/// Sets the pose from the node's place, which must be a similarity, mirrored or not.
 void set_pose(const Affine& world, SceneObject& object)
 {
     const auto refuse = [&](const std::string& what, std::string_view way)
@@ -422,14 +424,14 @@ void set_pose(const Affine& world, SceneObject& object)
     }
 }
 
-/// A node that is an object, or as many as it has instances.
+/// A node that is an object, or several objects through its instances.
 struct ObjectNode
 {
     std::size_t node{0};
-    SceneObject object; ///< Without its pose.
+    SceneObject object; ///< Object; its pose is not set.
 };
 
-/// None when the node is no object, or is left out.
+/// Object of a node; none if the node is no object or is ignored.
 std::optional<ObjectNode> read_object(const GltfFile& file, std::size_t index,
                                       std::string_view hidden, LeftOut& left_out)
 {
@@ -460,12 +462,12 @@ std::optional<ObjectNode> read_object(const GltfFile& file, std::size_t index,
     object.name = name.empty() ? "node" + std::to_string(index) : name;
     if (!object.model.empty())
     {
-        object.mesh.reset(); // The mesh is for eyes then.
+        object.mesh.reset(); // The mesh is then only for display.
     }
     return ObjectNode{index, std::move(object)};
 }
 
-/// Where the instances of a node stand in its frame (EXT_mesh_gpu_instancing).
+/// Maps of a node's instances in its frame (EXT_mesh_gpu_instancing).
 std::optional<std::vector<Affine>> read_instances(GltfFile& file, std::size_t index)
 {
     const JsonAt node = file.root().at("nodes").at(index);
@@ -505,7 +507,7 @@ std::optional<std::vector<Affine>> read_instances(GltfFile& file, std::size_t in
     }
     if (count == 0)
     {
-        return std::nullopt; // It says nothing of where they stand.
+        return std::nullopt; // The extension has no instances.
     }
     std::vector<Affine> instances(count);
     for (std::size_t i = 0; i < count; ++i)
@@ -528,7 +530,7 @@ std::optional<std::vector<Affine>> read_instances(GltfFile& file, std::size_t in
     return instances;
 }
 
-/// Where nodes stand in the world: of those that are marked, and of their parents.
+/// Places of the marked nodes and of their parents in the world.
 std::vector<Affine> place_nodes(const GltfFile& file, const NodeTree& tree,
                                 std::vector<bool> is_needed)
 {

@@ -11,14 +11,15 @@
 namespace tactus::detail
 {
 
-/// A million nodes are no scene for hands; the rest of a file may be as large as it likes.
+/// Maximum number of nodes; no haptic scene has a million. Other parts of a file have no such
+/// limit.
 inline constexpr std::size_t kMaxNodes = 65'536;
 
-/// What of the file's scene is an object: each node of it with a mesh, or with a model in
-/// `extras.tactus`, in the order of the file's nodes, and each instance of such a node; up to
-/// kMaxObjects, with names of their own. `left_out` gets what is hidden, a lower level of detail or
-/// scaled to nothing. Every rule about nodes that count is checked here; meshes are not looked at.
-/// Throws a SceneFault that names the node. Linear in the nodes; nothing recurses.
+/// Objects of the file's scene: each node with a mesh, or with a model in `extras.tactus`, in the
+/// order of the file's nodes, and each instance of such a node; up to kMaxObjects, with unique
+/// names. `left_out` receives hidden nodes, lower levels of detail and nodes scaled to nothing. All
+/// rules about objects' nodes are checked here, but not meshes. Throws a SceneFault that names the
+/// node. Linear in the nodes; not recursive.
 [[nodiscard]] std::vector<SceneObject> read_objects(GltfFile& file, LeftOut& left_out);
 
 } // namespace tactus::detail

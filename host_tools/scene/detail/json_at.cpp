@@ -17,7 +17,7 @@ namespace
 
 using nlohmann::json;
 
-/// Looks at a text without keeping any of it, so that what costs too much is refused before.
+/// Checks a text without storing it, so that a text beyond the bounds is refused first.
 class BoundsCheck final : public nlohmann::json_sax<json>
 {
 public:

@@ -13,49 +13,49 @@
 namespace tactus::detail
 {
 
-/// Why a scene file is refused, without its name. Thrown from any depth of the reader and caught by
-/// the public functions of scene.hpp alone, which return it as a Refusal.
+/// Reason why a scene file is refused, without its name. Thrown at any depth of the reader; only
+/// the public functions of scene.hpp catch it and return it as a Refusal.
 struct SceneFault
 {
     std::string text;
 };
 
-/// Bounds of a file's JSON. They bound what a value of a few bytes may cost: some 100 bytes each.
+/// Bounds of a file's JSON. They limit the cost of values of a few bytes: some 100 bytes each.
 inline constexpr std::size_t kMaxJsonValues = 4'000'000;
 inline constexpr std::size_t kMaxJsonDepth = 64;
 
-/// The text as JSON. Throws a SceneFault where it is none, and where it is beyond the bounds.
-/// Takes time and memory linear in the text.
+/// Parses the text as JSON. Throws a SceneFault if it is invalid or beyond the bounds. Time and
+/// memory are linear in the text.
 [[nodiscard]] nlohmann::json parse_bounded_json(std::string_view text);
 
-/// A value of a JSON document and where it stands there, such as "nodes[3].mesh". Each function
-/// throws a SceneFault that begins with that place when the value is of another kind. The document
-/// must outlive it.
+/// A value of a JSON document and its place there, such as "nodes[3].mesh". Each function throws a
+/// SceneFault that begins with the place if the value is of another kind. The document must outlive
+/// it.
 class JsonAt
 {
 public:
     JsonAt(const nlohmann::json& value, std::string place);
 
-    /// A member of this object; find() returns none where there is none, at() throws.
+    /// Member of this object; if it is missing, find() returns none and at() throws.
     [[nodiscard]] std::optional<JsonAt> find(const std::string& key) const;
     [[nodiscard]] JsonAt at(const std::string& key) const;
-    /// An element of this array, which has size() of them.
+    /// Element of this array, which has size() of them.
     [[nodiscard]] JsonAt at(std::size_t index) const;
     [[nodiscard]] std::size_t size() const;
-    /// size() of a member that is an array; 0 where there is none.
+    /// Size of a member that is an array; 0 if it is missing.
     [[nodiscard]] std::size_t size_of(const std::string& key) const;
-    /// The member "name", where it is a text; otherwise empty.
+    /// Member "name" if it is a text, otherwise empty.
     [[nodiscard]] std::string name() const;
 
-    [[nodiscard]] double number() const; ///< Finite: JSON knows nothing else.
+    [[nodiscard]] double number() const; ///< Finite, since JSON has no other numbers.
     [[nodiscard]] bool boolean() const;
     [[nodiscard]] const std::string& text() const;
-    /// A whole number of at most `most`.
+    /// Unsigned integer of at most `most`.
     [[nodiscard]] std::uint64_t whole(std::uint64_t most) const;
-    /// The number of one of `count` things that `what` names, for the message.
+    /// Index below `count`; `what` names the indexed list in the message.
     [[nodiscard]] std::size_t index_below(std::size_t count, std::string_view what) const;
 
-    /// Throws unless each key of this object is one of those, which are separated by blanks.
+    /// Throws unless each key of this object is in `keys`, which are separated by blanks.
     void require_keys_among(std::string_view keys) const;
 
     [[noreturn]] void refuse(const std::string& what) const;
@@ -65,7 +65,7 @@ public:
 
 private:
     const nlohmann::json* value_;
-    std::string place_; ///< Empty: the whole document.
+    std::string place_; ///< Place; empty: the whole document.
 };
 
 } // namespace tactus::detail
