@@ -33,7 +33,7 @@ const httplib::Headers& safe_headers()
     return headers;
 }
 
-/// The library's threads, which tell of each connection that waits for one.
+/// Threads of the library, with a report of each connection that waits for one.
 class Threads final : public httplib::TaskQueue
 {
 public:
@@ -62,7 +62,8 @@ private:
 
 PatientServer::PatientServer(std::size_t threads) : connections_(threads)
 {
-    new_task_queue = [this, threads] { return new Threads(threads, connections_); }; // It owns it.
+    // The library owns it.
+    new_task_queue = [this, threads] { return new Threads(threads, connections_); };
 }
 
 bool PatientServer::process_and_close_socket(socket_t socket)
@@ -92,8 +93,8 @@ LoopbackServer::LoopbackServer(std::size_t threads) : server_(threads)
     server_.set_pre_routing_handler(
         [this](const Request& request, Response& response)
         {
-            // Without parts: a kilobyte can name hundreds, each as large as the whole. It is the
-            // library's own request, which it goes on with.
+            // Range requests are dropped: a kilobyte can name hundreds of ranges, each as large as
+            // the whole. The library continues with this same request.
             const_cast<Request&>(request).ranges.clear();
             return is_refused(request, response) ? httplib::Server::HandlerResponse::Handled
                                                  : httplib::Server::HandlerResponse::Unhandled;
@@ -114,7 +115,7 @@ LoopbackServer::~LoopbackServer()
     {
         return;
     }
-    while (!server_.is_running() && !has_ended_) // stop() is lost on one that has not begun.
+    while (!server_.is_running() && !has_ended_) // stop() has no effect before the server runs.
     {
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
@@ -124,7 +125,7 @@ LoopbackServer::~LoopbackServer()
 
 std::optional<Refusal> LoopbackServer::start(std::uint16_t port, const char* option)
 {
-    // The library's own choice lets a second server take the same port and share its visitors.
+    // The library's own options let a second server take the same port and part of the connections.
     socket_t listening = -1;
     server_.set_socket_options(
         [&listening](socket_t socket)
@@ -143,9 +144,9 @@ std::optional<Refusal> LoopbackServer::start(std::uint16_t port, const char* opt
                                    "0 for any",
                                    port, std::strerror(errno), option)};
     }
-    // The library's own backlog is 5: who comes sixth in a burst waits for seconds.
+    // The library's backlog is 5: the sixth connection of a burst would wait for seconds.
     ::listen(listening, SOMAXCONN);
-#ifdef TCP_DEFER_ACCEPT // Linux: who says nothing gets no thread.
+#ifdef TCP_DEFER_ACCEPT // Linux: a silent connection gets no thread.
     const int seconds = static_cast<int>(PeerStream::kRequestPatience.count());
     ::setsockopt(listening, IPPROTO_TCP, TCP_DEFER_ACCEPT, &seconds, sizeof(seconds));
 #endif
@@ -166,7 +167,7 @@ bool LoopbackServer::is_ours(const std::string& authority) const
            authority == fmt::format("localhost:{}", port_);
 }
 
-/// Nobody else's pages may ask, nor names that a stranger has pointed at this machine.
+/// Refuses other web pages, and foreign host names that point to this machine.
 bool LoopbackServer::is_refused(const httplib::Request& request, httplib::Response& response)
 {
     if (request.method != "GET")

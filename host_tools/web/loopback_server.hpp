@@ -16,13 +16,13 @@
 namespace tactus::web
 {
 
-/// What a response of Prometheus' text format calls itself.
+/// Content type of Prometheus' text format.
 inline constexpr const char* kMetricsType = "text/plain; version=0.0.4; charset=utf-8";
 
 /// Answers with a line of text.
 void answer(httplib::Response& response, int status, const std::string& text);
 
-/// The library's server, with connections that give way to others (Connections).
+/// The library's server with connections that yield to others (Connections).
 class PatientServer final : public httplib::Server
 {
 public:
@@ -34,22 +34,22 @@ private:
     Connections connections_;
 };
 
-/// A server of this machine's loopback alone: GET only, no other host's name, no parts of answers,
-/// nothing for other pages, nothing of others in ours, no connection that idles while another one
-/// waits. What it answers is declared on server() before start().
+/// HTTP server on this machine's loopback: GET only, no other Host name, no ranges, no cross-origin
+/// use, no foreign content in its pages, no connection that idles while another one waits. Declare
+/// its answers on server() before start().
 class LoopbackServer
 {
 public:
     explicit LoopbackServer(std::size_t threads);
     LoopbackServer(const LoopbackServer&) = delete;
     LoopbackServer& operator=(const LoopbackServer&) = delete;
-    /// Waits for the requests that are being answered.
+    /// Waits for the requests being answered.
     ~LoopbackServer();
 
     [[nodiscard]] httplib::Server& server() noexcept { return server_; }
 
-    /// Listens on 127.0.0.1, on a thread of its own. Port 0: any that is free. Refused when the
-    /// port can't be had; `option` is named as what gives another.
+    /// Listens on 127.0.0.1, on its own thread. Port 0: any free one. Refused if the port is not
+    /// available; the message recommends `option` for another one.
     [[nodiscard]] std::optional<Refusal> start(std::uint16_t port, const char* option);
 
     [[nodiscard]] std::uint16_t port() const noexcept { return port_; }
@@ -60,7 +60,8 @@ private:
 
     PatientServer server_;
     std::uint16_t port_{0};
-    std::atomic<bool> has_ended_{false}; ///< The listener, by itself where accept() fails.
+    /// True once the listener has ended, possibly because accept() failed.
+    std::atomic<bool> has_ended_{false};
     std::thread listener_;
 };
 

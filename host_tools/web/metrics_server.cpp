@@ -13,7 +13,7 @@ namespace tactus::web
 namespace
 {
 
-/// A scraper and a curious person at once, and silent ones that give way one by one.
+/// One scraper and one person at once, and silent connections that yield one by one.
 constexpr std::size_t kThreads = 6;
 
 } // namespace
@@ -22,7 +22,7 @@ struct MetricsServer::Inside
 {
     std::mutex mutex;
     std::string text;
-    LoopbackServer local{kThreads}; ///< Last: its threads use the others.
+    LoopbackServer local{kThreads}; ///< Last member, since its threads use the others.
 };
 
 Result<std::unique_ptr<MetricsServer>, Refusal> MetricsServer::start(std::uint16_t port,

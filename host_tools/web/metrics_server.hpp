@@ -12,19 +12,20 @@
 namespace tactus::web
 {
 
-/// /metrics on this machine's loopback, for Prometheus: the newest text that was told. Requests
-/// are answered on threads of its own and wait for nobody.
+/// Serves /metrics for Prometheus on this machine's loopback: the newest published text. Its own
+/// threads answer requests and never wait for the caller.
 class MetricsServer
 {
 public:
-    /// Port 0: any that is free. Refused when the port can't be had; `option` gave it.
+    /// Port 0: any free one. Refused if the port is not available; `option` is the option that set
+    /// it.
     [[nodiscard]] static Result<std::unique_ptr<MetricsServer>, Refusal> start(std::uint16_t port,
                                                                                const char* option);
     MetricsServer(const MetricsServer&) = delete;
     MetricsServer& operator=(const MetricsServer&) = delete;
     ~MetricsServer();
 
-    /// Any thread: what is answered from now on.
+    /// Sets the text of further answers. Any thread.
     void publish(std::string text);
     [[nodiscard]] std::uint16_t port() const noexcept;
 

@@ -16,8 +16,8 @@ namespace tactus::web
 namespace
 {
 
-/// A peer that has waited for a thread has sent its request meanwhile. The more others wait, the
-/// less time there is for one that has not.
+/// Time for a peer to send its request, divided by the number waiting: a peer that waited for a
+/// thread has sent it meanwhile.
 constexpr std::chrono::milliseconds kGrace{40};
 
 bool is_transient(int error)
@@ -61,7 +61,7 @@ void Connections::end_all()
     }
 }
 
-/// Its wait ends, and so do all that it begins later.
+/// Ends the longest wait for a peer, and all its later ones.
 void Connections::end_longest_wait()
 {
     Served* longest = nullptr;
@@ -87,7 +87,7 @@ Connections::Served& Connections::served(int socket)
 bool Connections::wait(int socket, short events, Clock::time_point deadline)
 {
     pollfd peer{socket, events, 0};
-    if (::poll(&peer, 1, 0) > 0) // No other peer waits for it.
+    if (::poll(&peer, 1, 0) > 0) // The peer is ready, so no other one is delayed.
     {
         return true;
     }
@@ -127,7 +127,7 @@ bool PeerStream::is_writable() const
                              answer_end_.value_or(Clock::now() + kAnswerPatience));
 }
 
-/// Only where the buffer is empty.
+/// Fills the buffer, which must be empty.
 bool PeerStream::fill()
 {
     while (received_ < kRequestMax && connections_.wait(socket_, POLLIN, request_end_))
@@ -185,7 +185,7 @@ ssize_t PeerStream::write(const char* bytes, std::size_t size)
     return -1;
 }
 
-/// The server is on loopback, and nothing asks for ports.
+/// Loopback address; ports are never requested.
 void PeerStream::get_remote_ip_and_port(std::string& ip, int& port) const
 {
     ip = "127.0.0.1";

@@ -14,10 +14,10 @@
 namespace tactus::web
 {
 
-/// The connections of a server: those that have a thread, and how many have none yet. All come from
-/// this machine's loopback, so no address tells one peer from another. Instead the one that keeps
-/// its thread waiting longest gives it up when a connection comes and all threads are taken: no
-/// number of silent or slow peers keeps an honest one out. Any thread.
+/// Connections of a server: those with a thread, and the number of those without. All come from
+/// this machine's loopback, so addresses do not distinguish peers. If a connection arrives while
+/// all threads are taken, the one that has kept its thread waiting longest gives it up: no number
+/// of silent or slow peers keeps an honest one out. Any thread.
 class Connections
 {
 public:
@@ -25,24 +25,25 @@ public:
 
     explicit Connections(std::size_t threads) : threads_(threads) {}
 
-    /// A connection waits for a thread.
+    /// Records a connection that waits for a thread.
     void arrive();
-    /// A connection has got its thread.
+    /// Records that a connection has a thread.
     void begin(int socket);
-    /// Its socket is to be closed by the caller.
+    /// Records that a connection ended; the caller closes its socket.
     void end(int socket);
-    /// All peers have lost their patience: the server ends.
+    /// Ends the wait for all peers, when the server stops.
     void end_all();
 
-    /// Waits for the peer: until its socket is ready for these events of poll(). False at the
-    /// deadline, or when the connection has given up its thread.
+    /// Waits for the peer until its socket is ready for these events of poll(). False at the
+    /// deadline, or if the connection has given up its thread.
     [[nodiscard]] bool wait(int socket, short events, Clock::time_point deadline);
 
 private:
     struct Served
     {
         int socket{-1};
-        std::optional<Clock::time_point> waits_since; ///< None while its thread works for it.
+        /// Start of the wait for the peer; none while its thread works.
+        std::optional<Clock::time_point> waits_since;
     };
 
     void end_longest_wait();
@@ -55,8 +56,9 @@ private:
     std::vector<Served> served_;
 };
 
-/// A connection as the library reads and writes it: the whole request within kRequestPatience and
-/// kRequestMax, and an answer within kAnswerPatience of the last part that was taken as a whole.
+/// Stream of a connection for the library. The whole request must arrive within kRequestPatience
+/// and kRequestMax, and each part of the answer must be taken within kAnswerPatience after the one
+/// before.
 class PeerStream final : public httplib::Stream
 {
 public:
@@ -82,9 +84,9 @@ private:
     Connections& connections_;
     int socket_;
     Clock::time_point request_end_{Clock::now() + kRequestPatience};
-    std::optional<Clock::time_point> answer_end_; ///< Of the part that is being taken.
+    std::optional<Clock::time_point> answer_end_; ///< Deadline of the present part.
     std::array<char, 4'096> buffer_{};
-    std::size_t begin_{0}; ///< The first byte of the buffer that is not read yet.
+    std::size_t begin_{0}; ///< First unread byte of the buffer.
     std::size_t end_{0};
     std::size_t received_{0};
 };

@@ -13,16 +13,16 @@
 namespace tactus::web
 {
 
-/// Lays out metrics in Prometheus' text format, version 0.0.4.
+/// Writes metrics in Prometheus' text format, version 0.0.4.
 class PrometheusText
 {
 public:
     using Labels = std::vector<std::pair<const char*, std::string>>;
 
-    /// What samples are of until the next call. `type` is counter or gauge; a counter's name ends
-    /// in _total. Each name once.
+    /// Starts a metric; the following samples belong to it. `type` is counter or gauge; a counter's
+    /// name ends in _total. Each name once.
     void family(const char* name, const char* type, const char* help);
-    /// A label's value may hold anything.
+    /// Adds a sample. Values of labels may contain any text.
     void sample(const Labels& labels, double value);
 
     [[nodiscard]] const std::string& text() const noexcept { return text_; }
@@ -32,7 +32,7 @@ private:
     const char* name_{""};
 };
 
-/// How many controllers there are, and counts and gauges of each.
+/// Adds the number of controllers, and counters and gauges of each.
 void tell_controllers(PrometheusText& text,
                       const std::vector<const dds::WatchedController*>& controllers);
 
