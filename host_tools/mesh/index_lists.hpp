@@ -8,18 +8,19 @@
 #include <span>
 #include <vector>
 
-// Any thread, but not the haptic one: it allocates.
+// Any thread, except the haptic one: it allocates.
 namespace tactus
 {
 
-/// A list of values for each number from 0 on, such as the faces round each vertex; all lists lie
+/// A list of values for each number from 0 on, such as the faces around each vertex; all lists are
 /// in one array.
 class IndexLists
 {
 public:
     IndexLists() = default;
-    /// `for_each_pair` calls what it is given with each number below `numbers` and a value for its
-    /// list, and does so twice alike. A list keeps the order of the calls.
+    /// `for_each_pair` calls its argument with pairs of a number below `numbers` and a value for
+    /// that number's list. It is called twice and must give the same pairs. A list keeps their
+    /// order.
     template <typename ForEachPair>
     IndexLists(std::size_t numbers, const ForEachPair& for_each_pair) : start_(numbers + 1, 0)
     {

@@ -18,7 +18,7 @@ namespace tactus
     return Vec3(mesh.positions[vertex].data());
 }
 
-/// Round the vertices that faces use; empty when there is no face.
+/// Box of the vertices that faces use; empty if there is no face.
 [[nodiscard]] inline Eigen::AlignedBox3d box_of(const TriangleMesh& mesh)
 {
     Eigen::AlignedBox3d box;

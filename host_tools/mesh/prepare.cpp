@@ -35,8 +35,8 @@ struct Box
     {
         return std::max({extent(0), extent(1), extent(2)});
     }
-    /// Scaled by the largest extent first: squares of tiny or huge lengths would under- or
-    /// overflow.
+    /// Diagonal, computed after scaling by the largest extent: squares of tiny or huge lengths
+    /// would under- or overflow.
     [[nodiscard]] double diagonal() const
     {
         const double largest = largest_extent();
@@ -119,12 +119,12 @@ TriangleMesh clean_up(TriangleMesh mesh, PreparedMesh& out)
     out.welded_vertices += welded;
     out.degenerate_faces += detail::drop_degenerate_faces(mesh.faces);
     out.duplicate_faces += detail::drop_duplicate_faces(mesh.faces);
-    // The vertices that welding has left unused are not isolated in the source.
+    // Vertices that became unused by welding do not count as isolated in the source.
     out.isolated_vertices += detail::drop_isolated_vertices(mesh) - welded;
     return mesh;
 }
 
-/// From the source's frame, scaled, to the model's.
+/// Translation from the source's frame, scaled, to the model's.
 Point move_of(const Box& box, double scale, const PrepareOptions& options)
 {
     Point moved_m{};
@@ -152,7 +152,7 @@ std::optional<Refusal> choose_scale(const Box& box, const PrepareOptions& option
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
         out.origin_m[axis] = box.low[axis] * scale + moved_m[axis];
-        // A move is to be finite in steps, too, of which a metre has less than 2^64.
+        // The translation must be finite in steps, too; a metre has less than 2^64.
         if (!std::isfinite(out.origin_m[axis]) || !std::isfinite(box.extent(axis) * scale) ||
             !std::isfinite(std::ldexp(moved_m[axis], 64)))
         {
@@ -173,7 +173,7 @@ std::optional<Refusal> choose_scale(const Box& box, const PrepareOptions& option
     }
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
-        const double far_m = out.origin_m[axis] + out.diagonal_m; // Beyond any grid place.
+        const double far_m = out.origin_m[axis] + out.diagonal_m; // Beyond any grid position.
         if (out.origin_m[axis] < -kModelReachMax_m || far_m > kModelReachMax_m)
         {
             return Refusal{fmt::format("the model lies at {} m on an axis; at most {} m from the "
@@ -184,13 +184,13 @@ std::optional<Refusal> choose_scale(const Box& box, const PrepareOptions& option
     return std::nullopt;
 }
 
-/// A vertex this part of a step beside an edge lies on it.
+/// Divisor of the step for stitching: a vertex nearer to an edge than this lies on it.
 constexpr double kStepsOnEdge = 16.0;
-/// Border vertices within this part of a step of each other are one: a source of floats, or of some
-/// decimals, tells places of a border that several of its parts have that much apart.
+/// Divisor of the step for joining border vertices: float or decimal sources may store the parts of
+/// a common border this far apart.
 constexpr double kStepsApart = 2.0;
 
-/// The least power of two whose multiples up to 2^bits - 1, less those kept, reach over the extent.
+/// Least power of two whose multiples up to 2^bits - 1, less `kept`, cover the extent.
 double choose_quantum(double extent_m, unsigned bits, double kept)
 {
     const double steps = std::ldexp(1.0, static_cast<int>(bits)) - 1.0 - kept;
@@ -206,12 +206,12 @@ double choose_quantum(double extent_m, unsigned bits, double kept)
     return quantum;
 }
 
-/// Takes as many bits as were asked for, and more where the mesh needs a finer grid or the caller
-/// wants one.
+/// Chooses the bits: the requested number, or more if the mesh needs a finer grid or the caller
+/// requires one.
 void choose_grid(const TriangleMesh& mesh, double extent_m, const PrepareOptions& options,
                  PreparedMesh& out)
 {
-    // Where both ends of the mesh are rounded, it may reach one step farther.
+    // If both ends of the mesh are rounded, it may need one more step.
     const double kept = options.grid_place_m ? 1.0 : 0.0;
     double wanted_m = options.quantum_max_m.value_or(std::numeric_limits<double>::infinity());
     const char* why = "models that meet it have that grid";
@@ -242,15 +242,16 @@ void choose_grid(const TriangleMesh& mesh, double extent_m, const PrepareOptions
     }
 }
 
-/// Distances are taken from the box's least corner before scaling: far from the origin the
-/// difference is exact where the coordinates themselves have few digits left. From a place of the
-/// grid they are taken afterwards, so that equal positions of several meshes are rounded alike.
+/// Rounds positions to the grid. Without a grid place, distances are taken from the box's least
+/// corner before scaling: far from the origin that difference is exact, though the coordinates have
+/// few digits left. With a grid place they are taken after scaling, so that equal positions of
+/// several meshes are rounded alike.
 void put_on_grid(const TriangleMesh& mesh, const Box& box, const PrepareOptions& options,
                  PreparedMesh& out)
 {
     const double scale = out.metres_per_unit;
     const Point moved_m = move_of(box, scale, options);
-    std::array<double, 3> first{}; // The origin in steps from the grid's place.
+    std::array<double, 3> first{}; // Origin in steps from the grid's place.
     const auto steps = [&](double value, std::size_t axis)
     {
         return options.grid_place_m
@@ -296,7 +297,7 @@ void make_manifold(TriangleMesh& mesh, PreparedMesh& out)
     out.added_vertices = split.copy_of.size();
 }
 
-/// Products of differences of at most 24 bits fit in 64 bits.
+/// True if the corners are collinear. Products of differences of at most 24 bits fit in 64 bits.
 bool is_flat(const QuantisedMesh& mesh, const std::array<std::uint32_t, 3>& face)
 {
     const auto& a = mesh.positions[face[0]];
@@ -343,7 +344,7 @@ void write_notes(PreparedMesh& out)
                                   "--keep-winding leaves that");
 }
 
-/// Makes sides of a seam meet again which the source has rounded apart.
+/// Joins the sides of seams that the source has rounded differently.
 void close_seams(TriangleMesh& mesh, const PrepareOptions& options, PreparedMesh& out)
 {
     const double step = out.quantum_m / out.metres_per_unit;
@@ -371,7 +372,7 @@ void close_seams(TriangleMesh& mesh, const PrepareOptions& options, PreparedMesh
     }
 }
 
-/// A mesh whose scale and grid are chosen, and its box; both in the source's unit.
+/// A mesh with its scale and grid, and its box, both in the source's unit.
 struct PlannedMesh
 {
     TriangleMesh mesh;

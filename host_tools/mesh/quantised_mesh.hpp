@@ -10,13 +10,13 @@
 namespace tactus
 {
 
-/// A mesh on the integer grid: what the certificate is built on and what full refinement returns.
-/// Every edge is shared by at most two faces with opposite directions and every vertex has one fan
-/// (open or closed): 2-manifold with borders. Two vertices may share a position.
+/// A mesh on the integer grid, the basis of the certificate and the result of full refinement. It
+/// is 2-manifold with borders: every edge has at most two faces, in opposite directions, and every
+/// vertex one fan (open or closed). Two vertices may share a position.
 struct QuantisedMesh
 {
-    std::vector<std::array<std::int32_t, 3>> positions; ///< In quanta, 0 .. 2^bits - 1.
-    std::vector<std::array<std::uint32_t, 3>> faces;    ///< Three different vertices each.
+    std::vector<std::array<std::int32_t, 3>> positions; ///< Positions in quanta, 0 .. 2^bits - 1.
+    std::vector<std::array<std::uint32_t, 3>> faces;    ///< Faces of three different vertices each.
 };
 
 } // namespace tactus

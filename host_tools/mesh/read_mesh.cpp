@@ -23,7 +23,7 @@ namespace tactus
 namespace
 {
 
-/// Indices are 32-bit and the largest value is kept free to mean "none".
+/// Indices are 32-bit; the largest value is reserved for "none".
 constexpr std::size_t kMaxVertices = 0xFFFF'FFFE;
 using Reader = Result<MeshFile, Refusal> (*)(std::string_view);
 
@@ -33,7 +33,7 @@ struct FormatEntry
     Reader read;
 };
 
-/// In the order of MeshFormat.
+/// Formats in the order of MeshFormat.
 constexpr std::array<FormatEntry, 4> kFormats{{{"ply", detail::read_ply},
                                                {"obj", detail::read_obj},
                                                {"stl", detail::read_stl},
@@ -45,7 +45,8 @@ std::optional<MeshFormat> format_of(const std::filesystem::path& path)
     return extension.empty() ? std::nullopt : mesh_format(extension.substr(1));
 }
 
-/// What every format owes: finite coordinates, indices in range, some faces but not too many.
+/// Fault of a mesh, for every format: coordinates that are not finite, indices out of range, no
+/// faces or too many.
 std::optional<Refusal> find_fault(const TriangleMesh& mesh)
 {
     if (mesh.faces.empty())

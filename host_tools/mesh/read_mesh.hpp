@@ -13,14 +13,14 @@
 #include <string_view>
 #include <vector>
 
-// Any thread, but not the haptic one: calls allocate and wait for the file.
+// Any thread, except the haptic one: calls allocate and wait for the file.
 namespace tactus
 {
 
-/// More faces than this are refused: each costs one FaceId, and half of those a record id.
+/// Maximum number of faces: each costs one FaceId, and half of those a record id.
 inline constexpr std::size_t kMaxFaces = std::size_t{1} << 29U;
 
-/// The formats that are read.
+/// Formats that can be read.
 enum class MeshFormat
 {
     ply,
@@ -29,39 +29,38 @@ enum class MeshFormat
     off,
 };
 
-/// "ply" and the like, as files end and as --format names it.
+/// Name of a format, "ply" and the like, as files end and --format takes it.
 [[nodiscard]] std::string_view format_name(MeshFormat format);
-/// The format of this name, in either case of letters.
+/// Format of a name, in either case of letters.
 [[nodiscard]] std::optional<MeshFormat> mesh_format(std::string_view name);
 
-/// What a mesh file holds, and what was changed or could not be told while it was read.
+/// Content of a mesh file, with notes on changed or unreadable parts.
 struct MeshFile
 {
     TriangleMesh mesh;
-    std::vector<std::string> notes; ///< One line each, without the file's name.
+    std::vector<std::string> notes; ///< Notes, one line each, without the file's name.
 };
 
 /// Reads a .ply (ASCII or binary, polygons and triangle strips), .obj, .stl (ASCII or binary) or
-/// .off file; `format` decides, or else the extension, in either case of letters. With a format
+/// .off file. `format` decides, otherwise the extension, in either case of letters. With a format
 /// the path may also be a pipe, a device or "-", which is standard input; they are read to their
 /// end. Polygons are cut into triangles. Text keeps double precision. Vertices and faces keep the
 /// file's order; nothing is welded or repaired. Guarantees: every coordinate is finite, every index
-/// names a vertex, there are 1 .. kMaxFaces faces. A file that is shorter than it says is refused,
-/// and in words for what it is if it is none of its format. There is a note where the format can't
-/// say so (OBJ, a last number without line end), for what is left out behind complete data, and for
-/// lines that aren't understood. A UTF-8 byte-order mark is passed over. Costs the file's bytes
-/// plus the mesh in memory; a count in a header allocates nothing that the file's size doesn't
-/// support.
+/// is that of a vertex, there are 1 .. kMaxFaces faces. A truncated file is refused; a file of
+/// another format is refused with the name of that format. Notes report truncation that the format
+/// cannot detect (OBJ, a last number without line end), data after the complete content, and lines
+/// that are not understood. A UTF-8 byte-order mark is skipped. Costs the file's bytes plus the
+/// mesh in memory; a count in a header allocates nothing beyond the file's size.
 [[nodiscard]] Result<MeshFile, Refusal>
 read_mesh_file(const std::filesystem::path& path, std::optional<MeshFormat> format = std::nullopt);
 
-/// The same for callers that don't show notes.
+/// Reads a mesh without notes.
 [[nodiscard]] Result<TriangleMesh, Refusal> read_mesh(const std::filesystem::path& path);
 
-/// Whether the name ends like that of a file that read_mesh() reads, in whatever case.
+/// True if read_mesh() reads files with this extension, in either case of letters.
 [[nodiscard]] bool is_mesh_file_name(const std::filesystem::path& path);
 
-/// What a program says that was given a mesh where a model belongs.
+/// Message of a program that received a mesh in place of a model.
 [[nodiscard]] std::string mesh_is_no_model(const std::string& path);
 
 } // namespace tactus

@@ -10,14 +10,13 @@
 namespace tactus
 {
 
-/// An indexed triangle mesh as read from a file or made by a generator, in the source's frame. Its
-/// lengths are in whatever unit the file has, and in metres where the library made it:
-/// prepare_mesh() scales. Faces are counter-clockwise seen from outside where the source has an
-/// outside.
+/// An indexed triangle mesh as read from a file or generated, in the source's frame. Lengths are in
+/// the file's unit, or in metres if the library generated it: prepare_mesh() scales. Faces are
+/// counter-clockwise seen from outside if the source has an outside.
 struct TriangleMesh
 {
     std::vector<std::array<double, 3>> positions;
-    std::vector<std::array<std::uint32_t, 3>> faces; ///< Places in `positions`, from 0.
+    std::vector<std::array<std::uint32_t, 3>> faces; ///< Indices into `positions`.
 };
 
 } // namespace tactus

@@ -48,7 +48,7 @@ std::string header_for(const TriangleMesh& mesh, bool as_float)
                        mesh.positions.size(), type, type, type, mesh.faces.size());
 }
 
-/// Gathers values into large writes and keeps the first error.
+/// Collects values into large writes and keeps the first error.
 class Writer
 {
 public:
@@ -144,7 +144,8 @@ std::size_t count_different(std::vector<Position> positions)
                                     positions.begin());
 }
 
-/// STL knows vertices by their positions alone: two that become one would close or fold the mesh.
+/// True if no two vertices become one as floats. STL identifies vertices by position, so that would
+/// close or fold the mesh.
 bool stay_apart_as_floats(const std::vector<std::array<double, 3>>& positions)
 {
     std::vector<FloatPosition> rounded(positions.size());
@@ -156,7 +157,7 @@ bool stay_apart_as_floats(const std::vector<std::array<double, 3>>& positions)
     return are_finite && count_different(std::move(rounded)) == count_different(positions);
 }
 
-/// Unit length, counter-clockwise; zero for a face without area.
+/// Unit normal for counter-clockwise corners; zero for a face without area.
 FloatPosition normal_of(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& face)
 {
     const auto at = [&](std::size_t corner)
@@ -187,7 +188,7 @@ void put_stl(Writer& writer, const TriangleMesh& mesh)
 
 using PutMesh = void (*)(Writer&, const TriangleMesh&);
 
-/// The writer that a path's extension asks for, in either case of letters; null for others.
+/// Writer for a path's extension, in either case of letters; null for others.
 PutMesh writer_for(const std::filesystem::path& path)
 {
     std::string extension = path.extension().string();

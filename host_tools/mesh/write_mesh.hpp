@@ -8,22 +8,21 @@
 
 #include <filesystem>
 
-// Any thread, but not the haptic one: calls allocate and wait for the file.
+// Any thread, except the haptic one: calls allocate and wait for the file.
 namespace tactus
 {
 
-/// Whether the name ends in .ply, .obj or .stl, in either case of letters.
+/// True if the name ends in .ply, .obj or .stl, in either case of letters.
 [[nodiscard]] bool has_mesh_extension(const std::filesystem::path& path);
 
-/// Writes a mesh in the format that the path's extension names; the file appears whole or not at
-/// all.
-/// .ply: binary, little-endian; coordinates as float when every one is exact as such, as double
-/// otherwise. Reads back bit for bit.
-/// .obj: text with as many digits as it takes; reads back bit for bit.
-/// .stl: binary, loose triangles; coordinates are rounded to float. Refused when that would put two
-/// vertices of different positions into one place.
-/// Refused, in one line with the path, when that ends otherwise or can't be written. Faces must
-/// name vertices that there are.
+/// Writes a mesh in the format of the path's extension; the file appears as a whole or not at all.
+/// .ply: binary, little-endian; coordinates as float if all are exact as float, otherwise as
+/// double. Reads back bit for bit.
+/// .obj: text with as many digits as needed; reads back bit for bit.
+/// .stl: binary, separate triangles; coordinates are rounded to float. Refused if that would merge
+/// two vertices with different positions.
+/// Refused, in one line with the path, for another extension or a file that cannot be written.
+/// Faces must consist of existing vertices.
 [[nodiscard]] Result<Done, Refusal> write_mesh(const std::filesystem::path& path,
                                                const TriangleMesh& mesh);
 

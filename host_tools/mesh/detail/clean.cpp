@@ -15,7 +15,7 @@ namespace
 
 constexpr std::uint32_t kNoItem = 0xFFFF'FFFFU;
 
-/// Finalizer of the splitmix64 kind: every input bit reaches every output bit.
+/// Finalizer like that of splitmix64: every input bit affects every output bit.
 std::uint64_t mix(std::uint64_t x)
 {
     x ^= x >> 32U;
@@ -40,14 +40,14 @@ std::uint64_t hash_of(const Face& face)
     return mix(mix((static_cast<std::uint64_t>(face[0]) << 32U) | face[1]) ^ face[2]);
 }
 
-/// Open addressing over indices into somebody else's array, at most half full. Only ever asked for
-/// the first equal one, so no order leaks from it.
+/// Hash table over indices into an external array, with open addressing, at most half full. Queries
+/// only return the first equal item, so the result does not depend on the table's order.
 class FirstEqualTable
 {
 public:
     explicit FirstEqualTable(std::size_t items) : slots_(std::bit_ceil(2 * items + 2), kNoItem) {}
 
-    /// The first item equal to `item`, which is `item` itself when it is new and gets inserted.
+    /// First item equal to `item`; a new item is inserted and returned.
     template <typename IsEqual>
     std::uint32_t find_or_insert(std::uint32_t item, std::uint64_t hash, IsEqual is_equal)
     {
@@ -64,7 +64,7 @@ private:
     std::vector<std::uint32_t> slots_;
 };
 
-/// The same cycle, starting at its least vertex.
+/// Same cycle, starting at its least vertex.
 Face turned_to_least(const Face& f)
 {
     if (f[0] < f[1] && f[0] < f[2])

@@ -11,9 +11,9 @@
 #include <cstddef>
 
 /// Ear cutting: a corner with its two neighbours is an ear when the diagonal between them runs
-/// inside the polygon or along its edges. Cutting an ear off leaves a polygon of one corner less,
+/// inside the polygon or along its edges. Cutting off an ear leaves a polygon with one corner less,
 /// and every simple polygon has an ear. In an arrow, a and c are ears, cut by the diagonal from d
-/// to b; d is none, since its diagonal from c to a runs outside, and b is reflex.
+/// to b; d is not one, since its diagonal from c to a runs outside, and b is reflex.
 ///
 ///             d                 d
 ///            . .               .|.
@@ -22,12 +22,13 @@
 ///         . .   . .         . .   . .
 ///         a       c         a       c
 ///
-/// Why the result is right once no triangle turns the other way: the polygon is the boundary of the
-/// triangles together, so a point lies in as many of them as the polygon winds round it.
+/// The result is correct if no triangle has the opposite orientation: the polygon is the boundary
+/// of all triangles together, so the number of triangles around a point equals the polygon's
+/// winding number.
 ///
-/// Places are those in the plane across the polygon's normal, as parts of its extent. A place
-/// within the tolerance of a line lies on it. The first try has a tolerance that keeps corners of a
-/// straight side out of slivers, the second has none.
+/// Positions are in the plane across the polygon's normal, as parts of its extent. A position
+/// within the tolerance of a line lies on it. The first attempt has a tolerance that prevents
+/// slivers along straight sides, the second has none.
 namespace tactus::detail
 {
 
@@ -40,7 +41,7 @@ using Place = std::array<double, 2>;
 constexpr double kStraight = 1e-7;
 constexpr double kRounding = 1e-14;
 
-/// The polygon seen along its normal, counter-clockwise; empty when it has no area.
+/// Polygon seen along its normal, counter-clockwise; empty if it has no area.
 std::vector<Place> flatten(std::span<const std::array<double, 3>> corners)
 {
     Eigen::AlignedBox3d box;
@@ -54,12 +55,12 @@ std::vector<Place> flatten(std::span<const std::array<double, 3>> corners)
     {
         scaled.emplace_back((Vec3(corner.data()) - box.min()) / extent);
     }
-    Vec3 normal(0.0, 0.0, 0.0); // Newell's: twice the areas of the projections.
+    Vec3 normal(0.0, 0.0, 0.0); // Newell's normal: twice the areas of the projections.
     for (std::size_t i = 0; i < scaled.size(); ++i)
     {
         normal += scaled[i].cross(scaled[(i + 1) % scaled.size()]);
     }
-    if (!(normal.norm() > kRounding)) // Not a number, too: an extent of 0.
+    if (!(normal.norm() > kRounding)) // Also true for NaN, from an extent of 0.
     {
         return {};
     }
@@ -74,7 +75,7 @@ std::vector<Place> flatten(std::span<const std::array<double, 3>> corners)
     return flat;
 }
 
-/// Twice the area of the triangle; positive when it is counter-clockwise.
+/// Twice the area of the triangle; positive if it is counter-clockwise.
 double area_of(const Place& a, const Place& b, const Place& c)
 {
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
@@ -140,7 +141,7 @@ public:
     }
 
 private:
-    /// Better than every ear: what has no area is in the way of others.
+    /// Quality above that of every ear: corners without area block others.
     static constexpr double kNoArea = 4.0;
     static constexpr double kNoEar = -1.0;
 
@@ -149,7 +150,7 @@ private:
         return {previous_[i], i, next_[i]};
     }
 
-    /// The best ear of those left; the first of equal ones.
+    /// The best remaining ear; the first of equal ones.
     [[nodiscard]] std::uint32_t best_of(const std::vector<double>& quality, std::size_t left) const
     {
         std::uint32_t best = first_;
@@ -162,14 +163,14 @@ private:
         return best;
     }
 
-    /// 1 left of the line from a to b, -1 right of it, 0 on it.
+    /// 1 if c is left of the line from a to b, -1 if right of it, 0 if on it.
     [[nodiscard]] int side_of(std::uint32_t a, std::uint32_t b, std::uint32_t c) const
     {
         const double area = area_of(flat_[a], flat_[b], flat_[c]);
         return area > tolerance_ ? 1 : area < -tolerance_ ? -1 : 0;
     }
 
-    /// The ear's height over its longest side, or one of the two constants.
+    /// Height of the ear over its longest side, or one of the two constants.
     [[nodiscard]] double quality_of(std::uint32_t i) const
     {
         const auto [a, b, c] = triangle_at(i);
@@ -177,7 +178,7 @@ private:
         if (flat_[a] == flat_[b] || flat_[b] == flat_[c] || flat_[c] == flat_[a] ||
             (std::abs(area) <= kRounding && dot_at(flat_[b], flat_[a], flat_[c]) > 0.0))
         {
-            return kNoArea; // A corner there twice, or a spike.
+            return kNoArea; // A duplicate corner, or a spike.
         }
         if (side_of(a, b, c) <= 0 || !sees(a, c) || !sees(c, a) || is_blocked(a, c))
         {
@@ -189,7 +190,7 @@ private:
         return area / longest;
     }
 
-    /// Whether the diagonal leaves `from` into the polygon, or along an edge.
+    /// True if the diagonal leaves `from` into the polygon, or along an edge.
     [[nodiscard]] bool sees(std::uint32_t from, std::uint32_t to) const
     {
         const std::uint32_t before = previous_[from];
@@ -200,7 +201,7 @@ private:
                                                 : left_of_after || left_of_before;
     }
 
-    /// Whether an edge crosses the diagonal from a to c, or a corner lies on it.
+    /// True if an edge crosses the diagonal from a to c, or a corner lies on it.
     [[nodiscard]] bool is_blocked(std::uint32_t a, std::uint32_t c) const
     {
         for (std::uint32_t u = next_[c]; u != a; u = next_[u])
@@ -228,9 +229,9 @@ private:
 
     const std::vector<Place>& flat_;
     double tolerance_;
-    std::vector<std::uint32_t> next_;     ///< For each corner not cut off, the next such corner.
-    std::vector<std::uint32_t> previous_; ///< The corner before it that isn't cut off.
-    std::uint32_t first_{0};              ///< A corner that isn't cut off.
+    std::vector<std::uint32_t> next_;     ///< Next remaining corner of each remaining corner.
+    std::vector<std::uint32_t> previous_; ///< Previous remaining corner.
+    std::uint32_t first_{0};              ///< One remaining corner.
 };
 
 } // namespace

@@ -19,7 +19,7 @@ namespace
 using namespace std::string_view_literals;
 using Kind = std::pair<std::string_view, std::string_view>;
 
-/// First bytes, and what begins with them.
+/// First bytes of binary files, and messages about them.
 constexpr std::array<Kind, 18> kBinaryKinds{{
     {"\x1F\x8B"sv, "is compressed by gzip: unpack it, or pipe it: zcat FILE | spm_build - --format "
                    "ply, or obj, stl, off"},
@@ -46,7 +46,7 @@ constexpr std::array<Kind, 18> kBinaryKinds{{
     {"ISO-10303"sv, "is a STEP file: a CAD program makes a mesh of it"},
 }};
 
-/// First words of texts, in small letters.
+/// First words of text files, in lower case, and messages about them.
 constexpr std::array<Kind, 7> kTextKinds{{
     {"version https://git-lfs"sv,
      "is a Git LFS pointer, not the file that it stands for: 'git lfs pull' fetches that"},
@@ -58,7 +58,7 @@ constexpr std::array<Kind, 7> kTextKinds{{
     {"# vtk"sv, "is a VTK file: export it as one of the formats that are read"},
 }};
 
-/// First words of the formats that are read.
+/// First words of the formats that can be read.
 constexpr std::array<std::pair<std::string_view, MeshFormat>, 5> kOwnKinds{{
     {"ply"sv, MeshFormat::ply},
     {"solid"sv, MeshFormat::stl},
@@ -73,7 +73,7 @@ bool is_control(char c)
     return byte < ' ' && (c < '\t' || c > '\r');
 }
 
-/// Every second byte of a text in UTF-16 is 0, as long as its letters are ASCII.
+/// True if every second byte is 0, as in UTF-16 with ASCII letters.
 bool is_utf16_without_mark(std::string_view start)
 {
     std::array<std::size_t, 2> zeros{};

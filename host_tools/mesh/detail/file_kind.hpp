@@ -11,9 +11,9 @@
 namespace tactus::detail
 {
 
-/// What a file is by its first bytes, and the way out, when it is none of the format that is
-/// expected, if any; empty when they tell nothing. For a file that was refused: a reader alone
-/// decides what it reads.
+/// Message about a refused file, judged by its first bytes: the format that it has instead of the
+/// expected one, if any, and a remedy; empty if unknown. The readers do not use it to select a
+/// format.
 [[nodiscard]] std::string other_kind(std::string_view bytes, std::optional<MeshFormat> expected);
 
 } // namespace tactus::detail

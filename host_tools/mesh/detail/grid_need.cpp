@@ -19,27 +19,28 @@ namespace
 
 constexpr std::size_t kEdgeFacesMax = 4'096;
 constexpr std::size_t kPatchesMax = 256;
-constexpr std::size_t kFacesToPatch = 64; ///< Fewer patches in small meshes: they cost time.
+/// Faces a patch; limits the patches of small meshes, which cost time.
+constexpr std::size_t kFacesToPatch = 64;
 constexpr std::size_t kPatchFaces = 48;
-constexpr std::size_t kLeastPatchFaces = 8; ///< The normals of fewer faces say little.
+/// Minimum, since the normals of fewer faces are not significant.
+constexpr std::size_t kLeastPatchFaces = 8;
 
 constexpr double kStepsInEdge = 16.0;
-/// This part of the edges, and of the patches, may be finer than the grid is made for.
+/// Shares of the edges, and of the patches, that may be finer than the grid allows.
 constexpr double kShortEdges = 0.01;
 constexpr double kFlatterPatches = 0.2;
-/// Rounding to a step turns a face's normal by half of it over the face's height, in the mean.
+/// Mean rotation of a face's normal by rounding to a step: half the step over the face's height.
 constexpr double kTurnOfStep = 0.5;
 constexpr double kSpreadOfTurn = 2.0;
-/// Cosine of 30 degrees: normals that are farther apart are across a sharp edge.
+/// Cosine of 30 degrees: normals farther apart belong to a sharp edge.
 constexpr double kSmooth = 0.866;
-/// What is finer than this part of the diagonal no grid of 24 bits can hold.
+/// Part of the diagonal below which no grid of 24 bits can represent details.
 constexpr double kFinest = 0x1p-20;
 constexpr std::size_t kMostDigits = 8;
 constexpr std::size_t kVerticesRead = 512;
 
-/// Visits numbers below a count, all of them or as many as are wanted. These are apart by the
-/// golden ratio: any fixed step falls in with the rows of some mesh, and sees one line of its
-/// pattern.
+/// Visits at most `most` of the numbers below a count. They are spaced by the golden ratio: a fixed
+/// step would match the rows of some mesh, and see one line of its pattern.
 template <typename Visit>
 void visit_spread(std::size_t count, std::size_t most, const Visit& visit)
 {
@@ -50,7 +51,7 @@ void visit_spread(std::size_t count, std::size_t most, const Visit& visit)
     }
 }
 
-/// Whether a value is a whole number of steps, but for what a float of it loses.
+/// True if a value is a multiple of the step, within the rounding of float.
 bool is_multiple(double value, double step)
 {
     const double steps = value / step;
@@ -58,8 +59,8 @@ bool is_multiple(double value, double step)
     return rounding < 0.25 && std::abs(steps - std::round(steps)) <= rounding;
 }
 
-/// The largest power of ten that isn't above a value > 0, as repeated multiplication gives it: the
-/// same on every machine.
+/// Largest power of ten not above a value > 0, by repeated multiplication: the same on every
+/// machine.
 double decade_of(double value)
 {
     double decade = 1.0;
@@ -74,8 +75,8 @@ double decade_of(double value)
     return decade;
 }
 
-/// How finely the source tells places by itself: as floats, with so many decimals, or with so many
-/// digits. 0 when none of them.
+/// Resolution of the source's coordinates: of float, of a number of decimals, or of a number of
+/// digits. 0 if none fits.
 double source_step(const TriangleMesh& mesh)
 {
     bool are_floats = true;
@@ -120,7 +121,7 @@ double source_step(const TriangleMesh& mesh)
     return step;
 }
 
-/// The value that a share of them is below.
+/// Quantile of the values at a share.
 double at_share(std::vector<double>& values, double share)
 {
     const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
@@ -148,7 +149,7 @@ double need_of_edges(const TriangleMesh& mesh, double diagonal)
     return lengths.empty() ? GridNeed{}.for_edges : at_share(lengths, kShortEdges) / kStepsInEdge;
 }
 
-/// Patches round faces, and what their relief needs.
+/// Finds patches around faces and measures the need of their relief.
 class PatchMeter
 {
 public:
@@ -169,7 +170,7 @@ public:
     {
     }
 
-    /// The largest step for the patch round a face; infinite when the patch is too small.
+    /// Largest step for the patch around a face; infinite if the patch is too small.
     double need(std::uint32_t seed)
     {
         gather(seed);
@@ -194,7 +195,7 @@ public:
     }
 
 private:
-    /// Twice the area long.
+    /// Normal of a face; its length is twice the area.
     [[nodiscard]] Vec3 normal_of(std::uint32_t face) const
     {
         const auto& [a, b, c] = mesh_.faces[face];
@@ -210,7 +211,7 @@ private:
                                    (place_of(mesh_, c) - place_of(mesh_, a)).squaredNorm()}));
     }
 
-    /// Breadth first over common vertices.
+    /// Collects a patch, breadth first over common vertices.
     void gather(std::uint32_t seed)
     {
         ++patches_;
@@ -243,8 +244,8 @@ private:
     }
 
     const TriangleMesh& mesh_;
-    IndexLists faces_of_;                 ///< The faces of each vertex.
-    std::vector<std::uint32_t> patch_of_; ///< The last patch that came to each face.
+    IndexLists faces_of_;                 ///< Faces by vertex.
+    std::vector<std::uint32_t> patch_of_; ///< Last patch that reached each face.
     std::uint32_t patches_{0};
     std::vector<std::uint32_t> patch_;
 };
@@ -256,7 +257,7 @@ double need_of_relief(const TriangleMesh& mesh, double diagonal)
     {
         return GridNeed{}.for_relief;
     }
-    // What the source's own rounding makes of a flat place is no relief.
+    // The source's own rounding of a flat place does not count as relief.
     const double flat = std::max(kFinest / 4.0 * diagonal, 2.0 * source_step(mesh));
     PatchMeter meter(mesh);
     std::vector<double> needs;

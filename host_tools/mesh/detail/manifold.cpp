@@ -8,9 +8,8 @@
 #include <span>
 
 /// A half-edge h = 3 f + k runs from corner k of face f to the next corner. Two half-edges that
-/// share their end points in opposite directions may be paired; what is not paired is border.
-/// Walking over pairs round a vertex visits the corners of one fan, and each fan gets a vertex of
-/// its own:
+/// share their end points in opposite directions may be paired; unpaired ones are border. Walking
+/// over pairs around a vertex visits the corners of one fan, and each fan gets a vertex of its own:
 ///
 ///         \ f2 | f1 /             \ f2 | f1 /
 ///          \   |   /               \   |   /
@@ -18,15 +17,15 @@
 ///          /   |                       v'
 ///         / f3 | f4                / f3 | f4
 ///
-/// Why one pass without opposite copies is enough: at an edge all half-edges are unpaired or
-/// exactly two are paired. Of the unpaired ones no two with the same direction share a fan at
-/// either end, since each would have to be that fan's first (or last) face. So afterwards an edge
-/// has at most one face in each direction, and when two opposite unpaired ones keep both end points
-/// in common they are the two ends of one fan at each, which closes it.
+/// One pass is enough without opposite copies: at an edge all half-edges are unpaired or exactly
+/// two are paired. Of the unpaired ones no two with the same direction share a fan at either end,
+/// since each would have to be that fan's first (or last) face. Afterwards an edge therefore has at
+/// most one face in each direction, and when two opposite unpaired ones keep both end points in
+/// common they are the two ends of one fan at each, which closes it.
 ///
-/// Opposite copies (two-sided sheets) make every edge a crowd. They are paired in a first pass with
-/// copies only among copies; there pairs and borders mix at one edge, the argument above does not
-/// hold, and the plain pass afterwards makes it hold.
+/// Opposite copies (two-sided sheets) give every edge more than two faces. They are paired in a
+/// first pass with copies only among copies; there pairs and borders mix at one edge, the argument
+/// above does not hold, and the plain pass afterwards makes it hold.
 namespace tactus::detail
 {
 
@@ -74,8 +73,8 @@ private:
         return !is_copy_.empty() && is_copy_[h / 3] != 0;
     }
 
-    /// Buckets half-edges by their least end point, sorts each bucket by the other end point and
-    /// handles the half-edges of one edge together.
+    /// Sorts half-edges into buckets by their least end point, sorts each bucket by the other end
+    /// point, and pairs the half-edges of each edge.
     void pair_half_edges()
     {
         const auto half_edges = static_cast<std::uint32_t>(twin_.size());
@@ -139,13 +138,14 @@ private:
             const bool second_side = try_pair(copies);
             if (sheet || (first_side && second_side))
             {
-                return; // Parted along the whole sheet, not cut.
+                return; // The edge is separated along the whole sheet, which is not a cut.
             }
         }
         ++result_.cut_edges;
     }
 
-    /// Pairs exactly two of opposite direction, but never a face with its own opposite.
+    /// Pairs two half-edges of opposite direction if there are exactly two, but never a face with
+    /// its own opposite.
     bool try_pair(std::span<const std::uint32_t> edge)
     {
         if (edge.size() != 2 || from(edge[0]) == from(edge[1]) ||
@@ -158,10 +158,10 @@ private:
         return true;
     }
 
-    /// The fan of the first corner found at a vertex keeps the vertex; later fans get copies.
+    /// Keeps the vertex for the fan of its first corner; later fans get copies.
     void give_each_fan_a_vertex()
     {
-        std::vector<std::uint32_t> vertex_of(twin_.size(), kNoTwin); // Per corner.
+        std::vector<std::uint32_t> vertex_of(twin_.size(), kNoTwin); // Vertex of each corner.
         std::vector<bool> taken(vertex_count_, false);
         for (std::uint32_t corner = 0; corner < vertex_of.size(); ++corner)
         {
@@ -190,7 +190,7 @@ private:
     void name_fan(std::uint32_t start, std::uint32_t vertex, std::vector<std::uint32_t>& vertex_of)
     {
         std::uint32_t corner = start;
-        do // Counter-clockwise, over the edge that comes in.
+        do // Counter-clockwise, over the incoming edge.
         {
             vertex_of[corner] = vertex;
             corner = twin_[previous(corner)];

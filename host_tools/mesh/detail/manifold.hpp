@@ -13,14 +13,14 @@ namespace tactus::detail
 struct ManifoldSplit
 {
     std::size_t cut_edges{0};
-    /// For each vertex that was added, in order, the one that it is a copy of.
+    /// Originals of the added vertices, in their order.
     std::vector<std::uint32_t> copy_of;
 };
 
 /// Renumbers face corners until every edge has at most two faces, in opposite directions, and every
-/// vertex one fan. New vertices are numbered from `vertex_count` on. Faces must have three
-/// different vertices each and no two may be equal up to rotation. Linear apart from a sort round
-/// each vertex.
+/// vertex one fan. New vertices are numbered from `vertex_count` on. Each face must have three
+/// different vertices, and no two faces may be equal up to rotation. Linear, except for a sort
+/// around each vertex.
 [[nodiscard]] ManifoldSplit split_into_manifold(std::vector<std::array<std::uint32_t, 3>>& faces,
                                                 std::uint32_t vertex_count);
 

@@ -88,7 +88,7 @@ public:
     }
 
 private:
-    /// In small letters.
+    /// Next word in lower case.
     std::string next_word() { return lower(cursor_.next_token_in_line()); }
 
     std::optional<Refusal> read_line(std::string_view word)
@@ -168,7 +168,7 @@ private:
         header_.lines = cursor_.line();
         cursor_.skip_line();
         header_.bytes = cursor_.position();
-        // Where lines end in CR, an LF behind the last one is the first byte of the data.
+        // If lines end in CR, an LF after the last one is the first byte of the data.
         const std::string_view header = bytes_.substr(0, header_.bytes);
         if (header.ends_with("\r\n") && header.find('\n') == header.size() - 1)
         {

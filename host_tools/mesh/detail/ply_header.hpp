@@ -41,7 +41,7 @@ struct PlyProperty
 {
     std::string name;
     PlyType type{};
-    std::optional<PlyType> count_type; ///< Present for a list.
+    std::optional<PlyType> count_type; ///< Type of the count; present for a list.
 };
 
 struct PlyElement
@@ -55,12 +55,12 @@ struct PlyHeader
 {
     PlyFormat format{};
     std::vector<PlyElement> elements;
-    std::size_t bytes{0}; ///< Where the data starts.
+    std::size_t bytes{0}; ///< Offset of the data.
     std::size_t lines{0};
 };
 
-/// Reads up to and including "end_header"; the words are those of the 1994 PLY description, with
-/// the sized type names (int8 .. float64) beside the C ones.
+/// Reads up to and including "end_header". The words are those of the 1994 PLY description, and the
+/// type names with sizes (int8 .. float64) in addition to the C ones.
 [[nodiscard]] Result<PlyHeader, Refusal> read_ply_header(std::string_view bytes);
 
 } // namespace tactus::detail

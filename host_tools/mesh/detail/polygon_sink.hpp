@@ -13,19 +13,19 @@
 namespace tactus::detail
 {
 
-/// Turns polygons into triangles. A polygon with n corners becomes n - 2 faces, in its place among
-/// the mesh's faces. Formats may name vertices before they give them their places, so polygons are
-/// fans at first, and finish() cuts those again that a fan doesn't fit.
+/// Converts polygons to triangles. A polygon with n corners becomes n - 2 consecutive faces, in the
+/// order of the input. Formats may use vertices before they define their positions, so polygons are
+/// fans at first; finish() cuts those again that a fan does not fit.
 class PolygonSink
 {
 public:
     explicit PolygonSink(TriangleMesh& mesh) : mesh_(mesh) {}
 
-    /// Equal neighbours among more than three corners count once.
+    /// Adds a polygon. Equal neighbours among more than three corners count once.
     void add(std::span<const std::uint32_t> corners);
 
-    /// Cuts the polygons, once every vertex has its place; the corners must name vertices. Adds a
-    /// note for polygons that have too few corners and for such as cross themselves.
+    /// Cuts the polygons; every vertex must have its position, and the corners must be vertices.
+    /// Adds a note for polygons that have too few corners or cross themselves.
     void finish(std::vector<std::string>& notes);
 
 private:

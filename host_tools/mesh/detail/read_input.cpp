@@ -18,7 +18,7 @@ namespace
 
 constexpr std::size_t kStepBytes = std::size_t{1} << 20U;
 
-/// All that comes through a descriptor.
+/// All bytes from a descriptor.
 Result<std::string, Refusal> read_to_end(int descriptor)
 {
     std::string bytes;

@@ -11,14 +11,13 @@
 namespace tactus::detail
 {
 
-/// The name of standard input on a command line.
+/// Name of standard input on a command line.
 inline constexpr const char* kStandardInput = "-";
 
-/// Reads a file as read_file() does, and also a pipe, a device or, by its name, standard input. It
-/// waits for their end.
+/// Reads a file like read_file(), or a pipe, a device or standard input (by its name) to its end.
 [[nodiscard]] Result<std::string, Refusal> read_input(const std::filesystem::path& path);
 
-/// The name in messages.
+/// Name of an input in messages.
 [[nodiscard]] std::string input_name(const std::filesystem::path& path);
 
 } // namespace tactus::detail

@@ -11,17 +11,17 @@
 #include <array>
 #include <optional>
 
-/// Wavefront OBJ: "v" and "f" lines; texture coordinates, normals, groups and materials are passed
-/// over. Indices count from 1, or backwards from the last vertex so far when negative. A face may
-/// name vertices that come later in the file.
+/// Wavefront OBJ: "v" and "f" lines; texture coordinates, normals, groups and materials are
+/// skipped. Indices count from 1, or backwards from the last vertex so far if negative. A face may
+/// use vertices that come later in the file.
 namespace tactus::detail
 {
 
 namespace
 {
 
-/// What a line may begin with that says nothing of the surface. Names may end in a backslash, which
-/// continues lines of numbers alone.
+/// Keywords of lines that do not affect the surface. Names may end in a backslash, which only
+/// continues lines of numbers.
 constexpr std::array<std::string_view, 15> kPassedOver{
     "g",     "o",        "s",        "mg",  "usemtl",     "mtllib",    "usemap", "maplib",
     "bevel", "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj", "call"};
@@ -71,8 +71,8 @@ public:
     }
 
 private:
-    /// The next token of the logical line: a backslash at the end of a line, behind a blank or
-    /// glued to a word, continues it.
+    /// Next token of the logical line: a backslash at the end of a line, after a blank or attached
+    /// to a word, continues it.
     std::string_view next_word()
     {
         std::string_view word = cursor_.next_token_in_line();
@@ -136,8 +136,8 @@ private:
         return std::nullopt;
     }
 
-    /// A fourth number is the weight of homogeneous coordinates, unless it is the first of a
-    /// colour's three. A point at infinity is no place, so that a weight of 0 says nothing.
+    /// Divides by a fourth number, the weight of homogeneous coordinates, unless it is the first of
+    /// a colour's three. A point at infinity is no position, so a weight of 0 is ignored.
     void divide_by_weight(std::array<double, 3>& position)
     {
         const auto weight = parse_number(next_word());
@@ -203,7 +203,7 @@ private:
     std::uint64_t largest_index_{0};
     std::size_t largest_line_{0};
     std::uint64_t left_out_{0};
-    std::uint64_t weights_{0}; ///< Vertices that were divided by one.
+    std::uint64_t weights_{0}; ///< Vertices that were divided by a weight.
     std::uint64_t not_understood_{0};
     std::size_t first_not_understood_{0};
 };

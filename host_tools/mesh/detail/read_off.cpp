@@ -11,16 +11,16 @@
 #include <optional>
 
 /// OFF: keyword, counts, vertices, polygons; '#' starts a comment. Each vertex and polygon begins a
-/// line and may go on in the next; what stands behind the coordinates or the indices on its last
-/// line (colours, normals) is passed over. The keyword may be missing, or glued to the counts as in
-/// the files of ModelNet40.
+/// line and may continue in the next; text after the coordinates or the indices on its last line
+/// (colours, normals) is skipped. The keyword may be missing, or attached to the counts as in the
+/// files of ModelNet40.
 namespace tactus::detail
 {
 
 namespace
 {
 
-/// Texture places, colours and normals stand behind a vertex's coordinates.
+/// Prefixes of the keyword: texture coordinates, colours and normals after a vertex's coordinates.
 constexpr std::array<std::string_view, 8> kPrefixes{"", "c", "n", "cn", "st", "stc", "stn", "stcn"};
 
 class OffReader
@@ -57,7 +57,7 @@ public:
     }
 
 private:
-    /// A token of this line, comments left out.
+    /// Token of this line, comments excluded.
     std::string_view token_in_line()
     {
         const std::string_view token = cursor_.next_token_in_line();
@@ -72,7 +72,7 @@ private:
 
     std::string_view next_of_line() { return in_comment_ ? std::string_view{} : token_in_line(); }
 
-    /// The next token of this line or of a later one.
+    /// Next token of this line or of a later one.
     std::string_view next()
     {
         const std::string_view token = next_of_line();
@@ -83,7 +83,7 @@ private:
         return first_of_line();
     }
 
-    /// The first token of the next line that has one; empty at the end of the file.
+    /// First token of the next line that has one; empty at the end of the file.
     std::string_view first_of_line()
     {
         do
@@ -97,7 +97,7 @@ private:
         return {};
     }
 
-    /// [ST][C][N]OFF in either case of letters; without it, the first word is a count.
+    /// Reads [ST][C][N]OFF in either case of letters; if it is missing, the first word is a count.
     std::optional<Refusal> read_keyword()
     {
         const std::string_view token = first_of_line();
@@ -139,14 +139,16 @@ private:
         {
             return cursor_.error("expected the numbers of vertices and faces (ASCII OFF)");
         }
-        if (cursor_.line() != line) // A number on each line, so that the edges' is on the next.
+        if (cursor_.line() != line) // With one number a line, that of the edges is on the next.
         {
             next();
         }
         cursor_.skip_line();
         vertices_ = static_cast<std::uint64_t>(*vertices);
         faces_ = static_cast<std::uint64_t>(*faces);
-        // A vertex is at least "0 0 0\n", a face at least "0\n".
+        // A vertex is at least "0 0 0
+        // ", a face at least "0
+        // ".
         const std::uint64_t room = cursor_.remaining() + 1;
         if (vertices_ > room / 6 || faces_ > room / 2)
         {
@@ -217,7 +219,7 @@ private:
     std::string_view text_;
     TextCursor cursor_;
     bool in_comment_{false};
-    std::string_view first_count_; ///< The part of it that is glued to the keyword.
+    std::string_view first_count_; ///< Part of the first count that is attached to the keyword.
     std::uint64_t vertices_{0};
     std::uint64_t faces_{0};
     MeshFile file_;

@@ -15,9 +15,9 @@
 #include <optional>
 #include <type_traits>
 
-/// PLY: the header says which elements with which properties follow; "vertex", "face" and
-/// "tristrips" are read, all others passed over. A value of any type is read as a double, which
-/// holds each of them exactly.
+/// PLY: the header lists the elements and their properties; "vertex", "face" and "tristrips" are
+/// read, all others skipped. A value of any type is read as a double, which represents each of them
+/// exactly.
 namespace tactus::detail
 {
 
@@ -78,7 +78,7 @@ public:
     [[nodiscard]] std::size_t remaining() const { return bytes_.size() - at_; }
     [[nodiscard]] bool at_end() { return remaining() == 0; }
     [[nodiscard]] static std::string where() { return {}; }
-    /// Why the last value of a property couldn't be read.
+    /// Reason why the last value of a property could not be read.
     [[nodiscard]] static std::string fault(const std::string& property)
     {
         return "the file ends at " + quote(property);
@@ -114,7 +114,7 @@ public:
 
 private:
     TextCursor cursor_;
-    std::string_view token_; ///< The last one that was read.
+    std::string_view token_; ///< Last token.
 };
 
 template <typename Values>
@@ -190,8 +190,8 @@ private:
         return found && !property.count_type ? std::optional(axis) : std::nullopt;
     }
 
-    /// The list of indices of each element that has them: by its name, or a face's only list of
-    /// whole numbers.
+    /// Finds the list of indices of each element that has one: by its name, or a face's only list
+    /// of integers.
     std::optional<Refusal> find_index_lists()
     {
         constexpr std::array<std::string_view, 4> kNames{"vertex_indices", "vertex_index",
@@ -283,7 +283,7 @@ private:
         return std::nullopt;
     }
 
-    /// Helpers below return what is wrong; read_element() says where.
+    /// The helpers below return the fault; read_element() adds the place.
     std::optional<std::string> read_item(const PlyElement& element, const std::vector<Role>& roles)
     {
         if (element.name == "vertex")
@@ -369,8 +369,9 @@ private:
         return std::nullopt;
     }
 
-    /// Each vertex from the third on makes a face with the two before it; every second face is
-    /// turned so that all wind alike. Equal neighbours only steer the strip and make no face.
+    /// Adds a vertex to the strip. From the third on, each makes a face with the two before it;
+    /// every second face is reversed so that all have the same winding. Equal neighbours only steer
+    /// the strip and make no face.
     void add_to_strip(std::uint32_t index)
     {
         strip_.push_back(index);
@@ -395,7 +396,7 @@ private:
     PolygonSink polygons_{file_.mesh};
     std::vector<const PlyProperty*> index_lists_;
     std::vector<std::uint32_t> corners_;
-    std::vector<std::uint32_t> strip_; ///< Vertices since the strip's last start.
+    std::vector<std::uint32_t> strip_; ///< Vertices since the strip's last restart.
 };
 
 } // namespace

@@ -11,9 +11,9 @@
 #include <cstring>
 #include <optional>
 
-/// STL: loose triangles, each with three positions of its own; prepare_mesh() welds them. A binary
-/// header may begin with "solid", so the length decides first. Text is read word by word; its
-/// lines don't matter.
+/// STL: separate triangles with three positions each; prepare_mesh() welds them. A binary header
+/// may begin with "solid", so the length decides first. Text is read word by word; its lines are
+/// ignored.
 namespace tactus::detail
 {
 
@@ -72,7 +72,7 @@ class TextStlReader
 public:
     explicit TextStlReader(std::string_view text) : cursor_(text) {}
 
-    /// One or more "solid name ... endsolid name".
+    /// Reads one or more "solid name ... endsolid name".
     Result<MeshFile, Refusal> read()
     {
         std::string word = next_word();
@@ -107,14 +107,14 @@ private:
                                  : fmt::format("expected '{}', found {}", wanted, quote(found)));
     }
 
-    /// In small letters; "end loop" is one word.
+    /// Next word in lower case; "end loop" is one word.
     std::string next_word()
     {
         std::string word = lower(cursor_.next_token());
         return word == "end" ? word + lower(cursor_.next_token()) : word;
     }
 
-    /// Whether a facet begins on this line, behind the cursor; the cursor is moved in front of it.
+    /// True if a facet begins on this line after the cursor, which is then moved before it.
     static bool finds_facet_in_line(TextCursor& cursor)
     {
         constexpr int kWordsBetween = 5; // "normal x y z outer".
@@ -137,8 +137,8 @@ private:
         }
     }
 
-    /// Passes over a solid's name, which ends with the line, but in a text of one line at the word
-    /// that is due next: "facet", or a "solid" with a facet behind it.
+    /// Skips a solid's name, which ends with the line. In a text of one line it ends at the next
+    /// due word: "facet", or a "solid" followed by a facet.
     void skip_name(std::string_view due)
     {
         TextCursor ahead = cursor_;
@@ -189,8 +189,8 @@ private:
         return std::nullopt;
     }
 
-    /// "facet normal x y z outer loop vertex ... endloop endfacet"; what stands before "outer" is
-    /// passed over.
+    /// Reads "facet normal x y z outer loop vertex ... endloop endfacet"; words before "outer" are
+    /// skipped.
     std::optional<Refusal> read_facet(std::string_view first)
     {
         if (auto error = expect(first.empty() ? "endsolid" : "facet", first))
@@ -250,8 +250,8 @@ private:
     PolygonSink polygons_{file_.mesh};
 };
 
-/// A file that is longer than its triangles. Of two files in one both are read; a tail that could
-/// be triangles is one that the count forgot.
+/// Reads a file that is longer than its triangles: two concatenated files, or a count that is too
+/// small for a tail that could be triangles.
 Result<MeshFile, Refusal> read_binary_with_tail(std::string_view bytes)
 {
     const std::uint64_t triangles = binary_triangles(bytes);

@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-/// One reader per format: bytes in, mesh out. Errors say where in the file; read_mesh_file() puts
-/// the file's name in front and checks what is common to all formats.
+/// Readers, one for each format. Refusals state the place in the file; read_mesh_file() adds the
+/// file's name and checks the properties common to all formats.
 namespace tactus::detail
 {
 
@@ -20,7 +20,7 @@ namespace tactus::detail
 [[nodiscard]] Result<MeshFile, Refusal> read_stl(std::string_view bytes);
 [[nodiscard]] Result<MeshFile, Refusal> read_off(std::string_view text);
 
-/// Text formats end in a line end; one that doesn't may have lost digits of its last number.
+/// Adds a note if a text format does not end in a line end: its last number may have lost digits.
 void note_missing_line_end(std::string_view text, std::vector<std::string>& notes);
 
 } // namespace tactus::detail

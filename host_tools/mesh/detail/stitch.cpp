@@ -18,9 +18,9 @@ namespace tactus::detail
 namespace
 {
 
-/// A face has three edges, and each is cut in a round of its own.
+/// Maximum number of rounds: a face has three edges, and each round cuts one of them.
 constexpr int kRoundsMax = 3;
-/// Cells along an axis, at most: three numbers of one fit in 63 bits.
+/// Maximum number of cells along an axis: three coordinates fit in 63 bits.
 constexpr double kCellsMax = 0x1p20;
 
 /// Edge `edge` of a face, which no other face has.
@@ -30,8 +30,9 @@ struct BorderEdge
     std::uint32_t edge{0};
 };
 
-/// The faces round a vertex close when its next corners are those before it; all others' sums
-/// differ but by rare chance, and then a border is missed.
+/// Marks border vertices. The faces around an inner vertex form a cycle, so the sums of their next
+/// and previous corners are equal. Sums of a border vertex differ except by rare chance; then that
+/// border is missed.
 std::vector<bool> find_border_vertices(const TriangleMesh& mesh)
 {
     std::vector<std::uint64_t> mixed(mesh.positions.size());
@@ -91,7 +92,7 @@ std::vector<BorderEdge> find_border_edges(const TriangleMesh& mesh,
     return single;
 }
 
-/// Border vertices in cells as large as a border edge is in the mean.
+/// Border vertices in cells of the mean size of a border edge.
 class VertexCells
 {
 public:
@@ -112,7 +113,7 @@ public:
         {
             if (is_border[v])
             {
-                // A neighbour's vertex may be beside the box by a rounding.
+                // Rounding may put a neighbour's vertex outside the box.
                 const Vec3 at = ((place_of(mesh, v) - low_) / cell_).cwiseMax(0.0);
                 members_.emplace_back(
                     key(std::floor(at.x()), std::floor(at.y()), std::floor(at.z())), v);
@@ -121,8 +122,8 @@ public:
         std::ranges::sort(members_);
     }
 
-    /// Calls `visit` with each vertex of the cells that come within `tolerance` of the segment, and
-    /// maybe some more; with one of them more than once.
+    /// Calls `visit` with each vertex of the cells within `tolerance` of the segment, and possibly
+    /// some more; some more than once.
     template <typename Visit>
     void visit_near(const Vec3& from, const Vec3& to, double tolerance, const Visit& visit) const
     {
@@ -170,10 +171,10 @@ private:
     std::vector<std::pair<std::uint64_t, std::uint32_t>> members_;
 };
 
-/// Along the edge: how far, and which vertex.
+/// Vertices on an edge, with their distance along it.
 using Stops = std::vector<std::pair<double, std::uint32_t>>;
 
-/// Border vertices on the edge but for its ends; from its first end on.
+/// Border vertices on the edge except its ends, ordered from its first end.
 Stops stops_on(const TriangleMesh& mesh, const VertexCells& cells, const BorderEdge& border,
                double tolerance)
 {
@@ -197,7 +198,7 @@ Stops stops_on(const TriangleMesh& mesh, const VertexCells& cells, const BorderE
                          }
                      });
     std::ranges::sort(stops);
-    Stops apart; // Where several share a place, the mesh's own, which has the lowest number.
+    Stops apart; // If several share a place, the mesh's own one stays, which has the lowest number.
     for (const auto& stop : stops)
     {
         if (apart.empty() || stop.first - apart.back().first > 2.0 * tolerance)
@@ -225,7 +226,7 @@ void cut_face(TriangleMesh& mesh, const BorderEdge& border, const Stops& stops)
     }
 }
 
-/// Cuts one edge of each face at most.
+/// Cuts at most one edge of each face.
 std::size_t stitch_once(TriangleMesh& mesh, double tolerance, std::size_t first_beside)
 {
     std::vector<bool> is_border = find_border_vertices(mesh);
@@ -254,7 +255,7 @@ std::size_t stitch_once(TriangleMesh& mesh, double tolerance, std::size_t first_
     return mesh.faces.size() - before;
 }
 
-/// For each vertex the first border vertex within the tolerance of it that stays where it is.
+/// For each vertex, the first border vertex within the tolerance of it that keeps its position.
 std::vector<std::uint32_t> first_near(const TriangleMesh& mesh, const std::vector<bool>& is_border,
                                       const VertexCells& cells, double tolerance)
 {

@@ -146,7 +146,7 @@ std::string lower(std::string_view token)
 
 std::string quote(std::string_view token)
 {
-    constexpr std::size_t kLongest = 24; // Of a file that may be one long line.
+    constexpr std::size_t kLongest = 24; // Maximum length, since a file may be one long line.
     return "'" + printable(token, kLongest) + "'";
 }
 

@@ -13,13 +13,14 @@
 namespace tactus::detail
 {
 
-/// What ends a line, a word and a number, and where a text begins, for every text format.
+/// Common rules of all text formats for ends of lines, words and numbers, and the beginning of a
+/// text.
 
-/// The text without the byte-order mark of UTF-8 that some editors write before it.
+/// Text without the byte-order mark of UTF-8 that some editors write before it.
 [[nodiscard]] std::string_view without_byte_order_mark(std::string_view text);
 
-/// Walks over text by tokens or by lines and knows the line number, from 1. Lines end in LF, CR LF
-/// or CR. Nothing depends on the locale.
+/// Reads text by tokens or by lines and counts lines from 1. Lines end in LF, CR LF or CR.
+/// Independent of the locale.
 class TextCursor
 {
 public:
@@ -30,16 +31,16 @@ public:
 
     /// The next run of characters without blanks, on this line or a later one; empty at the end.
     std::string_view next_token();
-    /// The next token of this line only; empty at its end.
+    /// The next token of this line only; empty at the line's end.
     std::string_view next_token_in_line();
-    /// Goes to the start of the next line. False when there was no further character.
+    /// Moves to the start of the next line. False at the end of the text.
     bool skip_line();
 
     [[nodiscard]] bool at_end() const { return at_ == text_.size(); }
     [[nodiscard]] std::size_t position() const { return at_; }
     [[nodiscard]] std::size_t remaining() const { return text_.size() - at_; }
     [[nodiscard]] std::size_t line() const { return line_; }
-    /// The error with the current line in front.
+    /// Refusal that begins with the current line.
     [[nodiscard]] Refusal error(const std::string& what) const;
 
 private:
@@ -48,18 +49,18 @@ private:
     std::size_t line_;
 };
 
-/// The whole token as a number; a leading plus and Fortran's exponents (1.5D+02) are allowed. Too
-/// small is 0, too large is infinite (and refused later, with all that is not finite).
+/// Number that the whole token spells; a leading plus and Fortran's exponents (1.5D+02) are
+/// allowed. Values below the range become 0, above it infinite (and are refused later).
 [[nodiscard]] std::optional<double> parse_number(std::string_view token);
-/// The same for whole numbers, which may be written with decimals (3.0) below 2^53.
+/// Integer that the whole token spells; it may have decimals (3.0) below 2^53.
 [[nodiscard]] std::optional<std::int64_t> parse_integer(std::string_view token);
-/// "'x', not a number", and what to do about a decimal comma.
+/// Message "'x', not a number", with a remedy for a decimal comma.
 [[nodiscard]] std::string no_number(std::string_view token);
 
-/// The token in small letters, of ASCII alone.
+/// Token in lower case, for ASCII only.
 [[nodiscard]] std::string lower(std::string_view token);
 
-/// The token in quotes as it can stand in a message, whatever bytes it holds.
+/// Token in quotes, safe for a message with any bytes.
 [[nodiscard]] std::string quote(std::string_view token);
 
 } // namespace tactus::detail

@@ -14,15 +14,15 @@
 #include <utility>
 #include <vector>
 
-/// A piece is a set of faces that are joined by vertices. It is closed when each of its vertices
-/// has a closed fan. The corners of a fan round v are (v, n0, n1), (v, n1, n2) .. (v, nk-1, nk), so
-/// the sum of the second corners less that of the third is n0 - nk, which is 0 when the fan closes
-/// and only then.
+/// A piece is a set of faces connected by vertices. It is closed when each of its vertices has a
+/// closed fan. The corners of a fan round v are (v, n0, n1), (v, n1, n2) .. (v, nk-1, nk), so the
+/// sum of the second corners less that of the third is n0 - nk, which is 0 exactly if the fan
+/// closes.
 ///
-/// Whether a point lies in a closed piece: the faces that the ray from the point along +x crosses
-/// are counted; an odd number means inside. A face is crossed when the ray along +y, in the plane
-/// of y and z, crosses an odd number of its projected edges. Both faces of an edge compute that
-/// crossing from the same numbers in the same order, so that rounding opens no gap between them.
+/// A point lies in a closed piece if the ray from it along +x crosses an odd number of faces. A
+/// face is crossed if the ray along +y, in the plane of y and z, crosses an odd number of its
+/// projected edges. Both faces of an edge compute that crossing from the same numbers in the same
+/// order, so rounding opens no gap between them.
 namespace tactus::detail
 {
 
@@ -32,17 +32,17 @@ namespace
 using Point = std::array<double, 3>;
 using Face = std::array<std::uint32_t, 3>;
 
-/// Vertices of a piece whose places decide whether it lies inside another one.
+/// Vertices of a piece whose positions decide whether it lies inside another one.
 constexpr std::uint32_t kMaxSamples = 16;
-/// Volumes and distances below this part of what was summed are rounding.
+/// Share of the summed magnitudes below which volumes and distances are rounding errors.
 constexpr double kNoise = 1e-12;
 constexpr std::size_t kMaxCellsAlong = 1024;
 
 struct Piece
 {
     bool is_closed{true};
-    double six_volume{0.0};           ///< In cubes of the extent.
-    double six_absolute_volumes{0.0}; ///< The same sum with each term taken as positive.
+    double six_volume{0.0};           ///< Six times the volume, in cubes of the extent.
+    double six_absolute_volumes{0.0}; ///< The same sum with the absolute value of each term.
     std::uint32_t vertices{0};
     Point low{};
     Point high{};
@@ -55,7 +55,7 @@ struct Piece
     {
         return std::abs(six_volume) > kNoise * six_absolute_volumes;
     }
-    /// Whether the other's box lies strictly within this one's.
+    /// True if the other's box lies strictly within this one's.
     [[nodiscard]] bool is_round(const Piece& other) const
     {
         bool is_in = true;
@@ -81,7 +81,7 @@ public:
         }
     }
 
-    /// The pieces; `piece_of` gets each vertex's.
+    /// Finds the pieces; `piece_of` receives that of each vertex.
     std::vector<Piece> find(std::vector<std::uint32_t>& piece_of)
     {
         std::vector<Piece> pieces;
@@ -132,11 +132,12 @@ private:
         }
     }
 
-    /// Adds the tetrahedron of the face and a vertex of its piece: far from the origin that loses
-    /// no digit.
+    /// Adds the tetrahedron of the face and a vertex of its piece, which loses no digits far from
+    /// the origin.
     void add_volume(Piece& piece, const Face& face, const Point& apex)
     {
-        const double extent = piece.extent(); // Squares of tiny or huge lengths have no place.
+        // Scaled, since squares of tiny or huge lengths are out of range.
+        const double extent = piece.extent();
         std::array<Point, 3> side{};
         for (std::size_t k = 0; k < 3; ++k)
         {
@@ -171,7 +172,7 @@ private:
     }
 
     const TriangleMesh& mesh_;
-    std::vector<std::uint32_t> root_; ///< A vertex of the same piece, the least one at last.
+    std::vector<std::uint32_t> root_; ///< A vertex of the same piece; in the end the least one.
 };
 
 struct Sample
@@ -248,16 +249,17 @@ private:
         return step_of(sample.place[2], 1) * along_ + step_of(sample.place[1], 0);
     }
 
-    std::vector<Sample> samples_; ///< In the order of their cells.
+    std::vector<Sample> samples_; ///< Samples in the order of their cells.
     std::size_t along_{1};
     std::array<double, 2> low_{std::numeric_limits<double>::infinity(),
                                std::numeric_limits<double>::infinity()};
     std::array<double, 2> high_{-std::numeric_limits<double>::infinity(),
                                 -std::numeric_limits<double>::infinity()};
-    std::vector<std::size_t> start_; ///< Index of each cell's first sample, and their number.
+    /// Index of each cell's first sample; the last entry is their number.
+    std::vector<std::size_t> start_;
 };
 
-/// Whether the ray along +y from the point crosses the edge, in the plane of y and z.
+/// True if the ray along +y from the point crosses the edge, in the plane of y and z.
 bool crosses_edge(const Point& a, const Point& b, const Point& p)
 {
     if ((a[2] > p[2]) == (b[2] > p[2]))
@@ -274,7 +276,8 @@ enum class Crossing
     touching,
 };
 
-/// Where the face crosses the line through the point along x. Edges run from their lesser vertex.
+/// Crossing of the face with the line through the point along x. Edges run from their lesser
+/// vertex.
 Crossing crossing_of(const Face& face, const std::array<Point, 3>& corners, const Point& p)
 {
     bool is_crossed = false;
@@ -307,7 +310,7 @@ Crossing crossing_of(const Face& face, const std::array<Point, 3>& corners, cons
     return x > p[0] ? Crossing::ahead : Crossing::none;
 }
 
-/// How many closed pieces each piece lies in.
+/// Number of closed pieces around each piece.
 class Nesting
 {
 public:
@@ -336,7 +339,8 @@ public:
     std::vector<std::uint32_t> depths()
     {
         std::vector<std::uint32_t> depth(pieces_.size(), 0);
-        std::vector<std::uint32_t> inside(pieces_.size(), 0); // Samples of each, in the piece b.
+        // Samples of each piece that are inside piece b.
+        std::vector<std::uint32_t> inside(pieces_.size(), 0);
         for (std::uint32_t b = 0; b < pieces_.size(); ++b)
         {
             if (pieces_[b].is_closed)
@@ -365,7 +369,8 @@ public:
     }
 
 private:
-    static constexpr std::uint32_t kTouched = 0x8000'0000U; ///< The sample lies on a face of b.
+    /// Flag: the sample lies on a face of b.
+    static constexpr std::uint32_t kTouched = 0x8000'0000U;
 
     static std::vector<Sample> take_samples(const TriangleMesh& mesh,
                                             const std::vector<Piece>& pieces,
@@ -415,13 +420,13 @@ private:
     const TriangleMesh& mesh_;
     const std::vector<Piece>& pieces_;
     SampleGrid grid_;
-    IndexLists faces_;                      ///< The faces of each piece.
-    std::vector<std::uint32_t> samples_of_; ///< How many samples each piece has.
+    IndexLists faces_;                      ///< Faces by piece.
+    std::vector<std::uint32_t> samples_of_; ///< Number of samples by piece.
     std::vector<std::uint32_t> hits_;       ///< Faces of b ahead of each sample, and kTouched.
     std::vector<std::size_t> hit_;          ///< Samples whose hits are not 0.
 };
 
-/// Whether an open piece may enclose this one. Three vertices enclose nothing.
+/// True if an open piece may enclose this one. Three vertices enclose nothing.
 bool is_doubtful(const Piece& piece, const std::vector<Piece>& pieces)
 {
     return std::ranges::any_of(
