@@ -15,7 +15,7 @@
 namespace tactus
 {
 
-/// Appends little-endian values to a growing buffer: the writing side of ByteReader.
+/// Appends little-endian values to a growing buffer; the counterpart of ByteReader.
 class ByteWriter
 {
 public:
@@ -31,7 +31,7 @@ public:
         bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
     }
 
-    /// A field of up to 32 bits, lowest first; the writing side of BitReader.
+    /// Appends a field of up to 32 bits, lowest first; the counterpart of BitReader.
     void write_bits(std::uint32_t bits, std::uint32_t value)
     {
         window_ |= std::uint64_t{value} << held_;
@@ -41,10 +41,10 @@ public:
             window_ >>= 8U;
         }
     }
-    /// Fills the last byte up with zeros.
+    /// Fills the last byte with zeros.
     void end_bits() { write_bits((8 - held_) % 8, 0); }
 
-    /// Closes a piece: the CRC-32C of all that was written so far.
+    /// Ends a piece with the CRC-32C of all bytes written so far.
     void write_checksum() { write(crc32c(bytes_)); }
 
     [[nodiscard]] std::span<const std::byte> bytes() const noexcept { return bytes_; }
@@ -52,7 +52,7 @@ public:
 
 private:
     std::vector<std::byte> bytes_;
-    std::uint64_t window_{0}; ///< Bits that don't fill a byte yet.
+    std::uint64_t window_{0}; ///< Bits that do not fill a byte yet.
     std::uint32_t held_{0};
 };
 

@@ -85,7 +85,8 @@ void DecodedModel::parse_pieces(std::span<const FrontPage> pages, const ReadPiec
     }
 }
 
-/// With memory for all pages nothing waits for long: a record is linked, or it can't be.
+/// Links all pages and reports the records that should be linked and cannot be. There is memory for
+/// all pages, so no record waits for others.
 void DecodedModel::link_all(std::span<const FrontPage> pages, const std::string& name,
                             std::vector<std::string>& damage)
 {

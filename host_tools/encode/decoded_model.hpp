@@ -14,44 +14,45 @@
 #include <string>
 #include <vector>
 
-// One thread makes it, and waits for the file; then any may read it, several at once.
+// One thread creates it, and waits for the file; then any thread may read it, several at once.
 namespace tactus
 {
 
-/// Reads a piece in its coded form, verified against its hash; refused in words that name it.
+/// Reads a piece in its coded form, verified against its hash; a refusal names the piece.
 using ReadPiece =
     std::function<Result<Done, Refusal>(ContentKey key, std::vector<std::byte>& coded)>;
 
-/// A model's base mesh and its records in memory, parsed by the reader that the controller uses:
+/// A model's base mesh and its records in memory, parsed by the same reader as in the controller:
 /// 128 B a record. The header's bytes must outlive it.
 class DecodedModel
 {
 public:
-    /// The base mesh and the chunks of these pages, which are the model's and each there once
-    /// (asserted). What a page's `refined` names must be linked, for the rest nothing is promised:
-    /// no record that isn't linked may be asked for. `name` is for `damage`, as below.
+    /// Decodes the base mesh and the chunks of these pages, which must be the model's and each
+    /// occur once (asserted). A record in a page's `refined` that is not linked counts as damage.
+    /// Records that are not linked must not be accessed. `name` precedes lines of `damage`, as in
+    /// decode().
     [[nodiscard]] static DecodedModel decode_pages(const ModelHeader& header,
                                                    std::span<const FrontPage> pages,
                                                    const ReadPiece& read, const std::string& name,
                                                    std::vector<std::string>& damage);
-    /// Reads and parses every piece and checks its hash. Each damaged one adds a line to `damage`
-    /// that names file, piece and fault; what it holds is unspecified then.
+    /// Reads and parses every piece and checks its hash. Each damaged piece adds a line to `damage`
+    /// with file, piece and fault; its content is then unspecified.
     [[nodiscard]] static DecodedModel decode(const ModelStore& store,
                                              std::vector<std::string>& damage);
 
-    /// Here and below ids must be the model's; nothing checks them.
+    /// Ids must be the model's, here and below; unchecked.
     [[nodiscard]] const ModelHeader& header() const noexcept { return header_; }
     [[nodiscard]] const VsplitRecord& record(RecordId id) const noexcept
     {
         return page(chunk_of(id)).records[place_in_chunk(id)];
     }
     [[nodiscard]] const Page& page(ChunkId id) const noexcept { return pages_[slots_[id.value]]; }
-    /// Of a chunk that is here a bit for each record that is linked, with all that it depends on.
+    /// Linked records of a resident chunk, one bit each; all their dependencies are resident too.
     [[nodiscard]] std::uint64_t linked(ChunkId id) const noexcept
     {
         return linked_[slots_[id.value]];
     }
-    /// Where a vertex is, in the model's frame.
+    /// Position of a vertex, in the model's frame.
     [[nodiscard]] const Vec3f& position_m(VertexId vertex) const noexcept
     {
         const ModelCounts counts = header_.counts();
@@ -59,13 +60,13 @@ public:
                                       : record(counts.record_of(vertex)).position_m;
     }
     [[nodiscard]] const std::vector<BaseFace>& base_faces() const noexcept { return base_faces_; }
-    /// The bound that a face state carries; error_in_quanta() reads it.
+    /// Bound of a face state; error_in_quanta() decodes it.
     [[nodiscard]] ErrorCode error_of(FaceId face, FaceState state) const noexcept
     {
         return state.is_base() ? base_faces_[face.value].error
                                : record(state.record()).error[state.place()];
     }
-    /// Of all chunks, coded.
+    /// Coded bytes of all chunks.
     [[nodiscard]] std::uint64_t chunk_bytes() const noexcept { return chunk_bytes_; }
 
 private:
@@ -78,8 +79,8 @@ private:
 
     ModelHeader header_;
     std::vector<Page> pages_;
-    std::vector<std::uint64_t> linked_; ///< One each a page.
-    std::vector<std::uint32_t> slots_;  ///< By chunk: where its page is, if it is here.
+    std::vector<std::uint64_t> linked_; ///< Linked records by page.
+    std::vector<std::uint32_t> slots_;  ///< Page by chunk, if resident.
     std::vector<Vec3f> base_positions_m_;
     std::vector<BaseFace> base_faces_;
     std::vector<std::uint32_t> base_next_;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// A cut is a set of split records that holds, with each record, all that it depends on. Each face
-/// state is left by one record only, so "this state must not be active" is "if this record's state
-/// is reached, that record is split": a demand of the same kind as a dependency. The smallest set
-/// that meets all demands is found by following them from where they begin.
+/// A cut is a set of split records that contains the dependencies of each. Each face state is left
+/// by one record only, so the demand "this state must not be active" means "if this record's state
+/// is reached, that record is split", which has the form of a dependency. Following the demands
+/// from their start gives the smallest set that meets them all.
 
 #include "host_tools/encode/extract.hpp"
 
@@ -34,7 +34,7 @@ std::uint32_t faces_added_by(const VsplitRecord& record)
     return (record.has_face(0) ? 1U : 0U) + (record.has_face(1) ? 1U : 0U);
 }
 
-/// By face state: the record that leaves it.
+/// The record that leaves each face state.
 class NextRecords
 {
 public:
@@ -59,7 +59,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t kPlaces = 8; ///< Of a star, as FaceState counts them.
+    static constexpr std::size_t kPlaces = 8; ///< Places in a star, as FaceState counts them.
     static_assert(kMaxStarFaces <= kPlaces);
 
     [[nodiscard]] std::size_t place_of(FaceId face, FaceState state) const
@@ -72,11 +72,11 @@ private:
     std::vector<RecordId> next_;
 };
 
-/// The records that are to be split; what one depends on is always in it.
+/// The records to be split, always with their dependencies.
 class Cut
 {
 public:
-    /// With a limit no state with a larger bound stays active, now and after every require().
+    /// With a limit, no state with a larger bound stays active, now and after every require().
     Cut(const DecodedModel& model, std::optional<double> limit_m)
         : model_(model)
         , is_split_(model.header().counts().records)
@@ -171,7 +171,7 @@ private:
     std::vector<bool> is_split_;
     std::uint32_t face_count_;
     std::vector<RecordId> open_;
-    std::optional<NextRecords> next_; ///< Only with a limit.
+    std::optional<NextRecords> next_; ///< Present only with a limit.
     double limit_m_{0.0};
 };
 
@@ -181,7 +181,8 @@ Triangle triangle_of(const DecodedModel& model, const std::array<VertexId, 3>& c
             to_vec3(model.position_m(corners[2]))};
 }
 
-/// Requires the last record of every source face that the zone touches; how many those are.
+/// Requires the last record of every source face that touches the zone; returns the number of these
+/// faces.
 std::uint32_t require_zone(const DecodedModel& model, const Zone& zone, Cut& cut)
 {
     Replay source(model);

@@ -16,7 +16,7 @@ namespace
 
 constexpr std::uint32_t kNever = 0xFFFF'FFFFU;
 
-/// The first collapse that changes or removes each face: only up to it is the face original.
+/// First collapse that changes or removes each face; the face is original only before it.
 std::vector<std::uint32_t> find_first_changes(std::size_t faces,
                                               const std::vector<Collapse>& collapses)
 {
@@ -42,7 +42,7 @@ ErrorCode code_of(bool original, float quanta)
     return original ? ErrorCode{0} : encode_error(static_cast<double>(quanta));
 }
 
-/// A face's state and bound at one moment of the undoing.
+/// State and bound of a face at one moment of the reverse replay.
 struct FaceNow
 {
     FaceState state;

@@ -14,7 +14,7 @@
 namespace tactus
 {
 
-/// What one record says of its star's faces before and after its split.
+/// States of the faces of one record's star before and after its split.
 struct StarHistory
 {
     std::array<FaceState, kMaxFanFaces> before{};
@@ -23,17 +23,17 @@ struct StarHistory
     std::uint32_t depth{0};
 };
 
-/// The states that every face goes through between base and source.
+/// States of every face between base and source.
 struct FaceHistory
 {
-    std::vector<StarHistory> stars;    ///< By RecordId.
-    std::vector<ErrorCode> base_error; ///< By FaceId of the base.
+    std::vector<StarHistory> stars;    ///< Histories by RecordId.
+    std::vector<ErrorCode> base_error; ///< Bounds by FaceId of the base.
     std::uint32_t max_depth{0};
     ErrorCode max_error{0};
 };
 
-/// Undoes the collapses in thought, coarsest first, and notes who changed each face last. Linear;
-/// 44 B a record.
+/// Replays the collapses in reverse, coarsest first, and records the last change of each face.
+/// Linear; 44 B a record.
 [[nodiscard]] FaceHistory trace_faces(const QuantisedMesh& mesh,
                                       const Simplification& simplification,
                                       const Numbering& numbering);

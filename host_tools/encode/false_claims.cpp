@@ -28,9 +28,9 @@ namespace
 
 using GridPoint = std::array<std::int32_t, 3>;
 
-/// Above the rounding of distances, below any bound but zero.
+/// Above the rounding of distances, below any bound except zero.
 constexpr double kSlack_quanta = 1e-3;
-/// The last cut has a record in two of the finest, the first none.
+/// Number of cuts. The first one splits no record, the last one half of them.
 constexpr std::uint32_t kCuts = 10;
 constexpr std::size_t kFacesInBucket = 8;
 
@@ -44,7 +44,7 @@ bool holds(const QuantumBox& box, const QuantumBox& inner)
     return does;
 }
 
-/// The writer's margin about each bound, and no more.
+/// Box with the margin of the writer.
 QuantumBox grown(QuantumBox box)
 {
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -60,7 +60,7 @@ std::string text_of(const QuantumBox& box)
     return fmt::format("({}) to ({})", fmt::join(box.low, ", "), fmt::join(box.high, ", "));
 }
 
-/// Of the faces of a cut, those near a place: they lie in the slab of their longest axis.
+/// Faces of a cut near a point: those in its slab along the longest axis.
 class Slabs
 {
 public:
@@ -139,7 +139,7 @@ private:
         }
     }
 
-    /// Exact: quanta are powers of two.
+    /// Exact, since quanta are powers of two.
     [[nodiscard]] GridPoint place_of(VertexId vertex) const
     {
         const Vec3f& at_m = model_.position_m(vertex);
@@ -157,7 +157,7 @@ private:
                 static_cast<double>(place[2])};
     }
 
-    /// A face as the replay has it, inflated by a bound.
+    /// Box of a face in the replay's state, inflated by a bound.
     [[nodiscard]] QuantumBox box_of(const Replay& replay, FaceId face, ErrorCode error) const
     {
         const double quanta = std::ceil(static_cast<double>(error_in_quanta(error)));
@@ -176,7 +176,7 @@ private:
         return box;
     }
 
-    /// All splits; notes where each record matters, and the mesh that comes of them.
+    /// Splits all records; stores the influence of each, and the resulting mesh.
     std::optional<std::string> refine()
     {
         Replay replay(model_);
@@ -187,7 +187,7 @@ private:
             for (std::uint32_t i = 0; i < record.fan_size; ++i)
             {
                 const FaceId face = record.star[2 + i];
-                if (replay.is_active(face)) // Else the split is refused.
+                if (replay.is_active(face)) // Otherwise the split is refused.
                 {
                     join(box, box_of(replay, face, model_.error_of(face, record.before[i])));
                 }
@@ -259,10 +259,12 @@ private:
         compare("the depth", fields_.max_depth, depth);
     }
 
-    /// A closed mesh may be cut open where both sides lie in one place.
+    /// Checks the claim that the mesh is closed. A closed mesh may be cut open where both sides
+    /// coincide.
     void check_closed()
     {
-        std::vector<std::uint32_t> first(mesh_.positions.size()); // The first in the same place.
+        // First vertex with the same position.
+        std::vector<std::uint32_t> first(mesh_.positions.size());
         std::iota(first.begin(), first.end(), 0U);
         if (model_.header().is_closed())
         {
@@ -290,7 +292,7 @@ private:
             tell("header: the mesh is stated as open; it is closed");
         }
     }
-    /// The end of an edge that no face has the other way.
+    /// End of an edge that no face has in the opposite direction.
     [[nodiscard]] std::optional<std::uint32_t>
     find_border(std::span<const std::uint32_t> vertex_of) const
     {
@@ -325,7 +327,7 @@ private:
         }
     }
 
-    /// The controller's tree is as deep as they are even.
+    /// Checks the buckets: uneven ones would deepen the controller's tree.
     void check_buckets()
     {
         const std::size_t buckets = (faces_.size() + kFacesInBucket - 1) / kFacesInBucket;
@@ -396,8 +398,8 @@ private:
         }
     }
 
-    /// Of all index pages and chunks the first whose box leaves out a part of what it should hold,
-    /// or reaches beyond it: such a chunk is fetched where no tool needs it.
+    /// Checks the boxes of index pages and chunks. Reports the first one that omits a part of its
+    /// content, or that is too large: such a chunk is fetched though no tool needs it.
     void check_boxes()
     {
         std::vector<std::byte> coded;
@@ -405,7 +407,7 @@ private:
         std::array<ChunkEntry, kChunksPerIndexPage> entries;
         for (std::uint32_t i = 0; i < counts_.index_pages(); ++i)
         {
-            // Both went well when the file was opened and decoded.
+            // Both succeeded when the file was opened and decoded.
             if (!store_.read({ContentKind::index_page, i}, coded) ||
                 !parse_index_page(coded, counts_, {i}, page, entries))
             {
@@ -440,7 +442,7 @@ private:
             }
         }
     }
-    /// What the format makes of a box and its margin, in a page that holds the box.
+    /// Form of a box and its margin in the format, within a page that contains the box.
     [[nodiscard]] static QuantumBox largest(const QuantumBox& page, const QuantumBox& needed)
     {
         QuantumBox box = grown(needed);
@@ -477,7 +479,8 @@ private:
         return in_quanta;
     }
 
-    /// Places of the source against cuts: no record split, a 512th of them, a 256th, ... a half.
+    /// Checks points of the source against cuts: with no record split, a 512th of them, a 256th,
+    /// ... a half.
     void check_bounds()
     {
         const std::vector<Vec3> places = sample();
@@ -488,7 +491,8 @@ private:
             const std::size_t end = cut == 0 ? 0 : order_.size() >> (kCuts - cut);
             for (; split < end; ++split)
             {
-                static_cast<void>(replay.split(order_[split])); // As in refine().
+                // The result is the same as in refine().
+                static_cast<void>(replay.split(order_[split]));
                 check_.progress(++done_);
             }
             if (!hold(replay, places))
@@ -498,7 +502,7 @@ private:
         }
     }
 
-    /// One a face, or one of so many faces: corners, sides and insides by turns.
+    /// Sample points, one a face or one for several faces: corners, sides and interiors in turn.
     [[nodiscard]] std::vector<Vec3> sample() const
     {
         constexpr std::array<std::array<double, 3>, 4> kWeights{
@@ -518,7 +522,7 @@ private:
         return places;
     }
 
-    /// Whether each place is within the bound of a face of the cut; tells of the first that isn't.
+    /// True if each point is within the bound of a face of the cut; reports the first that is not.
     [[nodiscard]] bool hold(const Replay& replay, const std::vector<Vec3>& places)
     {
         const auto longest = std::ranges::max_element(fields_.extent_quanta);
@@ -533,7 +537,7 @@ private:
         }
         for (const Vec3& place : places)
         {
-            double least = std::numeric_limits<double>::infinity(); // Beyond a bound.
+            double least = std::numeric_limits<double>::infinity(); // Distance beyond a bound.
             for (const std::uint32_t face : slabs.near(place))
             {
                 const double bound = static_cast<double>(error_in_quanta(error_of(replay, {face})));
@@ -581,9 +585,9 @@ private:
     const HeaderFields& fields_;
     const ModelCounts counts_;
     const std::vector<RecordId> order_;
-    std::vector<QuantumBox> boxes_; ///< By record: where it and what depends on it matter.
-    QuantisedMesh mesh_;            ///< The source; vertices by their ids.
-    std::vector<FaceId> faces_;     ///< Its faces' ids.
+    std::vector<QuantumBox> boxes_; ///< Boxes by record, including the dependents.
+    QuantisedMesh mesh_;            ///< Mesh of the source; vertices by their ids.
+    std::vector<FaceId> faces_;     ///< Ids of its faces.
     std::size_t done_{0};
     ClaimsFound found_;
 };

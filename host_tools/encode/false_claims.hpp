@@ -9,31 +9,32 @@
 #include <string>
 #include <vector>
 
-// Any thread, but not the haptic one: it allocates, and waits for the file.
+// Any thread, except the haptic one: it allocates, and waits for the file.
 namespace tactus
 {
 
 struct ClaimCheck
 {
-    /// Places of the source that are held against the error bounds of each of some ten cuts, coarse
-    /// to fine. Evenly over the faces; the same in each call.
+    /// Number of points of the source that are checked against the error bounds in each of some ten
+    /// cuts, coarse to fine. They are spread evenly over the faces and deterministic.
     std::size_t places{2'000};
-    /// Called after each record with how many are done; twice round.
+    /// Callback after each record with the number done; every record counts twice.
     std::function<void(std::size_t done)> progress = [](std::size_t) {};
 };
 
 struct ClaimsFound
 {
-    std::string contradiction; ///< Empty, or why the records can't all be split; then no claims.
-    /// What the model says of itself and isn't so, a line each: what, where, and what it is.
+    /// Reason why the records cannot all be split, and then there are no claims; empty if they can.
+    std::string contradiction;
+    /// Claims of the model that are false, one line each: the claim, its place and the true value.
     std::vector<std::string> false_claims;
 };
 
-/// Refines a decoded model wholly and computes anew what its file claims: faces and vertices,
+/// Refines a decoded model completely and recomputes the claims of its file: faces and vertices,
 /// whether it is closed, its extent, the largest depth and error bound, regions, influence boxes of
-/// chunks and pages, buckets; and holds the source against error bounds, by samples: a false bound
-/// may be missed, a true one is never called false. What only the author knows can't be checked:
-/// what the mesh was before it was put on the grid. Some 3 us and 100 B a face.
+/// chunks and pages, buckets. Error bounds are checked against samples of the source: a false bound
+/// may be missed, a true one is never reported. Rounding to the grid cannot be checked, since only
+/// the author has the original mesh. Some 3 us and 100 B a face.
 [[nodiscard]] ClaimsFound find_false_claims(const ModelStore& store, const DecodedModel& model,
                                             const ClaimCheck& check = {});
 

@@ -16,15 +16,15 @@ namespace
 using GridPoint = std::array<std::int32_t, 3>;
 using Corners = std::array<std::uint32_t, 3>;
 
-/// The bound as whole quanta, with one more for the rounding of whoever tests a ball against the
-/// box. No bound of a real mesh comes near the cap; it only keeps boxes inside 32 bits.
+/// Bound in whole quanta, plus one for the rounding of the test of a ball against the box. No bound
+/// of a real mesh approaches the maximum; it only keeps boxes inside 32 bits.
 std::int32_t margin_of(ErrorCode error)
 {
     const double quanta = std::ceil(static_cast<double>(error_in_quanta(error))) + 1.0;
     return static_cast<std::int32_t>(std::min(quanta, 0x1p28));
 }
 
-/// Plays the collapses on a copy of the mesh and measures each star as it goes by.
+/// Executes the collapses on a copy of the mesh and measures each star.
 class Sweep
 {
 public:
@@ -55,7 +55,7 @@ public:
     }
 
 private:
-    /// Grows the box of a record by one state of one face.
+    /// Extends the box of a record by one state of one face.
     void include(RecordId record, std::uint32_t face, ErrorCode error)
     {
         const std::int32_t margin = margin_of(error);
@@ -71,7 +71,7 @@ private:
         }
     }
 
-    /// The vertices round v, from the fan faces (v, wi, wi+1).
+    /// Stores the vertices around v, from the fan faces (v, wi, wi+1).
     void note_ring(const Collapse& collapse, RecordId record)
     {
         for (std::uint32_t i = 0; i < collapse.fan_size; ++i)

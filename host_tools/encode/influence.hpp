@@ -17,38 +17,39 @@
 namespace tactus
 {
 
-/// Where records matter, and the vertices round each.
+/// Regions of influence of records, and the vertices around each.
 struct Influence
 {
-    std::vector<QuantumBox> chunks; ///< By ChunkId: a ball that misses it needs none of the chunk.
-    std::vector<StarRing> rings;    ///< By RecordId.
+    /// Boxes by ChunkId: a ball outside a chunk's box needs none of its records.
+    std::vector<QuantumBox> chunks;
+    std::vector<StarRing> rings; ///< Rings by RecordId.
 };
 
-/// One sweep over the collapses in their order, finest first.
+/// Computes the boxes in one sweep over the collapses in their order, finest first.
 ///
-/// A controller splits a record when a face of its fan, inflated by the face's bound, meets the
-/// ball; or because something that depends on the record is split. So a record's box is that of
-/// its inflated fan and of its star after the split, joined with the boxes of all that depends on
-/// it. Those were collapsed earlier, so their boxes are complete when the sweep comes to it.
-/// Linear; 52 B a record and a copy of the mesh's faces.
+/// A controller splits a record if a face of its fan, inflated by the face's bound, meets the ball,
+/// or if a dependent record is split. A record's box therefore covers its inflated fan, its star
+/// after the split, and the boxes of all its dependents. These were collapsed earlier, so their
+/// boxes are complete when the sweep reaches the record. Linear; 52 B a record and a copy of the
+/// mesh's faces.
 [[nodiscard]] Influence find_influence(const QuantisedMesh& mesh,
                                        const Simplification& simplification,
                                        const Numbering& numbering, const FaceHistory& history);
 
-/// Holds nothing; joined with a box it is that box.
+/// Empty box; joined with a box it is that box.
 inline constexpr QuantumBox kEmptyBox{
     {std::numeric_limits<std::int32_t>::max(), std::numeric_limits<std::int32_t>::max(),
      std::numeric_limits<std::int32_t>::max()},
     {std::numeric_limits<std::int32_t>::min(), std::numeric_limits<std::int32_t>::min(),
      std::numeric_limits<std::int32_t>::min()}};
 
-/// Grows `box` until it holds the other one, too.
+/// Extends `box` to include the other one.
 void join(QuantumBox& box, const QuantumBox& other);
 
-/// The least box that holds all of `boxes`, which are at least one.
+/// The least box that includes all of `boxes`, at least one.
 [[nodiscard]] QuantumBox union_of(std::span<const QuantumBox> boxes);
 
-/// A box as an index page stores it: in steps of the page's box, rounded outward.
+/// Form of a box in an index page: in steps of the page's box, rounded outward.
 [[nodiscard]] InfluenceBox relative_to(const QuantumBox& page, const QuantumBox& box);
 
 } // namespace tactus

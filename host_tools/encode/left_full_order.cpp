@@ -14,7 +14,7 @@ namespace tactus
 namespace
 {
 
-/// Three times the centroid, so that it stays an integer, and the face it belongs to.
+/// Three times the centroid, which is an integer, and its face.
 struct Centroid
 {
     std::array<std::int32_t, 3> sum{};
@@ -61,7 +61,7 @@ std::size_t longest_axis(std::span<const Centroid> cell)
     return longest;
 }
 
-/// Cells of at most eight faces are one bucket whatever the order inside: their first rank is a
+/// Orders a cell. Cells of at most eight faces are one bucket in any order: their first rank is a
 /// multiple of eight, since every left part above is a power of two of at least eight.
 void order_cell(std::span<Centroid> cell)
 {
@@ -74,7 +74,8 @@ void order_cell(std::span<Centroid> cell)
                              return a.sum[axis] != b.sum[axis] ? a.sum[axis] < b.sum[axis]
                                                                : a.face < b.face;
                          });
-        order_cell(cell.subspan(left)); // Never larger than the left part: at most 32 levels.
+        // The right part is never larger than the left one: at most 32 levels.
+        order_cell(cell.subspan(left));
         cell = cell.first(left);
     }
 }

@@ -20,7 +20,7 @@
 namespace tactus
 {
 
-/// A whole model in the numbers of the file, from which each piece can be coded by itself. About
+/// A whole model in the numbering of the file, from which each piece can be coded separately. About
 /// 180 B a face, besides the mesh and the simplification, which must outlive it.
 class ModelPieces
 {
@@ -32,14 +32,14 @@ public:
     [[nodiscard]] const Numbering& numbering() const noexcept { return numbering_; }
     [[nodiscard]] std::uint32_t max_depth() const noexcept { return history_.max_depth; }
     [[nodiscard]] ErrorCode max_error() const noexcept { return history_.max_error; }
-    /// By ChunkId, in quanta.
+    /// Boxes by ChunkId, in quanta.
     [[nodiscard]] std::span<const QuantumBox> influence_boxes() const noexcept
     {
         return influence_.chunks;
     }
 
     [[nodiscard]] const VsplitRecord& record(RecordId id) const { return records_[id.value]; }
-    /// The records of a chunk as the file says them.
+    /// Records of a chunk in their coded form.
     [[nodiscard]] std::vector<CodedRecord> chunk_records(ChunkId id) const;
     [[nodiscard]] std::vector<std::byte> coded_chunk(ChunkId id) const;
     [[nodiscard]] std::vector<std::byte> coded_base(const BaseLayout& layout) const;
@@ -56,7 +56,7 @@ private:
     Numbering numbering_;
     FaceHistory history_;
     Influence influence_;
-    std::vector<std::uint32_t> buckets_; ///< By face of the mesh.
+    std::vector<std::uint32_t> buckets_; ///< Buckets by face of the mesh.
     std::vector<VsplitRecord> records_;
     std::vector<Vec3f> base_positions_m_;
     std::vector<BaseFace> base_faces_;

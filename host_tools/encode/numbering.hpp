@@ -11,20 +11,21 @@
 namespace tactus
 {
 
-/// The numbers that vertices, faces and collapses of a simplification get in the file.
+/// File numbers of the vertices, faces and collapses of a simplification.
 ///
 /// Vertices and faces of the base come first, in their source order. Records are sorted into tiers,
 /// coarsest first (rt_core/spm/tiers.hpp). Inside a tier they follow the Morton code of their
-/// vertex, so that a chunk covers one small area. What a record depends on was collapsed after it,
-/// so it is in the same tier or a coarser one.
+/// vertex, so that a chunk covers one small area. The dependencies of a record were collapsed after
+/// it, so they are in the same tier or a coarser one.
 struct Numbering
 {
     ModelCounts counts;
-    std::vector<std::uint32_t> collapse_of_record; ///< Into Simplification::collapses.
-    std::vector<VertexId> vertex_ids;              ///< By vertex of the mesh.
-    std::vector<FaceId> face_ids;                  ///< By face of the mesh.
-    std::vector<std::uint32_t> base_vertices;      ///< Vertex of the mesh, by VertexId.
-    std::vector<std::uint32_t> base_faces;         ///< Into Simplification::base_faces, by FaceId.
+    /// Index into Simplification::collapses, by record.
+    std::vector<std::uint32_t> collapse_of_record;
+    std::vector<VertexId> vertex_ids;         ///< Id by vertex of the mesh.
+    std::vector<FaceId> face_ids;             ///< Id by face of the mesh.
+    std::vector<std::uint32_t> base_vertices; ///< Vertex of the mesh, by VertexId.
+    std::vector<std::uint32_t> base_faces;    ///< Index into Simplification::base_faces, by FaceId.
 
     [[nodiscard]] RecordId record_of(const Collapse& collapse) const noexcept
     {
@@ -32,8 +33,8 @@ struct Numbering
     }
 };
 
-/// Numbers a model. Depends on nothing but its arguments; n log n, about 40 B a face while running.
-/// `simplification` must be one of `mesh`, with fewer than kMaxRecords collapses.
+/// Numbers a model. Deterministic; n log n, about 40 B a face while running. `simplification` must
+/// be one of `mesh`, with fewer than kMaxRecords collapses.
 [[nodiscard]] Numbering number_model(const QuantisedMesh& mesh,
                                      const Simplification& simplification);
 

@@ -15,27 +15,28 @@
 #include <span>
 #include <vector>
 
-/// The writing side of rt_core's parse functions: what one of these returns, the parse function of
-/// that piece reads back to the same content.
+/// Encoders for rt_core's parse functions: each parse function reads the result of its encoder back
+/// to the same content.
 namespace tactus
 {
 
-/// `positions` and `faces` in the order of their ids; inverse of parse_base_mesh().
+/// Codes the base mesh, `positions` and `faces` in the order of their ids; inverse of
+/// parse_base_mesh().
 [[nodiscard]] std::vector<std::byte> encode_base_mesh(std::span<const GridPosition> positions,
                                                       std::span<const BaseFace> faces,
                                                       const BaseLayout& layout);
 
-/// The records of one chunk, 1 .. 64, in coder version 3; inverse of parse_chunk().
+/// Codes the records of one chunk, 1 .. 64, in coder version 3; inverse of parse_chunk().
 [[nodiscard]] std::vector<std::byte> encode_chunk(ChunkId id, const ModelCounts& counts,
                                                   std::span<const CodedRecord> records);
 
-/// One box and one entry for each chunk of the page, 1 .. 64; inverse of parse_index_page().
+/// Codes one box and one entry for each chunk of the page, 1 .. 64; inverse of parse_index_page().
 [[nodiscard]] std::vector<std::byte> encode_index_page(IndexPageId id,
                                                        std::span<const InfluenceBox> boxes,
                                                        std::span<const ChunkEntry> entries);
 
-/// Closes with root hash and checksum; inverse of ModelHeader::parse(). The sizes in `fields` must
-/// be those of the spans.
+/// Codes a header, with root hash and checksum; inverse of ModelHeader::parse(). The sizes in
+/// `fields` must equal those of the spans.
 [[nodiscard]] std::vector<std::byte> encode_header(const HeaderFields& fields,
                                                    std::span<const IndexPageEntry> index,
                                                    std::span<const std::byte> region_bits);

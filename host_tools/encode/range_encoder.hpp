@@ -11,7 +11,7 @@
 namespace tactus
 {
 
-/// What RangeDecoder reads back.
+/// Range encoder, the counterpart of RangeDecoder.
 class RangeEncoder
 {
 public:
@@ -36,7 +36,7 @@ public:
     }
 
     /// Ends the code with the number in the last range that has the most trailing zero bytes, and
-    /// leaves those out.
+    /// omits those bytes.
     [[nodiscard]] std::vector<std::byte> finish()
     {
         const std::uint64_t end = low_ + range_;

@@ -12,7 +12,7 @@
 namespace tactus
 {
 
-/// All records of a model, as StarResolver looks them up: everything is here.
+/// All records of a model for StarResolver: every record is available.
 struct AllStars
 {
     std::span<const VsplitRecord> records;
@@ -24,17 +24,17 @@ struct AllStars
     }
 };
 
-/// Says records in terms of others: the inverse of StarResolver.
+/// Expresses records relative to others; the inverse of StarResolver.
 ///
-/// Any fan face may be the anchor; the one that looks cheapest is taken. Of the fields only
-/// `extent_quanta` and `max_depth` matter. What it views must outlive it. One thread at a time.
+/// Any fan face may be the anchor; the cheapest by estimate is chosen. Of `fields` only
+/// `extent_quanta` and `max_depth` are used. The viewed data must outlive it. One thread at a time.
 class RecordCoder
 {
 public:
     RecordCoder(const AllStars& stars, const ModelCounts& counts, const BaseView& base,
                 const HeaderFields& fields, float quantum_m);
 
-    /// Resolves to the same record again; that is checked.
+    /// Coded form of a record. It must resolve to the same record, which is checked.
     [[nodiscard]] CodedRecord code(RecordId id);
 
 private:

@@ -11,8 +11,8 @@ namespace tactus
 namespace
 {
 
-/// Counts how many boxes cover each cell: a box adds +-1 at its eight corners, and running sums
-/// along the three axes spread that over its inside.
+/// Counts the boxes over each cell: a box adds +-1 at its eight corners, and running sums along the
+/// three axes extend that to its inside.
 class CoverCounter
 {
 public:

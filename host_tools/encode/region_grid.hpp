@@ -29,12 +29,12 @@ struct RegionGrid
 /// The least power of two that cuts the longest axis into at most 16 cells.
 [[nodiscard]] std::uint32_t default_cell(const std::array<std::uint32_t, 3>& extent_quanta);
 
-/// The cells of a box, none occupied yet. Allocates nothing, so that the count can be checked.
+/// Grid of a box without occupied cells. Allocates nothing, so that the count can be checked.
 [[nodiscard]] RegionGrid make_region_grid(const std::array<std::uint32_t, 3>& extent_quanta,
                                           std::uint32_t cell_quanta);
 
-/// Marks every region that the box of a face touches: all that hold surface and, beside large
-/// slanted faces, some that hold none. Linear in faces and regions, however large the faces are.
+/// Marks every region that the box of a face touches: all with surface and, beside large slanted
+/// faces, some without. Linear in faces and regions, for faces of any size.
 void mark_occupied(RegionGrid& grid, const QuantisedMesh& mesh);
 
 } // namespace tactus

@@ -12,7 +12,7 @@ namespace tactus
 namespace
 {
 
-/// Turns a face so that `first` is its first corner; false when it has no such corner.
+/// Rotates a face so that `first` is its first corner; false if it has no such corner.
 bool turn_to(std::array<VertexId, 3>& corners, VertexId first)
 {
     const auto at = std::find(corners.begin(), corners.end(), first);
@@ -24,7 +24,7 @@ bool turn_to(std::array<VertexId, 3>& corners, VertexId first)
     return true;
 }
 
-/// Sorts records by a key that already holds the record in its low 32 bits.
+/// Sorts records by a key that contains the record in its low 32 bits.
 std::vector<RecordId> sorted_records(std::vector<std::uint64_t> keys)
 {
     std::sort(keys.begin(), keys.end());
@@ -34,7 +34,7 @@ std::vector<RecordId> sorted_records(std::vector<std::uint64_t> keys)
     return records;
 }
 
-/// By record: the largest code among its fan before the split and all that depends on it.
+/// Largest code among the fan before the split and all dependents, by record.
 std::vector<ErrorCode> importance_of(const DecodedModel& model)
 {
     std::vector<ErrorCode> importance(model.header().counts().records, 0);

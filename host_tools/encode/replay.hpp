@@ -14,17 +14,17 @@
 namespace tactus
 {
 
-/// Splits records of a decoded model one by one, from the base mesh up, with nothing cached and
-/// every law of the format checked that the controller's linker checks, and that the fans close.
-/// 16 B a face of the source.
+/// Splits records of a decoded model one by one from the base mesh, without caches. Checks every
+/// rule of the format that the controller's linker checks, and that the fans close. 16 B a face of
+/// the source.
 class Replay
 {
 public:
     /// Starts at the base mesh. The model must outlive it.
     explicit Replay(const DecodedModel& model);
 
-    /// Splits a record. Refused, in words and with nothing changed, when its star isn't the one
-    /// that it expects: a dependency was not split, or the model contradicts itself.
+    /// Splits a record. Refused with a reason, and nothing changed, if its star is not the expected
+    /// one: a dependency was not split, or the model is inconsistent.
     [[nodiscard]] std::optional<std::string> split(RecordId id);
 
     [[nodiscard]] std::uint32_t face_count() const noexcept { return face_count_; }
@@ -39,16 +39,16 @@ public:
     [[nodiscard]] FaceState state(FaceId face) const noexcept { return faces_[face.value].state; }
 
     /// The present mesh in the source's frame, in metres; vertices and faces in the order of their
-    /// ids, without vertices that no face uses.
+    /// ids, unused vertices omitted.
     [[nodiscard]] TriangleMesh mesh() const;
 
 private:
     struct Face
     {
-        std::array<VertexId, 3> corners{}; ///< None while the face is not active.
+        std::array<VertexId, 3> corners{}; ///< Corners; none while the face is not active.
         FaceState state{};
     };
-    /// The vertices round v: w0 .. wk.
+    /// The vertices around v: w0 .. wk.
     using Ring = std::array<VertexId, kMaxFanFaces + 1>;
 
     [[nodiscard]] std::optional<std::string> walk_fan(RecordId id, Ring& ring) const;
@@ -60,11 +60,11 @@ private:
     std::uint32_t face_count_;
 };
 
-/// All records, each after those that it depends on: by depth, then by number.
+/// All records, each after its dependencies: by depth, then by number.
 [[nodiscard]] std::vector<RecordId> in_dependency_order(const DecodedModel& model);
 
-/// All records, those that matter most first: by the largest bound of their fan before the split or
-/// of the fans of what depends on them. Every beginning of the list can be split.
+/// All records by importance: the largest bound of their fan before the split or of the fans of
+/// their dependents. Every prefix of the list can be split.
 [[nodiscard]] std::vector<RecordId> coarsest_first(const DecodedModel& model);
 
 } // namespace tactus

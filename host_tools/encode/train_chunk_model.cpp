@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// Prints rt_core/spm/chunk_model.inc: where a chunk's probabilities start, learnt from the models
-/// that are named. Other values make another coder version.
+/// Prints rt_core/spm/chunk_model.inc: the initial probabilities of a chunk, trained on the given
+/// models. Other values require another coder version.
 
 #include "rt_core/spm/chunk_coding.hpp"
 #include "rt_core/spm/chunk_grammar.hpp"
@@ -63,7 +63,7 @@ bool count_model(const char* path, Counts& counts)
     const ModelHeader& header = store.value().header();
     const auto page = std::make_unique<Page>();
     std::vector<std::byte> coded;
-    // Every model counts the same, however large it is.
+    // Every model has the same weight, regardless of its size.
     Counts own(counts.size());
     for (std::uint32_t chunk = 0; chunk < header.counts().chunks(); ++chunk)
     {
@@ -93,7 +93,7 @@ bool count_model(const char* path, Counts& counts)
 void print_model(const Counts& counts)
 {
     constexpr std::size_t kPerLine = 14;
-    constexpr double kUnsure = 1e-5; // As if each bit had been seen that often in a record.
+    constexpr double kUnsure = 1e-5; // Prior occurrences of each bit in a record.
     for (std::size_t i = 0; i < counts.size(); ++i)
     {
         const double zeros = counts[i].zeros + kUnsure;

@@ -67,7 +67,7 @@ std::optional<std::string> check_pieces(const ModelPieces& pieces)
     return std::nullopt;
 }
 
-/// The power of two of quanta that the user's region size stands for.
+/// Power of two of quanta for the user's region size.
 std::uint32_t cell_of(double region_size_m, double quantum_m)
 {
     const double quanta = std::clamp(region_size_m / quantum_m, 1.0, 0x1p30);
@@ -113,7 +113,7 @@ HeaderFields describe(const PreparedMesh& prepared, const Simplification& simpli
     return fields;
 }
 
-/// Where the parts of the file lie, as far as that follows from counts alone.
+/// Sets the places of the file's parts, as far as counts alone determine them.
 void place_parts(HeaderFields& fields, const ModelCounts& counts, std::uint64_t regions)
 {
     const std::uint64_t header = header_bytes(counts.index_pages(), regions);
@@ -133,7 +133,7 @@ std::uint64_t first_chunk_offset(const HeaderFields& fields, const ModelCounts& 
     return offset;
 }
 
-/// Codes one index page; `chunks_offset` moves on to the next page's chunks.
+/// Codes one index page; advances `chunks_offset` to the next page's chunks.
 std::vector<std::byte> code_index_page(IndexPageId id, const ModelPieces& pieces,
                                        std::span<const ChunkEntry> all_entries,
                                        std::uint64_t& chunks_offset, IndexPageEntry& page)
@@ -158,7 +158,7 @@ std::vector<std::byte> code_index_page(IndexPageId id, const ModelPieces& pieces
     return coded;
 }
 
-/// Header, base mesh and index pages: all that stands in front of the chunks and depends on them.
+/// Codes header, base mesh and index pages: all parts before the chunks, which depend on them.
 std::vector<std::byte> code_front(HeaderFields& fields, const ModelPieces& pieces,
                                   std::span<const ChunkEntry> entries, const RegionGrid& grid)
 {
@@ -179,7 +179,7 @@ std::vector<std::byte> code_front(HeaderFields& fields, const ModelPieces& piece
     return front.take();
 }
 
-/// Codes the chunks of `batch`, the first of which is `first`, and what the index says of them.
+/// Codes the chunks of `batch`, from `first` on, and their index entries.
 void code_chunks(const ModelPieces& pieces, std::uint32_t first,
                  std::span<std::vector<std::byte>> batch, std::span<ChunkEntry> entries,
                  unsigned threads)
@@ -197,7 +197,7 @@ void code_chunks(const ModelPieces& pieces, std::uint32_t first,
         });
 }
 
-/// Chunks go behind a gap of the front's size, which is filled last.
+/// Writes chunks after a gap for header, base mesh and index pages, which is filled last.
 Result<Done, Refusal> write_pieces(AtomicFile& file, HeaderFields& fields,
                                    const ModelPieces& pieces, const RegionGrid& grid,
                                    const EncodeOptions& options)

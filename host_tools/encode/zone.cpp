@@ -11,7 +11,7 @@ namespace tactus
 namespace
 {
 
-/// Whether the direction separates the triangle from a box round the origin. The zero direction
+/// True if the direction separates the triangle from a box around the origin. The zero direction
 /// separates nothing.
 bool is_separated(const Triangle& triangle, const Vec3& half, const Vec3& direction)
 {

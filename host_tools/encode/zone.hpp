@@ -7,31 +7,30 @@
 
 #include <variant>
 
-// Any thread, but not the haptic one: calls allocate, and work on their arguments alone.
+// Any thread, except the haptic one: calls allocate, and work on their arguments alone.
 namespace tactus
 {
 
 struct BallZone
 {
     Vec3 center_m{0.0, 0.0, 0.0};
-    double radius_m{0.0}; ///< >= 0.
+    double radius_m{0.0}; ///< Radius; 0 or more.
 };
 
 struct BoxZone
 {
     Vec3 low_m{0.0, 0.0, 0.0};
-    Vec3 high_m{0.0, 0.0, 0.0}; ///< On no axis below `low_m`.
+    Vec3 high_m{0.0, 0.0, 0.0}; ///< Upper corner; on no axis below `low_m`.
 };
 
-/// A part of space that needs full resolution, its boundary included. Not one of the header's
-/// regions: it may lie anywhere. Its frame is that of who has it; finite, which nothing checks.
+/// A part of space that needs full resolution, boundary included; independent of the header's
+/// regions. The frame is the user's; values must be finite (unchecked).
 using Zone = std::variant<BallZone, BoxZone>;
 
-/// The zone seen from a frame whose origin is at `origin_m`, larger by `margin_m` >= 0 on every
-/// side.
+/// The zone relative to `origin_m`, extended by `margin_m` >= 0 on every side.
 [[nodiscard]] Zone moved_and_grown(const Zone& zone, const Vec3& origin_m, double margin_m);
 
-/// Whether any point of the triangle lies in the zone, but for rounding.
+/// True if a point of the triangle is in the zone, except for rounding.
 [[nodiscard]] bool touches(const Zone& zone, const Triangle& triangle);
 
 } // namespace tactus
