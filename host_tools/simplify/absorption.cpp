@@ -19,11 +19,11 @@ namespace
 {
 
 constexpr std::uint32_t kAbsent = Collapse::kNoFace;
-/// Places looked at per component: the nearest may be taken.
+/// Maximum number of places for each component, since the nearest may be taken.
 constexpr std::size_t kPlacesMax = 4;
 constexpr std::size_t kPartBlock = 256;
-/// More, and flat plates are coarse before what lies on them vanishes; less, and a crumb far off
-/// makes a spike early.
+/// Weight of the tip. If it were larger, flat plates would be coarse before small parts on them
+/// vanish; if smaller, a distant small part would early leave a spike.
 constexpr double kTipWeight = 1e-3;
 
 /// A component of one face, of two back to back, or a tetrahedron.
@@ -38,13 +38,13 @@ struct StuckPart
     }
 };
 
-/// Where a part could go.
+/// Possible target of a part.
 struct Place
 {
     double cost{0};
     std::size_t part{0};
-    std::uint32_t x{0}; ///< Of the other component.
-    std::uint32_t d{0}; ///< Of the part.
+    std::uint32_t x{0}; ///< Vertex of the other component.
+    std::uint32_t d{0}; ///< Vertex of the part.
 };
 
 /// Cheapest first; a total order.
@@ -53,7 +53,7 @@ bool is_before(const Place& a, const Place& b) noexcept
     return std::tie(a.cost, a.part, a.x, a.d) < std::tie(b.cost, b.part, b.x, b.d);
 }
 
-/// The part that the face is the first one of.
+/// The part whose first face is `face`.
 std::optional<StuckPart> stuck_part_of(const CollapseMesh& current, std::uint32_t face)
 {
     StuckPart part;
@@ -79,7 +79,7 @@ std::optional<StuckPart> stuck_part_of(const CollapseMesh& current, std::uint32_
         for (std::uint32_t edge = 0; edge < 3; ++edge)
         {
             const std::uint32_t other = current.neighbour(mine, edge);
-            // A triangle has three borders, all others none.
+            // A single triangle has three borders, all others none.
             if (part.faces.size() == 1 ? other != kAbsent : !is_mine(other))
             {
                 return std::nullopt;
@@ -128,9 +128,9 @@ double area_of(const QuantisedMesh& mesh, const CollapseMesh& current, const Stu
     return area;
 }
 
-/// Where x can take d's part: not in the part itself, and two faces need an edge with two. The cost
-/// is area times squared distance, as a candidate's, of the part; and something for the tip that
-/// x's ring gets, which the next collapses flatten.
+/// Place at which x can take d's part. x must not be of the part, and for two faces its edge needs
+/// two. The cost is area times squared distance of the part, as for a candidate, and a term for the
+/// tip in x's ring, which the next collapses flatten.
 std::optional<Place> place_at(const QuantisedMesh& mesh, const CollapseMesh& current,
                               const StuckPart& part, std::uint32_t x, std::uint32_t d)
 {
@@ -146,7 +146,7 @@ std::optional<Place> place_at(const QuantisedMesh& mesh, const CollapseMesh& cur
 
 using PartPlaces = StaticVector<Place, kPlacesMax>;
 
-/// The cheapest few.
+/// The cheapest places.
 PartPlaces places_of(const QuantisedMesh& mesh, const CollapseMesh& current,
                      const VertexSearch& search, const std::vector<StuckPart>& parts,
                      std::size_t part)
@@ -202,7 +202,8 @@ std::vector<Place> find_places(const QuantisedMesh& mesh, const CollapseMesh& cu
     return places;
 }
 
-/// Where in the ring of x its other vertex y is; on a border only the first makes a manifold edge.
+/// Place of y, the edge's other vertex, in the ring of x. On a border only the first one gives a
+/// manifold edge.
 std::uint32_t place_of_y(const QuantisedMesh& mesh, const VertexRing& ring, std::uint32_t s)
 {
     std::uint32_t best = 0;
@@ -217,7 +218,7 @@ std::uint32_t place_of_y(const QuantisedMesh& mesh, const VertexRing& ring, std:
     return best;
 }
 
-/// A tetrahedron's vertex that goes first: the farthest from x but for d.
+/// Collapse of a tetrahedron's first vertex: the farthest from x, except d.
 Star flatten(const QuantisedMesh& mesh, const CollapseMesh& current, const StuckPart& part,
              const Place& place)
 {
@@ -242,7 +243,7 @@ Absorption make_absorption(const QuantisedMesh& mesh, const CollapseMesh& curren
                            const StuckPart& part, const Place& place)
 {
     Absorption absorption;
-    std::array<std::uint32_t, 2> sides{part.faces[0], kAbsent}; // (d, s, t) and (d, t, s).
+    std::array<std::uint32_t, 2> sides{part.faces[0], kAbsent}; // Faces (d, s, t) and (d, t, s).
     std::array<std::uint32_t, 3> corners = current.corners(part.faces[0]);
     if (part.faces.size() == 2)
     {

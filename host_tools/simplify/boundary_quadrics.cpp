@@ -14,7 +14,8 @@ namespace tactus
 namespace
 {
 
-/// Relative to the faces' quadric, both being length^4. Measured: 10 keeps the bunny's holes open.
+/// Weight relative to the faces' quadric; both are length^4. Measured: 10 keeps the bunny's holes
+/// open.
 constexpr double kBoundaryWeight = 10;
 
 Vec3 middle_of(const QuantisedMesh& mesh)

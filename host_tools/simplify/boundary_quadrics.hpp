@@ -13,25 +13,25 @@
 namespace tactus
 {
 
-/// Keeps borders where they are: each border edge puts a plane through itself, upright on its face,
-/// and a border vertex pays for leaving the planes it has gathered. Unlike the faces' quadric this
-/// one accumulates, since a removed border edge leaves no other trace; without it holes close up.
-/// Only border vertices take memory.
+/// Keeps borders in place. Each border edge defines a plane through itself, perpendicular to its
+/// face, and a border vertex pays for its distance to the planes that it has collected. Unlike the
+/// faces' quadric this one accumulates, since a removed border edge leaves no other trace; without
+/// it holes close. Only border vertices take memory.
 class BoundaryQuadrics
 {
 public:
     BoundaryQuadrics(const QuantisedMesh& mesh, const CollapseMesh& original);
 
-    /// Cost of moving the vertex to `point`, in quanta^4; 0 for a vertex inside.
+    /// Cost of moving the vertex to `point`, in quanta^4; 0 for an inner vertex.
     [[nodiscard]] double at(std::uint32_t vertex, const Vec3& point) const noexcept;
 
-    /// The parent takes over the planes of the vertex that moved onto it.
+    /// Adds the planes of a vertex to the parent that it moved onto.
     void collapse(std::uint32_t vertex, std::uint32_t parent) noexcept;
 
-    /// The parent gets the vertex's planes for its own, as in an Absorption.
+    /// Replaces the parent's planes by the vertex's, as in an Absorption.
     void replace(std::uint32_t vertex, std::uint32_t parent) noexcept;
 
-    /// A hole has closed at the vertex: it is inside now, and free to move anywhere.
+    /// Removes the planes of a vertex whose hole has closed: it is an inner vertex now.
     void release(std::uint32_t vertex) noexcept { slot_plus_one_[vertex] = 0; }
 
 private:
@@ -40,8 +40,9 @@ private:
 
     void add_plane(std::uint32_t vertex, const Quadric& plane);
 
-    Vec3 origin_; ///< Near the mesh's middle, so that less of the matrix cancels.
-    std::vector<std::uint32_t> slot_plus_one_; ///< Of each vertex; 0 inside, empty without borders.
+    Vec3 origin_; ///< Near the mesh's middle, which reduces cancellation in the matrix.
+    /// Slot by vertex, plus one; 0 for inner vertices, empty without borders.
+    std::vector<std::uint32_t> slot_plus_one_;
     std::vector<Quadric> quadrics_;
 };
 

@@ -16,12 +16,13 @@ namespace tactus
 namespace
 {
 
-/// Times |uv|^4: decides between equals, on flat regions above all.
+/// Factor of |uv|^4: decides between equal costs, mainly on flat regions.
 constexpr double kLengthWeight = 1e-6;
-/// Share of the quadric in the measured cost: keeps sheets from being bridged where the samples
-/// can't see it.
+/// Share of the quadric in the measured cost: prevents bridges between sheets that the samples
+/// miss.
 constexpr double kQuadricShare = 0.1;
-constexpr std::size_t kMeasuredMax = 6; ///< Neighbours measured; more gain nothing.
+/// Maximum number of measured neighbours; more give no gain.
+constexpr std::size_t kMeasuredMax = 6;
 
 struct Choice
 {
@@ -57,7 +58,7 @@ Choices rank_neighbours(const CandidateInput& input, const VertexRing& ring)
     return choices;
 }
 
-/// The legal ones among the least spoiling, at most `count_max`, cheapest first.
+/// The legal choices of the least spoiling level, at most `count_max`, cheapest first.
 Choices keep_least_spoiling(const CandidateInput& input, const VertexRing& ring,
                             const Choices& ranked, std::size_t count_max)
 {
@@ -87,7 +88,7 @@ Choices keep_least_spoiling(const CandidateInput& input, const VertexRing& ring,
 }
 
 /// Area-weighted squared distance of the sampled original surface to the new fan. Stops early, with
-/// some value above the limit, once it is above the limit.
+/// a value above the limit, once it exceeds the limit.
 double measure(const CandidateInput& input, const Star& star, double limit,
                CandidateScratch& scratch)
 {

@@ -21,9 +21,9 @@ struct Candidate
 {
     static constexpr std::uint32_t kNone = 0xFFFF'FFFFU;
 
-    double cost{0}; ///< In quanta^4.
+    double cost{0}; ///< Cost in quanta^4.
     std::uint32_t vertex{0};
-    std::uint32_t parent{kNone}; ///< kNone when no collapse is legal.
+    std::uint32_t parent{kNone}; ///< Parent; kNone if no collapse is legal.
     Spoils spoils{Spoils::nothing};
 };
 
@@ -33,7 +33,7 @@ struct Candidate
     return std::tie(a.spoils, a.cost, a.vertex) < std::tie(b.spoils, b.cost, b.vertex);
 }
 
-/// Scratch of one worker.
+/// Scratch memory of one worker.
 struct CandidateScratch
 {
     StarSamples samples;
@@ -41,25 +41,25 @@ struct CandidateScratch
     std::vector<double> squared;
 };
 
-/// How candidates are ranked.
+/// Ranking of candidates.
 enum class Priority : std::uint8_t
 {
     quadric,  ///< The cheapest legal neighbour.
-    measured, ///< Of the six cheapest legal neighbours the one with the least measured error.
+    measured, ///< Least measured error among the six cheapest legal neighbours.
 };
 
-/// What the candidates are found in; only read.
+/// Read-only input of the search for candidates.
 struct CandidateInput
 {
     const QuantisedMesh& mesh;
     const CollapseMesh& current;
     const BoundaryQuadrics& boundary;
-    const SurfaceSamples& samples; ///< Read when errors are measured.
+    const SurfaceSamples& samples; ///< Samples, read when errors are measured.
     Priority priority{Priority::quadric};
 };
 
-/// The vertex's best collapse: the least spoiling ones only, then by cost, ties to the neighbour
-/// that comes first round the vertex.
+/// The vertex's best collapse: of the least spoiling level, then by cost, ties to the neighbour
+/// that comes first around the vertex.
 [[nodiscard]] Candidate find_candidate(const CandidateInput& input, std::uint32_t vertex,
                                        CandidateScratch& scratch);
 

@@ -20,12 +20,12 @@ namespace
 
 constexpr std::uint32_t kNone = FragmentPool::kNone;
 
-/// Pieces up to this part of the diagonal stay uncut: cutting finer costs time for nothing.
+/// Share of the diagonal up to which pieces stay uncut: finer cuts cost time without benefit.
 constexpr double kUncutFloor = 2e-6;
 
-/// What rounding in the distance kernel and in a fragment's corners can hide, in quanta and
-/// relative: more than ten times the largest error (see DistanceTriangle). It also keeps the bound
-/// of a changed face above zero, since zero means original.
+/// Rounding of the distance kernel and of a fragment's corners, in quanta and relative: more than
+/// ten times the largest error (see DistanceTriangle). It also keeps the bound of a changed face
+/// above zero, since zero means original.
 constexpr double kSlackQuanta = 1e-6;
 constexpr double kSlackFactor = 1 + 1e-12;
 
@@ -52,8 +52,8 @@ float float_not_below(double value) noexcept
                : nearest;
 }
 
-/// Visits the items of all lists, one of each in turn: the walks are chains of cache misses, and
-/// side by side they wait together.
+/// Visits the items of all lists, one of each in turn: the walks are chains of cache misses, which
+/// overlap this way.
 template <typename Next, typename Visit>
 void visit_lists(std::span<std::uint32_t> heads, const Next& next, const Visit& visit)
 {
@@ -150,8 +150,8 @@ void Certificate::take_pieces(const Star& star, Scratch& scratch)
     }
 }
 
-/// A star that is done at the same time can change a triangle's count only if it holds one of its
-/// fragments; then the count stays above ours whatever it does, and the answer is the same.
+/// Restores whole triangles. A concurrent star can change a triangle's count only if it has one of
+/// its fragments; then the count stays above this star's in any case, and the result is the same.
 void Certificate::merge_back(Scratch& scratch, unsigned worker)
 {
     scratch.map.reset(scratch.fragments.size());
@@ -165,7 +165,7 @@ void Certificate::merge_back(Scratch& scratch, unsigned worker)
     {
         const std::uint32_t triangle = pool_[fragment].triangle;
         std::uint32_t& count = scratch.counts[scratch.map.index_of(triangle)];
-        // Relaxed: the threads are joined before anyone depends on more than the count.
+        // Relaxed: the threads are joined before more than the count is used.
         const std::uint32_t total =
             std::atomic_ref(fragment_count_[triangle]).load(std::memory_order_relaxed);
         if (count != kNone && count != total)
@@ -183,7 +183,7 @@ void Certificate::merge_back(Scratch& scratch, unsigned worker)
     scratch.fragments.resize(kept);
 }
 
-/// Corners of whole triangles once per vertex; few fragments share corners.
+/// Computes the corners, of whole triangles once per vertex; few fragments share corners.
 void Certificate::place_corners(Scratch& scratch) const
 {
     scratch.parts.clear();
@@ -230,7 +230,7 @@ void Certificate::give_triangle(std::uint32_t triangle, const Part& part, const 
         scratch.bound[given.place] = std::max(scratch.bound[given.place], std::sqrt(given.squared));
         return;
     }
-    // Nobody else holds a part of a whole triangle.
+    // No other worker has a part of a whole triangle.
     fragment_count_[triangle] = static_cast<std::uint32_t>(settled.size());
     for (const Assignment& given : settled)
     {
@@ -249,7 +249,7 @@ void Certificate::give_fragment(std::uint32_t fragment, const Part& part, const 
     {
         add_fragment(pool_.take(worker), triangle, given, star, scratch);
     }
-    // Relaxed: pairs with the load in merge_back(), see there.
+    // Relaxed: the counterpart of the load in merge_back(), see there.
     std::atomic_ref(fragment_count_[triangle])
         .fetch_add(static_cast<std::uint32_t>(settled.size() - 1), std::memory_order_relaxed);
 }
@@ -288,7 +288,7 @@ FaceSamples Certificate::sample(std::uint32_t face, unsigned worker)
     return samples;
 }
 
-/// The middle of a piece and its area.
+/// Middle of a piece, and its area.
 SurfacePoint Certificate::middle_of(std::uint32_t triangle,
                                     const std::array<TrianglePoint, 3>& corners,
                                     double weight) const

@@ -18,16 +18,17 @@
 namespace tactus
 {
 
-/// The proof of how far the original surface is from each face.
+/// Proven bound of the distance between each face and the original surface.
 ///
-/// Every point of the original surface stands with exactly one present face, in pieces: whole
-/// original triangles or fragments of them. A collapse takes all pieces of its star and gives each
-/// to one face of the new fan. A face is a convex set, so the distance to it is a convex function
-/// and a piece's largest distance is at a corner: e(face) = max over its pieces of max over
-/// corners. A point's way through the faces depends only on the collapses of stars it was in, so
-/// the bound of a face state holds in every dependency-closed cut that has the face in this state.
+/// Every point of the original surface is assigned to exactly one present face, in pieces: whole
+/// original triangles or fragments of them. A collapse takes all pieces of its star and assigns
+/// each to one face of the new fan. A face is a convex set, so the distance to it is a convex
+/// function and a piece's largest distance is at a corner: e(face) = max over its pieces of max
+/// over corners. A point's sequence of faces depends only on the collapses of stars that it was in,
+/// so the bound of a face state holds in every dependency-closed cut that has the face in this
+/// state.
 ///
-/// Which piece goes to which face, and where it is cut, matters for tightness alone:
+/// The assignment of pieces to faces, and their cuts, affect only the tightness:
 ///   1. a triangle whose fragments are all in the star becomes whole again;
 ///   2. its corners' distances to the new faces are measured once per vertex;
 ///   3. no assignment does better than the lower bound, the largest distance of a measured point
@@ -41,24 +42,24 @@ class Certificate
 public:
     Certificate(const QuantisedMesh& mesh, unsigned workers);
 
-    /// The bound in quanta: 0 while the face is original, above 0 afterwards.
+    /// Bound in quanta: 0 while the face is original, above 0 afterwards.
     [[nodiscard]] float error(std::uint32_t face) const noexcept { return errors_[face]; }
 
-    /// Hands the pieces of a star to the faces that its collapse leaves. Stars without a common
-    /// face may be done in any order or at once, each worker with its own number.
+    /// Assigns the pieces of a star to the faces that its collapse leaves. Stars without a common
+    /// face may be processed in any order or concurrently, each worker with its own number.
     void reassign(const Star& star, unsigned worker);
 
-    /// Evenly picked pieces of the surface that stands with the face. For faces that no other
-    /// worker re-assigns.
+    /// Evenly selected pieces of the surface assigned to the face. For faces that no other worker
+    /// re-assigns.
     [[nodiscard]] FaceSamples sample(std::uint32_t face, unsigned worker);
 
 private:
-    /// What one re-assignment works on; kept per worker so that its memory is.
+    /// Working memory of one re-assignment, kept per worker for reuse.
     struct Scratch
     {
         std::vector<std::uint32_t> triangles;
         std::vector<std::uint32_t> fragments;
-        std::vector<Part> parts; ///< The triangles, then the fragments.
+        std::vector<Part> parts; ///< Parts of the triangles, then of the fragments.
         std::vector<std::uint32_t> counts;
         IndexMap map;
         PieceSettler settler;
@@ -80,11 +81,11 @@ private:
 
     const QuantisedMesh& mesh_;
     double diagonal_{0};
-    std::vector<float> errors_;                 ///< Of each face.
-    std::vector<std::uint32_t> first_whole_;    ///< Of each face: its list of whole triangles.
-    std::vector<std::uint32_t> next_whole_;     ///< Of each triangle.
-    std::vector<std::uint32_t> first_fragment_; ///< Of each face: its list of fragments.
-    std::vector<std::uint32_t> fragment_count_; ///< Of each triangle; 0 when whole.
+    std::vector<float> errors_;                 ///< Bound by face.
+    std::vector<std::uint32_t> first_whole_;    ///< First whole triangle by face.
+    std::vector<std::uint32_t> next_whole_;     ///< Next whole triangle by triangle.
+    std::vector<std::uint32_t> first_fragment_; ///< First fragment by face.
+    std::vector<std::uint32_t> fragment_count_; ///< Number of fragments by triangle; 0 if whole.
     FragmentPool pool_;
     std::vector<Scratch> scratch_;
 };

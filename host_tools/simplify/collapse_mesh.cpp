@@ -137,7 +137,7 @@ std::uint32_t CollapseMesh::corner_of(std::uint32_t face, std::uint32_t vertex) 
     return corners[0] == vertex ? 0 : (corners[1] == vertex ? 1 : 2);
 }
 
-/// The face after `face` counter-clockwise round the vertex; kNoFace at a border.
+/// The face after `face`, counter-clockwise around the vertex; kNoFace at a border.
 std::uint32_t CollapseMesh::next_round(std::uint32_t vertex, std::uint32_t face) const noexcept
 {
     return neighbours_[face][previous_corner(corner_of(face, vertex))];
@@ -194,7 +194,7 @@ bool CollapseMesh::has_neighbour(std::uint32_t vertex,
     {
         const std::uint32_t corner = corner_of(face, vertex);
         const std::uint32_t next = neighbours_[face][previous_corner(corner)];
-        // The corner before is the next face's corner after, but for a border's last face.
+        // The previous corner is the next face's next corner, except for a border's last face.
         if (is_among(corners_[face][next_corner(corner)]) ||
             (next == kNoFace && is_among(corners_[face][previous_corner(corner)])))
         {
@@ -205,7 +205,8 @@ bool CollapseMesh::has_neighbour(std::uint32_t vertex,
     return false;
 }
 
-/// Walks round the parent unless that has more faces than the vertices on the rim together can.
+/// True if the parent is a neighbour of a rim vertex. Walks around the rim if the parent has more
+/// faces than the rim's vertices together can have.
 bool CollapseMesh::joins_rim(const Star& star, std::span<const std::uint32_t> rim) const noexcept
 {
     if (degree_[star.parent] <= kMaxDegree)
@@ -218,7 +219,7 @@ bool CollapseMesh::joins_rim(const Star& star, std::span<const std::uint32_t> ri
                        });
 }
 
-/// On a border the star has one face of A and B, and its ring ends at a vertex c:
+/// The star on a border has one face of A and B, and its ring ends at a vertex c:
 ///
 ///       w0--u              the hole (v, c, u) has three edges if the border goes on from u to c
 ///         \ | \  G           in a face G. With v on u, the last fan face and G share u-c.
@@ -235,7 +236,7 @@ std::uint32_t CollapseMesh::face_across_hole(const Star& star) const noexcept
     const std::uint32_t to = star.has_face(0) ? end : star.parent;
     const std::uint32_t face = first_face_[from]; // The first of the fan: its edge is a border.
     const bool is_three = corners_[face][next_corner(corner_of(face, from))] == to;
-    // Fewer than three faces round a vertex inside are two that lie back to back.
+    // An inner vertex with fewer than three faces has two back to back.
     const bool is_round = degree_[end] >= 3 && degree_[star.parent] + star.fan_size >= 4;
     return is_three && is_round ? face : kNoFace;
 }

@@ -15,23 +15,25 @@
 namespace tactus
 {
 
-/// No vertex gets more faces than this by a collapse unless it had more before: it keeps stars
+/// Maximum number of faces of a vertex after a collapse, unless it had more before: it keeps stars
 /// within kMaxStarFaces and costs no quality.
 inline constexpr std::uint32_t kMaxDegree = 10;
 
-/// The faces round one vertex, counter-clockwise. Face i is (vertex, neighbours[i],
-/// neighbours[i + 1]); when the ring is closed, neighbours[face_count] repeats neighbours[0].
+/// The faces around one vertex, counter-clockwise. Face i is (vertex, neighbours[i], neighbours[i +
+/// 1]); if the ring is closed, neighbours[face_count] repeats neighbours[0].
 struct VertexRing
 {
     std::uint32_t vertex{0};
     std::uint32_t face_count{0};
-    bool open{false}; ///< The vertex is on a border, the first and last neighbour too.
+    /// True if the vertex is on a border, and with it the first and last neighbour.
+    bool open{false};
     std::array<std::uint32_t, kMaxStarFaces> faces{};
     std::array<std::uint32_t, kMaxStarFaces + 1> neighbours{};
 
-    /// How many collapses of the vertex there are to look at; place p of 0 .. count - 1.
+    /// Number of possible collapses of the vertex; places are 0 .. count - 1.
     [[nodiscard]] std::uint32_t place_count() const noexcept { return open ? 2 : face_count; }
-    /// The neighbour that place p collapses onto; on a border only its two border neighbours.
+    /// The neighbour onto which the vertex collapses at a place; on a border only its two border
+    /// neighbours.
     [[nodiscard]] std::uint32_t parent_at(std::uint32_t place) const noexcept
     {
         return neighbours[open && place == 1 ? face_count : place];
@@ -44,36 +46,36 @@ struct Star
     std::uint32_t vertex{0};
     std::uint32_t parent{0};
     std::uint32_t fan_size{0};
-    std::array<std::uint32_t, kMaxStarFaces> faces{};  ///< A, B (or kNoFace), then the fan.
-    std::array<std::uint32_t, kMaxFanFaces + 1> rim{}; ///< w0 .. wk, k = fan_size.
+    std::array<std::uint32_t, kMaxStarFaces> faces{};  ///< Faces A, B (or kNoFace), then the fan.
+    std::array<std::uint32_t, kMaxFanFaces + 1> rim{}; ///< Vertices w0 .. wk, k = fan_size.
 
     [[nodiscard]] bool has_face(std::uint32_t side) const noexcept
     {
         return faces[side] != Collapse::kNoFace;
     }
-    /// The border vertex at the fan's other end, of a star with one of A and B.
+    /// Border vertex at the fan's other end, for a star with one of A and B.
     [[nodiscard]] std::uint32_t open_end() const noexcept
     {
         return rim[has_face(0) ? fan_size : 0];
     }
 };
 
-/// The star of a ring's collapse at one place.
+/// Star of a ring's collapse at one place.
 [[nodiscard]] Star star_at(const VertexRing& ring, std::uint32_t place) noexcept;
 
-/// The mesh while it shrinks: corners, the face across each edge, and of each vertex its first face
+/// The mesh during simplification: corners, the face across each edge, and each vertex's first face
 /// and degree. 26 bytes a face. Faces and vertices keep their numbers; removed ones stay in place.
 ///
-/// Only collapses that keep the mesh 2-manifold with borders are legal. By the link condition the
-/// ends of the edge have no common neighbour but the one or two across the edge (a border counts as
-/// joined to a vertex at infinity, so a border vertex moves along its border only), and a vertex
-/// with three faces isn't removed where its fourth face exists already: a tetrahedron stays.
-/// A hole of three edges counts as a face that is removed with the edge, so it closes.
+/// Only collapses that keep the mesh 2-manifold with borders are legal. The link condition requires
+/// that the ends of the edge have no common neighbour except the one or two across the edge (a
+/// border counts as joined to a vertex at infinity, so a border vertex moves along its border
+/// only). A vertex with three faces is not removed if its fourth face exists already: a tetrahedron
+/// stays. A hole of three edges counts as a face that is removed with the edge, so it closes.
 class CollapseMesh
 {
 public:
-    /// Refuses, naming the place, what match_edges() refuses, and a vertex without faces or with
-    /// more than one fan.
+    /// Creates the mesh. Refused, with the place: the refusals of match_edges(), and a vertex
+    /// without faces or with more than one fan.
     [[nodiscard]] static Result<CollapseMesh, Refusal> create(const QuantisedMesh& mesh);
 
     [[nodiscard]] std::uint32_t vertex_count() const noexcept
@@ -102,9 +104,9 @@ public:
     {
         return corners_[face];
     }
-    /// No present face has a border edge.
+    /// True if no present face has a border edge.
     [[nodiscard]] bool is_closed() const;
-    /// Those that aren't removed; ascending.
+    /// Faces that are not removed, ascending.
     [[nodiscard]] std::vector<std::uint32_t> present_faces() const;
     [[nodiscard]] std::uint32_t neighbour(std::uint32_t face, std::uint32_t edge) const noexcept
     {
@@ -114,23 +116,23 @@ public:
     /// Fills the ring of a present vertex with at most kMaxStarFaces faces.
     void walk_ring(std::uint32_t vertex, VertexRing& ring) const noexcept;
 
-    /// Fills `ring`; false when the vertex is removed or no star of it fits the star cap.
+    /// Fills `ring`; false if the vertex is removed or no star of it fits the star cap.
     [[nodiscard]] bool gather_ring(std::uint32_t vertex, VertexRing& ring) const noexcept;
 
-    /// The face with which the fan's open end will share an edge, where the collapse closes a hole
-    /// of three edges; else kNoFace.
+    /// Face that will share an edge with the fan's open end if the collapse closes a hole of three
+    /// edges; otherwise kNoFace.
     [[nodiscard]] std::uint32_t face_across_hole(const Star& star) const noexcept;
 
-    /// True when the collapse keeps the mesh manifold and the parent's degree within kMaxDegree.
-    /// Costs a walk round a few neighbours; of two vertices the one of smaller degree.
+    /// True if the collapse keeps the mesh manifold and the parent's degree within kMaxDegree.
+    /// Costs a walk around a few neighbours; of two vertices the one of smaller degree.
     [[nodiscard]] bool is_legal(const Star& star) const noexcept;
 
     /// Replaces the vertex by the parent in the fan and removes A and B. `star` must be legal.
     void collapse(const Star& star) noexcept;
 
-    /// The last step of an Absorption, with those between the first and it: removes A and B, which
-    /// are all of their component, with the corners that aren't the parent, and puts the parent in
-    /// the vertex's place.
+    /// Executes the last step of an Absorption together with those between the first and it:
+    /// removes A and B, which are their whole component, and the corners other than the parent, and
+    /// puts the parent in the vertex's place.
     void absorb(const Star& star) noexcept;
 
 private:
@@ -149,9 +151,9 @@ private:
 
     std::vector<std::array<std::uint32_t, 3>> corners_;
     FaceNeighbours neighbours_;
-    /// Any face of a vertex inside, the first of the fan on a border: a walk from it sees all.
+    /// Any face of an inner vertex, or the first of the fan on a border: a walk from it visits all.
     std::vector<std::uint32_t> first_face_;
-    std::vector<std::uint32_t> degree_; ///< Faces of the vertex; 0 when removed.
+    std::vector<std::uint32_t> degree_; ///< Number of faces of the vertex; 0 if removed.
     std::uint32_t faces_left_{0};
     std::uint32_t vertices_left_{0};
 };

@@ -15,7 +15,7 @@ struct KernelSide
 {
     double start[3];
     double along[3];
-    double inward[3]; ///< In the plane, pointing to the third corner; zero without area.
+    double inward[3]; ///< Direction in the plane towards the third corner; zero without area.
     double inverse_squared_length;
 };
 
@@ -23,7 +23,7 @@ struct KernelSide
 struct KernelTriangle
 {
     KernelSide sides[3];
-    double normal[3]; ///< Length: twice the area.
+    double normal[3]; ///< Normal; its length is twice the area.
     double inverse_squared_normal;
 };
 
@@ -37,9 +37,9 @@ using SquaredDistances = void (*)(const KernelTriangle& triangle, const double* 
                                   double* out) noexcept;
 
 extern const SquaredDistances kPortableSquaredDistances;
-extern const SquaredDistances kAvx2SquaredDistances; ///< Only with TACTUS_HAS_X86_KERNELS.
+extern const SquaredDistances kAvx2SquaredDistances; ///< Exists only with TACTUS_HAS_X86_KERNELS.
 
-/// Those that this processor runs, the fastest last.
+/// Kernels that this processor supports, the fastest last.
 [[nodiscard]] std::span<const SquaredDistances> available_distance_kernels() noexcept;
 
 } // namespace tactus

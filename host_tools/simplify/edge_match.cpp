@@ -15,7 +15,7 @@ namespace tactus
 namespace
 {
 
-/// Two faces a record, and record ids end at kMaxRecords.
+/// Maximum number of faces: two faces a record, and record ids end at kMaxRecords.
 constexpr std::size_t kMaxFaces = std::size_t{kMaxRecords};
 constexpr std::int32_t kGridEnd = 1 << kMaxPositionBits;
 
@@ -25,7 +25,7 @@ struct EdgeEnd
     std::uint32_t far_vertex;
     std::uint32_t face;
     std::uint8_t corner;
-    bool outward; ///< The face runs from the lower-numbered vertex to the higher.
+    bool outward; ///< True if the face runs from the lower-numbered vertex to the higher.
 
     auto operator<=>(const EdgeEnd&) const noexcept = default;
 };

@@ -13,7 +13,7 @@
 namespace tactus
 {
 
-/// Of each face, the face across the edge from corner i to corner i + 1; Collapse::kNoFace on a
+/// For each face, the face across the edge from corner i to corner i + 1; Collapse::kNoFace on a
 /// border.
 using FaceNeighbours = std::vector<std::array<std::uint32_t, 3>>;
 

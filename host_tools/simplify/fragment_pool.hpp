@@ -15,7 +15,7 @@ namespace tactus
 {
 
 /// A point of an original triangle: p0 + (x (p1 - p0) + y (p2 - p0)) / 2^31. Eight bytes instead of
-/// 24, and rounding moves it by at most 2^-31 of the triangle's longer side.
+/// 24; rounding moves it by at most 2^-31 of the triangle's longer side.
 struct TrianglePoint
 {
     static constexpr std::uint32_t kOne = 1U << 31U;
@@ -26,19 +26,20 @@ struct TrianglePoint
     constexpr bool operator==(const TrianglePoint&) const noexcept = default;
 };
 
-/// A part of an original triangle that stands apart from the rest of it.
+/// A part of an original triangle that is separate from the rest of it.
 struct Fragment
 {
     std::array<TrianglePoint, 3> corners{};
     std::uint32_t triangle{0};
-    std::uint32_t next{0};       ///< In the list of its face, or of free slots.
-    std::uint32_t generation{0}; ///< How many cuts made it; each adds to the slack of its bound.
+    std::uint32_t next{0}; ///< Next fragment in the list of its face, or of free slots.
+    /// Number of cuts that made it; each adds to the slack of its bound.
+    std::uint32_t generation{0};
 };
 
 static_assert(sizeof(Fragment) == 36);
 
-/// Fragments by number. Each worker takes and gives back on its own; what one worker wrote another
-/// may read once the threads have been joined. Numbers depend on the workers, results must not.
+/// Fragments by number. Each worker takes and returns on its own; another worker may read a
+/// fragment once the threads have been joined. Numbers depend on the workers, results must not.
 class FragmentPool
 {
 public:
@@ -55,7 +56,7 @@ public:
         return (*blocks_[index / kBlockSize])[index % kBlockSize];
     }
 
-    /// Room for one fragment.
+    /// Takes a free slot for one fragment.
     [[nodiscard]] std::uint32_t take(unsigned worker)
     {
         FreeList& list = lists_[worker];
@@ -76,7 +77,7 @@ public:
 
 private:
     static constexpr std::uint32_t kBlockSize = 1U << 13U;
-    static constexpr std::uint32_t kBlocksMax = 1U << 16U; ///< 19 GB: memory ends before.
+    static constexpr std::uint32_t kBlocksMax = 1U << 16U; ///< 19 GB; memory ends before.
 
     using Block = std::array<Fragment, kBlockSize>;
 

@@ -21,10 +21,10 @@ namespace
 using Face = std::array<std::uint32_t, 3>;
 
 constexpr std::uint32_t kBorder = Collapse::kNoFace;
-/// Faces looked at on each side of a ring. Sides that haven't met by then count as one: a ring that
-/// parts such large pieces costs a few vertices and nothing else.
+/// Maximum number of faces visited on each side of a ring. Sides that have not met by then count as
+/// connected: a ring that separates such large pieces costs only a few vertices.
 constexpr std::size_t kSideFacesMax = 4'096;
-/// Edges where the search for a ring begins; the shortest ring is taken.
+/// Maximum number of edges at which the search for a ring starts; the shortest ring is taken.
 constexpr std::size_t kBeginningsMax = 8;
 
 std::uint32_t corner_of(const Face& face, std::uint32_t vertex)
@@ -37,7 +37,7 @@ bool has(const Face& face, std::uint32_t vertex)
     return face[corner_of(face, vertex)] == vertex;
 }
 
-/// For each first end the second ones.
+/// For each first end, the list of second ends.
 IndexLists second_ends(std::size_t numbers, std::span<const MeshEdge> pairs)
 {
     return {numbers, [pairs](const auto& add)
@@ -49,7 +49,7 @@ IndexLists second_ends(std::size_t numbers, std::span<const MeshEdge> pairs)
             }};
 }
 
-/// Both ways of each edge, sorted.
+/// Both directions of each edge, sorted.
 std::vector<MeshEdge> edges_of(std::span<const Face> faces)
 {
     std::vector<MeshEdge> edges;
@@ -67,11 +67,11 @@ std::vector<MeshEdge> edges_of(std::span<const Face> faces)
     return edges;
 }
 
-/// Three vertices that are joined in pairs.
+/// Three vertices that are connected in pairs.
 struct Triple
 {
     double length{0}; ///< Sum of its squared sides, in quanta^2.
-    Face at{};        ///< Ascending.
+    Face at{};        ///< Vertices, ascending.
 
     [[nodiscard]] std::array<MeshEdge, 3> edges() const
     {
@@ -83,7 +83,7 @@ struct Triple
     }
 };
 
-/// The base mesh with vertex numbers of its own, and what has been cut in it so far.
+/// The base mesh with its own vertex numbers, and the cuts made so far.
 class CutBase
 {
 public:
@@ -124,10 +124,10 @@ public:
     }
 
     [[nodiscard]] std::size_t vertex_count() const { return source_.size(); }
-    /// The mesh vertex that a number stands for.
+    /// Mesh vertex of a number.
     [[nodiscard]] std::uint32_t source(std::uint32_t vertex) const { return source_[vertex]; }
 
-    /// Triples of inner edges that make no face, shortest first.
+    /// Triples of inner edges that form no face, shortest first.
     [[nodiscard]] std::vector<Triple> find_triples() const
     {
         const IndexLists neighbours = second_ends(vertex_count(), edges_of(mesh_.faces));
@@ -154,7 +154,7 @@ public:
         return triples;
     }
 
-    /// Cuts along the triple, unless that parts what is whole.
+    /// Cuts along the triple, unless that separates the mesh.
     [[nodiscard]] bool try_cut(const Triple& triple)
     {
         std::vector<std::uint32_t> left;
@@ -173,7 +173,7 @@ public:
         return false;
     }
 
-    /// Takes a cut back.
+    /// Reverts a cut.
     void join(const Triple& triple)
     {
         for (const auto& [from, to] : triple.edges())
@@ -201,7 +201,7 @@ private:
     {
         return (grid_point(mesh_, a) - grid_point(mesh_, b)).squaredNorm();
     }
-    /// 3 x its face + its place there; the edge must be there this way.
+    /// Half-edge 3 x face + place; the directed edge must exist.
     [[nodiscard]] std::uint32_t half_edge(const MeshEdge& edge) const
     {
         return std::ranges::lower_bound(sides_, std::pair(edge, 0U))->second;
@@ -216,7 +216,7 @@ private:
         return is_there(edge) && is_there({edge[1], edge[0]});
     }
 
-    /// Whether a way leads from the left faces to the right ones; looks from both in turn.
+    /// True if a path connects the left faces with the right ones; searches from both in turn.
     [[nodiscard]] bool are_one(std::vector<std::uint32_t> left, std::vector<std::uint32_t> right)
     {
         last_side_ += 2;
@@ -258,12 +258,13 @@ private:
     std::vector<std::uint32_t> source_;
     QuantisedMesh mesh_;
     FaceNeighbours across_;
-    std::vector<std::pair<MeshEdge, std::uint32_t>> sides_; ///< Each with its half-edge; sorted.
-    std::vector<std::uint32_t> side_of_; ///< The side of each face in the last search.
+    /// Directed edges with their half-edges, sorted.
+    std::vector<std::pair<MeshEdge, std::uint32_t>> sides_;
+    std::vector<std::uint32_t> side_of_; ///< Side of each face in the last search.
     std::uint32_t last_side_{0};
 };
 
-/// Rings in the source through the patches that three base vertices stand for.
+/// Rings in the source through the patches of three base vertices.
 class RingSearch
 {
 public:
@@ -275,7 +276,7 @@ public:
     {
     }
 
-    /// Through a, b and c in turn; empty when a patch isn't whole.
+    /// Ring through the patches a, b and c in turn; empty if a patch is not connected.
     [[nodiscard]] std::vector<MeshEdge> find(const Face& patches)
     {
         std::vector<MeshEdge> beginnings;
@@ -319,7 +320,8 @@ private:
         return pairs;
     }
 
-    /// Breadth first from the beginning's first end to its last one, a patch never twice.
+    /// Shortest path, breadth first, from the first end of `beginning` to its last one, that never
+    /// returns to a patch.
     [[nodiscard]] std::vector<MeshEdge> shortest(const MeshEdge& beginning, const Face& patches)
     {
         const auto [first, last] = beginning;
@@ -356,13 +358,13 @@ private:
         return ring;
     }
 
-    std::vector<std::uint32_t> base_of_; ///< The base vertex of each vertex.
+    std::vector<std::uint32_t> base_of_; ///< Base vertex by vertex.
     IndexLists neighbours_;
-    IndexLists members_;                ///< The vertices that moved onto each base vertex.
-    std::vector<std::uint32_t> before_; ///< On the way to each vertex, in a search.
+    IndexLists members_;                ///< Vertices that moved onto each base vertex.
+    std::vector<std::uint32_t> before_; ///< Previous vertex on the path, in a search.
 };
 
-/// The faces across each face's edges; none across an edge that is cut.
+/// Faces across each face's edges; none across an edge that is cut.
 FaceNeighbours neighbours_in_cut(const QuantisedMesh& mesh, std::span<const MeshEdge> edges)
 {
     auto matched = match_edges(mesh);
@@ -430,7 +432,7 @@ std::size_t cut_open(QuantisedMesh& mesh, std::span<const MeshEdge> edges)
     std::vector<bool> is_named(3 * before.size(), false);
     const auto name_fan = [&](std::uint32_t start, std::uint32_t old, std::uint32_t name)
     {
-        // Against the clock to the fan's end, or once round; then from the start with it.
+        // Clockwise to the fan's end, or once around; then counter-clockwise from the start.
         for (const std::uint32_t turn : {2U, 0U})
         {
             std::uint32_t face = start;

@@ -11,12 +11,12 @@
 namespace tactus
 {
 
-/// Numbers distinct 32-bit keys 0, 1, 2 ... in the order in which they first come. Scratch that is
-/// emptied per star: open addressing, at most half full, memory kept between uses.
+/// Numbers distinct 32-bit keys 0, 1, 2 ... in the order of first occurrence. Scratch memory that
+/// is cleared for each star: open addressing, at most half full, memory kept between uses.
 class IndexMap
 {
 public:
-    /// Forgets everything and makes room for `keys_max` distinct keys.
+    /// Removes all keys and makes room for `keys_max` distinct keys.
     void reset(std::size_t keys_max)
     {
         size_ = 0;
@@ -28,7 +28,7 @@ public:
         std::fill_n(slots_.begin(), mask_ + 1, Slot{0, kEmpty});
     }
 
-    /// The key's number; a new key gets the number `size()` had before the call.
+    /// Number of the key; a new key gets the value of `size()` before the call.
     std::uint32_t index_of(std::uint32_t key)
     {
         std::size_t at = (key * 0x9E37'79B1ULL >> 7U) & mask_;

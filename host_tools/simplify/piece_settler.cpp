@@ -16,11 +16,11 @@ namespace tactus
 namespace
 {
 
-/// A piece stays uncut up to this multiple of the lower bound.
+/// Multiple of the lower bound up to which a piece stays uncut.
 constexpr double kUncutFactor = 1.05;
 
-/// Parts of one piece at most: three to a cut would pass it only where many edges meet in a small
-/// triangle, and then it is merely looser.
+/// Maximum number of parts of a piece. With three parts a cut, only pieces at many edges that meet
+/// in a small triangle exceed it; their bound is then only looser.
 constexpr std::size_t kPartsMax = 48;
 
 Vec3 unit_or_zero(const Vec3& v) noexcept
@@ -121,7 +121,7 @@ std::span<const Assignment> PieceSettler::settle(const Part& piece, const Quanti
         cut_open_parts(plane, frame);
     }
     settled_.insert(settled_.end(), open_.begin(), open_.end());
-    // A cut that parted nothing is undone: with all parts on one face, so is the piece.
+    // Cuts without effect are undone: if all parts are on one face, so is the piece.
     const std::uint32_t place = settled_.front().place;
     if (std::ranges::all_of(settled_, [=](const Assignment& a) { return a.place == place; }))
     {

@@ -16,34 +16,34 @@
 namespace tactus
 {
 
-/// A part of an original triangle and the fan face it goes to.
+/// A part of an original triangle and the fan face that it is assigned to.
 struct Assignment
 {
     Part part;
-    std::uint32_t place{0}; ///< In the fan.
+    std::uint32_t place{0}; ///< Place in the fan.
     double squared{0};      ///< Largest squared distance of a corner to that face.
 };
 
-/// Decides for the pieces of one star which new face each goes to and where it is cut. No
-/// assignment does better than the lower bound, the largest distance of a measured point to its
-/// nearest face; a piece that reaches its best face nearly as well stays uncut, any other is cut
-/// along the new edges. Keeps its memory from star to star.
+/// Assigns the pieces of one star to its new faces and cuts them. No assignment does better than
+/// the lower bound, the largest distance of a measured point to its nearest face. A piece whose
+/// best face is nearly as good stays uncut; any other is cut along the new edges. Memory is reused
+/// from star to star.
 class PieceSettler
 {
 public:
-    /// Starts a star: the faces after the collapse, and between each two the half plane from the
-    /// parent along their common edge that halves their normals' angle.
+    /// Starts a star: the faces after the collapse and, for each two, the half plane from the
+    /// parent along their common edge that bisects their normals' angle.
     void begin(const QuantisedMesh& mesh, const Star& star);
 
     /// Adds a corner of a piece; returns its number.
     std::uint32_t add_point(const Vec3& point);
 
-    /// Measures the corners added since begin() and derives how far a piece may reach uncut, at
-    /// least `floor_quanta`.
+    /// Measures the corners added since begin() and computes the distance up to which a piece stays
+    /// uncut, at least `floor_quanta`.
     void measure(double floor_quanta);
 
-    /// The parts of a piece and where they go; one, the piece itself, when it stays uncut. Valid
-    /// until the next call.
+    /// The parts of a piece with their faces; only the piece itself if it stays uncut. Valid until
+    /// the next call.
     [[nodiscard]] std::span<const Assignment> settle(const Part& piece, const QuantisedMesh& mesh,
                                                      std::uint32_t triangle);
 
@@ -56,7 +56,8 @@ private:
     std::array<DistanceTriangle, kMaxFanFaces> faces_;
     StaticVector<CutPlane, kMaxFanFaces> planes_;
     PointColumns points_;
-    std::array<std::vector<double>, kMaxFanFaces> squared_; ///< Of each face: per point.
+    /// Squared distances of each face, by point.
+    std::array<std::vector<double>, kMaxFanFaces> squared_;
     double accepted_{0}; ///< Squared distance up to which a piece stays uncut.
     std::vector<Assignment> settled_;
     std::vector<Assignment> open_; ///< Parts that the next plane may cut.

@@ -10,21 +10,21 @@
 namespace tactus
 {
 
-/// The memoryless quadric of a vertex: area-weighted squared distance to the planes of the faces it
-/// has *now*. Forgetting the removed faces beats accumulating them by a fifth in RMS error, and it
+/// The memoryless quadric of a vertex: area-weighted squared distance to the planes of its
+/// *present* faces. Ignoring removed faces beats accumulating them by a fifth in RMS error, and
 /// needs no memory between rounds.
 class PlaneQuadric
 {
 public:
     PlaneQuadric(const QuantisedMesh& mesh, const VertexRing& ring) noexcept;
 
-    /// Cost of moving the vertex to `point`, in quanta^4. Faces without area have no plane and
-    /// count nothing.
+    /// Cost of moving the vertex to `point`, in quanta^4. Faces without area have no plane and do
+    /// not count.
     [[nodiscard]] double at(const Vec3& point) const noexcept;
 
 private:
     Vec3 vertex_;
-    /// Unit normal times the root of the area.
+    /// Unit normals times the root of the area.
     StaticVector<Vec3, kMaxStarFaces> planes_;
 };
 

@@ -50,7 +50,7 @@ std::span<const SquaredDistances> available_distance_kernels() noexcept
 {
 #if defined(TACTUS_HAS_X86_KERNELS)
     static const std::array all{kPortableSquaredDistances, kAvx2SquaredDistances};
-    const bool has_avx2 = static_cast<bool>(__builtin_cpu_supports("avx2")); // GCC: int.
+    const bool has_avx2 = static_cast<bool>(__builtin_cpu_supports("avx2")); // GCC returns int.
     return std::span(all).first(has_avx2 ? 2 : 1);
 #else
     return {&kPortableSquaredDistances, 1};

@@ -25,13 +25,13 @@ struct PointColumns
     [[nodiscard]] Vec3 operator[](std::size_t i) const noexcept { return {x[i], y[i], z[i]}; }
 };
 
-/// A triangle made ready for many point distances.
+/// A triangle prepared for many point distances.
 ///
-/// The distance is the least of the three sides' (each a clamped projection), and the plane's where
+/// The distance is the least of the three sides' (each a clamped projection), and the plane's if
 /// the projection lies strictly inside. With corners on the integer grid of at most 24 bits the
 /// normal is exact (products of 25-bit differences, 51 bits in all), so unlike in general the error
-/// does not grow with the triangle's aspect: a point within 2^25 quanta gets its distance within
-/// 1e-7 quanta, on needles too, and a triangle without area is three segments.
+/// does not grow with the triangle's aspect ratio: a point within 2^25 quanta gets its distance
+/// within 1e-7 quanta, on needles too, and a triangle without area is three segments.
 class DistanceTriangle
 {
 public:

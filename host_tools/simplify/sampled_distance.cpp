@@ -32,7 +32,7 @@ double area_of(const Corners& corners)
     return 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
 }
 
-/// The base mesh's faces halved again and again at the median of the longest axis.
+/// Tree over the base mesh's faces, halved repeatedly at the median of the longest axis.
 class BaseTree
 {
 public:
@@ -133,10 +133,10 @@ private:
 
     std::vector<Leaf> leaves_;
     std::vector<Node> nodes_;
-    PointColumns point_; ///< The one that is asked for, as the kernel wants it.
+    PointColumns point_; ///< Query point in the kernel's form.
 };
 
-/// Uniform in 0 .. 1, the same on every machine.
+/// Number uniform in 0 .. 1, the same on every machine.
 double unit_from(std::mt19937_64& random)
 {
     return static_cast<double>(random() >> 11U) * 0x1p-53;

@@ -17,13 +17,13 @@ namespace
 
 /// Least cosine between a face's normals before and after.
 constexpr double kLeastTurnCosine = 0.2;
-/// Double area over the sum of squared sides: 0.289 for an equilateral triangle. Below it a face is
-/// thin, about one in nine.
+/// Limit of double area over the sum of squared sides, which is 0.289 for an equilateral triangle.
+/// Below it a face is thin, about one in nine.
 constexpr double kThin = 0.1;
 
 struct Shape
 {
-    Vec3 normal; ///< Length: twice the area.
+    Vec3 normal; ///< Normal; its length is twice the area.
     double double_area;
     double roundness;
 };

@@ -24,32 +24,32 @@ namespace tactus
 namespace
 {
 
-/// Of a round's candidates only the best are taken; smaller rounds give a better base and a deeper
-/// forest (30 % gives 26 to 38 rounds to 1 %).
+/// Share of a round's candidates that are taken, best first. Smaller rounds give a better base and
+/// a deeper forest (30 % gives 26 to 38 rounds to 1 %).
 constexpr double kTakenShare = 0.3;
-/// A round starves with less than one candidate to this many vertices; it then also takes
-/// candidates that spoil faces more.
+/// Number of vertices for one candidate below which a round starves; it then also takes candidates
+/// of higher spoil levels.
 constexpr std::size_t kStarvedShare = 64;
-/// Below this share of the faces the measured error ranks the candidates.
+/// Share of the faces below which the measured error ranks the candidates.
 constexpr double kMeasuredShare = 0.3;
 
-/// After so many rounds each that are left are compared with the pace of the last ones. Meshes of
-/// which something can be made need less in all.
+/// Number of rounds between checks whether the remaining rounds suffice at the present pace.
+/// Successful meshes need fewer rounds in all.
 constexpr std::uint32_t kPaceRounds = 64;
 
 constexpr unsigned kMaxThreads = 256;
 constexpr std::size_t kVertexBlock = 256;
 constexpr std::size_t kStarBlock = 32;
 
-/// Rounds of collapses with disjoint stars.
+/// Executes rounds of collapses with disjoint stars.
 ///
-/// A round finds each vertex's best collapse in the mesh as it stands, sorts the best of them and
-/// executes them one after another, skipping each whose star was touched in this round or whose
-/// legality was lost by an earlier one. So the result *is* a sequential execution. Costs depend on
-/// the star alone and therefore still hold; only the link condition and the degree look farther.
-/// Disjoint stars commute, so any dependency-closed cut is again a legal sequential execution.
-/// Finding candidates and re-assigning pieces run in parallel; both read nothing that another
-/// vertex or star of the same phase writes, and order is by cost and vertex.
+/// A round finds each vertex's best collapse in the present mesh, sorts the best of them and
+/// executes them one after another, skipping each whose star was touched in this round or that an
+/// earlier one made illegal. The result *is* thus a sequential execution. Costs depend on the star
+/// alone and therefore stay valid; only the link condition and the degree depend on more. Disjoint
+/// stars commute, so any dependency-closed cut is again a legal sequential execution. Finding
+/// candidates and re-assigning pieces run in parallel; both read nothing that another vertex or
+/// star of the same phase writes, and order is by cost and vertex.
 class Simplifier
 {
 public:
@@ -94,18 +94,18 @@ private:
     CollapseMesh current_;
     BoundaryQuadrics boundary_;
     Certificate certificate_;
-    SurfaceSamples samples_;            ///< Kept once the measured error ranks the candidates.
-    std::vector<Candidate> candidates_; ///< Of each vertex.
-    std::vector<std::uint8_t> stale_;   ///< Of each vertex: its candidate must be found again.
-    std::vector<Candidate> picked_;     ///< Of this round.
+    SurfaceSamples samples_; ///< Maintained once the measured error ranks the candidates.
+    std::vector<Candidate> candidates_; ///< Candidate by vertex.
+    std::vector<std::uint8_t> stale_;   ///< Flags by vertex: the candidate must be found again.
+    std::vector<Candidate> picked_;     ///< Candidates of this round.
     Priority priority_{Priority::quadric};
-    std::vector<std::uint8_t> touched_; ///< Of each face: in this round.
+    std::vector<std::uint8_t> touched_; ///< Flags by face: touched in this round.
     std::vector<Star> round_;           ///< Stars of this round.
     std::size_t components_;
-    std::size_t stuck_faces_{0};    ///< In components that can't shrink, at the round before.
-    double cheapest_absorption_{0}; ///< Of what was left of them.
-    std::uint32_t paced_rounds_{0}; ///< Where the pace is taken from,
-    std::size_t paced_faces_;       ///< and the faces left then.
+    std::size_t stuck_faces_{0}; ///< Faces in components that cannot shrink, in the round before.
+    double cheapest_absorption_{0}; ///< Cost of the cheapest absorption not executed.
+    std::uint32_t paced_rounds_{0}; ///< Round from which the pace is measured.
+    std::size_t paced_faces_;       ///< Faces left in that round.
     bool is_hopeless_{false};
     std::vector<CandidateScratch> scratch_;
     Simplification result_;
@@ -141,8 +141,8 @@ Result<Simplification, Refusal> Simplifier::run()
     return std::move(result_);
 }
 
-/// At the present pace the rounds that are left don't suffice: a crowd of pieces at one place, of
-/// which a few vanish in each round.
+/// True if the remaining rounds do not suffice at the present pace, for example with many pieces at
+/// one place of which a few vanish in each round.
 bool Simplifier::is_hopeless() noexcept
 {
     const std::size_t rounds = result_.rounds - paced_rounds_;
@@ -173,8 +173,8 @@ void Simplifier::measure_from_now_on()
                     });
 }
 
-/// A candidate is found again when its star has changed, and when there was none: the link
-/// condition looks farther than the star.
+/// Finds candidates of vertices whose star has changed, and of those without one, since the link
+/// condition depends on more than the star.
 void Simplifier::find_candidates()
 {
     const bool few_faces = static_cast<double>(current_.faces_left()) <
@@ -199,7 +199,8 @@ void Simplifier::find_candidates()
     parallel_blocks(options_.threads, candidates_.size(), kVertexBlock, find_block);
 }
 
-/// The best share of the candidates, sorted, of the least level that doesn't starve the round.
+/// Takes the best share of the candidates, sorted, from the lowest spoil levels that do not starve
+/// the round.
 void Simplifier::pick_candidates()
 {
     picked_.clear();
@@ -226,9 +227,10 @@ void Simplifier::pick_candidates()
     picked_.resize(size);
 }
 
-/// When an earlier collapse, of this round or before, has made a candidate illegal, the vertex gets
-/// a new one for the next round: the first candidate that is skipped so is either found again or
-/// has none, so a round without collapses can't repeat itself for ever.
+/// Executes the picked collapses with disjoint stars. If an earlier collapse, of this round or
+/// before, has made a candidate illegal, the vertex gets a new one for the next round. The first
+/// candidate skipped this way is therefore replaced or removed, so a round without collapses cannot
+/// repeat forever.
 void Simplifier::collapse_disjoint()
 {
     std::ranges::fill(touched_, std::uint8_t{0});
@@ -267,9 +269,9 @@ bool Simplifier::is_untouched(const VertexRing& ring) const noexcept
                         [&](std::uint32_t face) { return touched_[face] != 0; });
 }
 
-/// What the round's worst collapse costs an absorption may cost too; and components that can't
-/// shrink must neither crowd out the others nor hold the mesh above its base. Negative when none
-/// can be as cheap.
+/// Maximum cost of an absorption: that of the round's worst collapse. It is unlimited if components
+/// that cannot shrink outnumber the others or keep the mesh above its base. Negative if no
+/// absorption can be that cheap.
 double Simplifier::allowed_absorption_cost()
 {
     const std::size_t stuck = count_stuck_faces(current_);
@@ -283,7 +285,7 @@ double Simplifier::allowed_absorption_cost()
     return is_worth_a_look ? picked_.back().cost : -1;
 }
 
-/// Each step is a round of its own; false when nothing was absorbed.
+/// Absorbs components; each step is its own round. False if nothing was absorbed.
 bool Simplifier::absorb_components()
 {
     const double cost_max = allowed_absorption_cost();

@@ -13,8 +13,8 @@
 namespace tactus
 {
 
-/// A point of the original surface and the area it stands for, in quanta. Single precision is
-/// plenty: samples only rank collapses.
+/// A point of the original surface and the area that it represents, in quanta. Single precision
+/// suffices: samples only rank collapses.
 struct SurfacePoint
 {
     float x;
@@ -23,19 +23,18 @@ struct SurfacePoint
     float area;
 };
 
-/// Samples of the surface that stands with one face; more per face gain nothing.
+/// Samples of the surface assigned to one face; more per face give no gain.
 using FaceSamples = StaticVector<SurfacePoint, 6>;
 
-/// Points that stand for the original surface near a vertex.
+/// Points that represent the original surface near a vertex.
 struct StarSamples
 {
     PointColumns points;
-    std::vector<double> areas; ///< In quanta^2.
+    std::vector<double> areas; ///< Areas in quanta^2.
 };
 
 /// Keeps each present face's samples, so that ranking the collapses of a star reads a few lines of
-/// memory instead of walking all pieces of its faces. Faces are those present at the start. About
-/// 100 B each.
+/// memory instead of all pieces of its faces. Present means at the start. About 100 B a face.
 class SurfaceSamples
 {
 public:
@@ -49,7 +48,7 @@ public:
     void gather(std::span<const std::uint32_t> faces, StarSamples& star) const;
 
 private:
-    std::vector<std::uint32_t> slot_; ///< Of each face of the mesh.
+    std::vector<std::uint32_t> slot_; ///< Slot by face of the mesh.
     std::vector<FaceSamples> faces_;
 };
 

@@ -14,7 +14,7 @@
 namespace tactus
 {
 
-/// An original triangle by one corner and two sides.
+/// An original triangle, by one corner and two sides.
 struct TriangleFrame
 {
     Vec3 origin;
@@ -22,7 +22,7 @@ struct TriangleFrame
     Vec3 side_y;
 
     [[nodiscard]] Vec3 point(const TrianglePoint& at) const noexcept;
-    /// How far one cut's rounding can move a point, in quanta.
+    /// Maximum displacement of a point by one cut's rounding, in quanta.
     [[nodiscard]] double rounding() const noexcept;
 };
 
@@ -36,7 +36,7 @@ struct Part
     std::uint32_t generation{0};
 };
 
-/// Half of a plane: it starts at `start` and holds the points on the side of `along`.
+/// Half of a plane: it starts at `start` and contains the points on the side of `along`.
 struct CutPlane
 {
     Vec3 start;
@@ -44,12 +44,12 @@ struct CutPlane
     Vec3 normal;
 };
 
-/// A triangle cut by a plane makes at most three.
+/// Parts of a triangle cut by a plane, at most three.
 using CutParts = StaticVector<Part, 3>;
 
-/// Cuts the part, appends the cut points to `points` and returns the parts; none when the half
-/// plane doesn't cross it. The parts cover the part but for gaps of at most rounding(): their
-/// generation says how many cuts' gaps their bound has to allow for.
+/// Cuts the part, appends the cut points to `points` and returns the parts; none if the half plane
+/// does not cross it. The parts cover the original except for gaps of at most rounding(); their
+/// generation counts the cuts whose gaps the bound must include.
 [[nodiscard]] CutParts cut(const Part& part, const TriangleFrame& frame, const CutPlane& plane,
                            PointColumns& points);
 

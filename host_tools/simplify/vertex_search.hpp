@@ -18,27 +18,27 @@
 namespace tactus
 {
 
-/// Nearest neighbours among some vertices of a mesh. Vertices at one position, as thousands of
-/// faces round one edge have them, are one place of the search tree: a tree of equal points looks
-/// at all of them each time.
+/// Nearest neighbours among some vertices of a mesh. Vertices at one position, such as those of
+/// thousands of faces around one edge, are one point of the search tree: a tree of equal points
+/// would visit all of them each time.
 class VertexSearch
 {
 public:
-    /// `vertices` ascend.
+    /// `vertices` must ascend.
     VertexSearch(const QuantisedMesh& mesh, std::span<const std::uint32_t> vertices)
         : points_(mesh, vertices), tree_(3, points_)
     {
     }
 
-    /// Distinct positions of the vertices.
+    /// Number of distinct positions of the vertices.
     [[nodiscard]] std::size_t place_count() const noexcept
     {
         return points_.kdtree_get_point_count();
     }
 
-    /// The 12 nearest to a vertex of the mesh, nearest first; fewer when there aren't as many. Of
-    /// those at one position the next above the vertex come first, so that each of a crowd gets
-    /// others.
+    /// The 12 nearest to a vertex of the mesh, nearest first, or fewer if there are not as many. Of
+    /// those at one position the next numbers above the vertex come first, so that coincident
+    /// vertices get different neighbours.
     [[nodiscard]] StaticVector<std::uint32_t, 12> nearest(std::uint32_t vertex) const
     {
         std::array<std::uint32_t, 12> places{};
@@ -67,8 +67,8 @@ private:
     struct Points
     {
         const QuantisedMesh& mesh;
-        std::vector<std::uint32_t> vertices; ///< By place.
-        std::vector<std::size_t> begins;     ///< Of each place's vertices, and their end.
+        std::vector<std::uint32_t> vertices; ///< Vertices by place.
+        std::vector<std::size_t> begins;     ///< Beginning of each place's vertices, and their end.
 
         /// Places are in the order of their first vertices.
         Points(const QuantisedMesh& of, std::span<const std::uint32_t> given) : mesh(of)
@@ -77,8 +77,7 @@ private:
             std::vector<std::size_t> order(given.size());
             std::iota(order.begin(), order.end(), std::size_t{0});
             std::ranges::stable_sort(order, {}, position);
-            std::vector<std::size_t> first_of(
-                given.size()); // Of each vertex its place's first one.
+            std::vector<std::size_t> first_of(given.size()); // First vertex of each vertex's place.
             for (std::size_t i = 0; i < order.size(); ++i)
             {
                 const bool is_new = i == 0 || position(order[i]) != position(order[i - 1]);
@@ -102,7 +101,7 @@ private:
             return std::span(vertices).subspan(begins[place], begins[place + 1] - begins[place]);
         }
 
-        // What nanoflann asks for.
+        // Interface that nanoflann requires.
         [[nodiscard]] std::size_t kdtree_get_point_count() const { return begins.size() - 1; }
         [[nodiscard]] double kdtree_get_pt(std::size_t place, std::size_t axis) const
         {
