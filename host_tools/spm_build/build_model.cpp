@@ -24,13 +24,14 @@ namespace tactus::spm_build
 namespace
 {
 
-/// Enough that their largest distance varies by a few percent from seed to seed; 0.1 s.
+/// Number of samples for which their largest distance varies by a few percent between seeds; 0.1 s.
 constexpr std::uint32_t kDistanceSamples = 20'000;
 constexpr std::uint64_t kSampleSeed = 1;
-/// Each pass cuts the handles whose rings don't touch; a mesh that needs more has too many.
+/// Maximum number of passes. Each cuts the handles whose rings do not touch; a mesh that needs more
+/// has too many.
 constexpr int kCutPassesMax = 16;
 
-/// Shares of the work: until a mesh is on its grid, and until it is simplified. Measured.
+/// Shares of the work until a mesh is on its grid, and until it is simplified. Measured.
 constexpr double kPrepared = 0.06;
 constexpr double kSimplified = 0.85;
 
@@ -42,7 +43,8 @@ void tell(const ModelOptions& options, double from, double to, double share)
     }
 }
 
-/// A model that is fitted to a size has no neighbours to share a grid with.
+/// Options of prepare_mesh(). A model that is scaled to a size has no neighbours with which to
+/// share a grid.
 PrepareOptions preparation(const ModelOptions& options, const GridChoice& grid)
 {
     PrepareOptions preparing;
@@ -70,7 +72,7 @@ std::optional<Refusal> check_mesh_memory(const TriangleMesh& mesh, const std::st
                         needed_mib(mesh.faces.size()), options.memory_mib);
 }
 
-/// `from`: the share of the work that is done before.
+/// Simplifies with reports of progress; `from` is the share of the work done before.
 Result<Simplification, Refusal> simplify_with_progress(const QuantisedMesh& mesh,
                                                        const ModelOptions& options, double from)
 {
@@ -91,8 +93,8 @@ Result<Simplification, Refusal> simplify_with_progress(const QuantisedMesh& mesh
     return std::move(simplification).value();
 }
 
-/// Simplifies the mesh, and with its handles cut open where they leave too large a base. Whether it
-/// is closed doesn't change by that: the borders of a cut lie in one place.
+/// Simplifies the mesh; if the base is too large, again with its handles cut open. That does not
+/// change whether the mesh counts as closed: the borders of a cut coincide.
 Result<Simplification, Refusal> simplify_all(QuantisedMesh& mesh, const ModelOptions& options,
                                              std::vector<std::string>& notes)
 {
@@ -131,7 +133,7 @@ Result<Simplification, Refusal> simplify_all(QuantisedMesh& mesh, const ModelOpt
     return simplification;
 }
 
-/// A base is kept in memory as a whole, so one that is larger than asked for is told.
+/// Adds a note about a base mesh above the requested size, since the whole base is kept in memory.
 void note_base(std::size_t faces, std::uint32_t wanted, std::vector<std::string>& notes)
 {
     if (faces > wanted)
@@ -142,7 +144,7 @@ void note_base(std::size_t faces, std::uint32_t wanted, std::vector<std::string>
     }
 }
 
-/// How many bits a mesh would take by itself is told where too few are asked for.
+/// Adds a note with the bits that the mesh needs if fewer were requested.
 void note_few_bits(const TriangleMesh& mesh, ModelOptions options, double quantum_m,
                    std::vector<std::string>& notes)
 {

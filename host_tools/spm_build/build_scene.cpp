@@ -29,8 +29,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kSceneFile = "scene.gltf";
 
-/// The folder that gets the result, and one in it for what is not finished. Removes what it made,
-/// unless all is done.
+/// The target folder, and a folder in it for unfinished files. Unless finished, it removes what it
+/// created.
 class TargetFolder
 {
 public:
@@ -70,13 +70,13 @@ public:
         }
         if (is_new_)
         {
-            fs::remove(path_, ignored); // Only when it is empty.
+            fs::remove(path_, ignored); // Succeeds only if it is empty.
         }
     }
 
     [[nodiscard]] const fs::path& partial() const noexcept { return partial_; }
 
-    /// Gives the files of the partial folder their places.
+    /// Moves the files of the partial folder into place.
     [[nodiscard]] std::optional<Refusal> finish(const std::vector<fs::path>& names)
     {
         for (const fs::path& name : names)
@@ -104,7 +104,7 @@ private:
     bool has_partial_{false};
 };
 
-/// What models of each group have in common, by the group's first model.
+/// Common vertices of each group's models, by the group's first model.
 using GroupPlaces = std::map<std::size_t, CommonPlaces>;
 
 Result<SceneModel, Refusal> build_one(Scene& scene, const ScenePlan& plan, std::size_t number,
@@ -149,7 +149,7 @@ Result<SceneOutcome, Refusal> build_planned(Scene& scene, const ScenePlan& plan,
                          .objects = plan.scene.objects.size(),
                          .models = {},
                          .notes = plan.notes};
-    auto file = AtomicFile::create(outcome.file); // Before the work: is there leave to write?
+    auto file = AtomicFile::create(outcome.file); // Tests the permission to write before the work.
     if (!file)
     {
         return file.error();
@@ -210,7 +210,7 @@ Result<SceneOutcome, Refusal> build_scene(const fs::path& input, const fs::path&
     {
         return plan.error();
     }
-    // Placing moves and scales all objects and their grids alike, so models don't depend on it.
+    // Placing transforms all objects and their grids alike, so models do not depend on it.
     if (const auto refused = choose_grids(scene.value(), plan.value(), input, options))
     {
         return *refused;

@@ -18,27 +18,27 @@ namespace tactus::spm_build
 /// A model of a scene.
 struct SceneModel
 {
-    std::string name; ///< Of its file, without ".spm".
+    std::string name; ///< Name of its file, without ".spm".
     std::size_t objects{0};
     Outcome outcome;
     std::vector<std::string> notes;
 };
 
-/// What was made, for the summary.
+/// Figures of a built scene, for the summary.
 struct SceneOutcome
 {
-    std::filesystem::path file; ///< The scene's.
+    std::filesystem::path file; ///< Scene file.
     std::size_t objects{0};
     std::vector<SceneModel> models;
-    std::vector<std::string> notes; ///< What of the scene is left out.
+    std::vector<std::string> notes; ///< Notes on ignored content of the scene.
 };
 
-/// Makes the models of a glTF scene's meshes in `folder`, each of different meshes once, without
-/// objects that have no surface, and the scene file scene.gltf beside them, which names them
-/// (docs/scene-files.md). All meshes are read before anything is written. Until all models are made
-/// nothing in the folder changes; then they take their places, and the scene file comes last. After
-/// a refusal nothing new is there, unless the disk fails between these. A signal may leave a folder
-/// PID.partial in it.
+/// Builds the models of a glTF scene's meshes in `folder`, one for each different mesh, and the
+/// scene file scene.gltf beside them, which names them (docs/scene-files.md). Objects without a
+/// surface are ignored. All meshes are read before anything is written. Nothing in the folder
+/// changes until all models are built; then they are moved into place, and the scene file last. A
+/// refusal leaves nothing new, unless the disk fails between these moves. A signal may leave a
+/// folder PID.partial in `folder`.
 [[nodiscard]] Result<SceneOutcome, Refusal> build_scene(const std::filesystem::path& input,
                                                         const std::filesystem::path& folder,
                                                         const ModelOptions& options,

@@ -37,7 +37,8 @@ Result<TriangleMesh, Refusal> load_source(const Options& options, std::vector<st
 {
     if (options.shape.empty())
     {
-        std::error_code unknown; // Of a pipe; what it holds is read and then seen.
+        // The size of a pipe is unknown; its content is checked after reading.
+        std::error_code unknown;
         const std::uintmax_t bytes = std::filesystem::file_size(options.input, unknown);
         if (auto refused = unknown ? std::nullopt
                                    : check_memory(options.input + ": a file of " +
@@ -73,7 +74,8 @@ Result<TriangleMesh, Refusal> load_source(const Options& options, std::vector<st
 
 Result<Outcome, Refusal> build(const Options& options, std::vector<std::string>& notes)
 {
-    // Refuses a place that can't be written before minutes of work; the file itself comes last.
+    // A place that cannot be written is refused before minutes of work; the file itself is written
+    // last.
     if (const auto refused = AtomicFile::probe(options.output))
     {
         return *refused;

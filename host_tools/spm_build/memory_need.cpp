@@ -17,12 +17,12 @@ namespace
 constexpr std::uint64_t kUnknown = std::numeric_limits<std::uint64_t>::max();
 constexpr std::uint64_t kMib = std::uint64_t{1} << 20U;
 
-/// Measured on shapes and scans of 13 k to 400 k faces with 2 and 16 threads: 310 to 440, beside
-/// what the program has without a mesh.
+/// Upper estimate. Measured on shapes and scans of 13 k to 400 k faces with 2 and 16 threads: 310
+/// to 440, beside the need without a mesh.
 constexpr std::uint64_t kBytesPerFace = 480;
 constexpr std::uint64_t kBaseMib = 16;
 
-/// The first number of a file that has only one; a group without a limit says "max".
+/// The number at the start of a file; a group without a limit says "max".
 std::uint64_t number_in(const std::filesystem::path& path)
 {
     std::ifstream file(path);
@@ -45,7 +45,7 @@ std::uint64_t available_of_machine(const std::filesystem::path& root)
     return kUnknown;
 }
 
-/// What is left of the limit of the control group (version 2), seen from within.
+/// Remaining memory of the control group (version 2), seen from within.
 std::uint64_t left_of_group(const std::filesystem::path& root)
 {
     const std::filesystem::path group = root / "sys/fs/cgroup";

@@ -13,16 +13,15 @@
 namespace tactus::spm_build
 {
 
-/// At the peak, rounded up: what a mesh of so many faces takes in memory until its model is
-/// written.
+/// Peak memory, rounded up, from a mesh with this number of faces until its model is written.
 [[nodiscard]] std::uint64_t needed_mib(std::size_t faces);
 
-/// What this program can take without swapping, of the machine and of the group that it runs in;
-/// none where that can't be told. `root` stands for / in tests.
+/// Memory that this program can use without swapping, limited by the machine and its control group;
+/// none if unknown. `root` replaces / in tests.
 [[nodiscard]] std::optional<std::uint64_t> available_mib(const std::filesystem::path& root = "/");
 
-/// Refuses what needs more than `allowed_mib`, or than the machine has where that is not said, with
-/// the least that works. `what` names it.
+/// Refuses a need above `allowed_mib`, or above the machine's available memory if that is not set,
+/// and states the least sufficient value. `what` names the object.
 [[nodiscard]] std::optional<Refusal> check_memory(const std::string& what, std::uint64_t needed,
                                                   std::optional<std::uint32_t> allowed_mib);
 

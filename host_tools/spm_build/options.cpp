@@ -97,7 +97,7 @@ void declare_options(CommandLine& line, Options& options, Words& words)
     line.add_log_options();
 }
 
-/// What one option alone can't tell. Empty when all is well.
+/// Fault of a combination of options; empty if there is none.
 std::string check_together(const CommandLine& line, const Options& options)
 {
     if (options.input.empty() && options.shape.empty())
@@ -149,7 +149,7 @@ std::variant<Options, int> parse_options(CommandLine& line, int argc, char** arg
         return line.fail(fault, kExitUsage);
     }
     options.model.metres_per_unit = *metres_per_unit(options.unit);
-    if (!options.is_of_scene()) // Of a scene the objects are placed, not the models.
+    if (!options.is_of_scene()) // Placing applies to the objects of a scene, not to its models.
     {
         options.model.metres_per_unit *= options.placing.scale;
         options.model.is_centered = options.placing.is_centered;

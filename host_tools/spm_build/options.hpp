@@ -19,12 +19,12 @@ class CommandLine;
 namespace tactus::spm_build
 {
 
-/// Everything that the command line says; checked, in SI.
+/// Options of the command line; checked, in SI units.
 struct Options
 {
     std::string input;
     std::string output;
-    std::optional<MeshFormat> format; ///< The input's; without it the name tells.
+    std::optional<MeshFormat> format; ///< Format of the input. [default: from its name]
     std::string shape;
     std::uint32_t shape_faces{0};
     std::string unit{"m"};
@@ -32,14 +32,14 @@ struct Options
     Placing placing;
     bool json{false};
 
-    /// What the model is made of, as messages name it.
+    /// Name of the model's source in messages.
     [[nodiscard]] std::string source() const { return shape.empty() ? input : "--shape " + shape; }
-    /// Whether `input` is a scene, and `output` the folder for its models.
+    /// True if `input` is a scene, and `output` the folder for its models.
     [[nodiscard]] bool is_of_scene() const;
 };
 
-/// Reads the command line. Returns the exit code instead when the program should leave: after
-/// --help, --version, or wrong usage, which gets one line on stderr.
+/// Reads the command line. Returns the exit code instead if the program should leave: after --help,
+/// --version, or wrong usage, which gets one line on stderr.
 [[nodiscard]] std::variant<Options, int> parse_options(CommandLine& line, int argc, char** argv);
 
 } // namespace tactus::spm_build

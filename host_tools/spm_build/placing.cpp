@@ -26,7 +26,7 @@ void turn_y_up(Pose& pose)
     rotation = (Eigen::Quaterniond(upright) * rotation).normalized();
 }
 
-/// The middle of the boxes of all objects, each turned with its object.
+/// Middle of the boxes of all objects, each rotated with its object.
 Vec3 middle_of(std::span<const Eigen::AlignedBox3d> boxes, std::span<const PlacedModel> objects)
 {
     Eigen::AlignedBox3d all;

@@ -16,20 +16,20 @@
 namespace tactus::spm_build
 {
 
-/// How what was read is turned, sized and moved, in this order.
+/// Rotation, scale and translation of the input, in this order.
 struct Placing
 {
-    bool is_y_up{false}; ///< Its y axis points up; z does then, as for devices.
+    bool is_y_up{false}; ///< True if its y axis points up; z does then, as for devices.
     double scale{1.0};
-    bool is_centered{false}; ///< The middle of its box becomes the origin.
+    bool is_centered{false}; ///< True if the middle of its box becomes the origin.
 };
 
-/// Turns a mesh so that its y axis becomes z.
+/// Rotates a mesh so that its y axis becomes z.
 void turn_y_up(TriangleMesh& mesh);
 
-/// Places the objects of a scene, whose models have these boxes: their middle is that of the
-/// objects' boxes. Gives a note of a move. Refuses an object that would stand or be scaled beyond
-/// what is allowed.
+/// Places the objects of a scene, whose models have these boxes; the middle is that of the objects'
+/// boxes. Adds a note about a translation. Refuses an object whose pose or scale would be out of
+/// range.
 [[nodiscard]] std::optional<Refusal> place_objects(const Placing& placing,
                                                    std::span<const Eigen::AlignedBox3d> boxes,
                                                    std::vector<PlacedModel>& objects,

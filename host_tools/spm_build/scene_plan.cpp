@@ -35,14 +35,14 @@ ContentHash hash_of(const TriangleMesh& mesh)
     return content_hash(std::as_bytes(std::span(parts)));
 }
 
-/// A mesh that was read: the model that it becomes, or why it becomes none.
+/// A mesh that was read: its model, or the reason why it has none.
 struct PlannedMesh
 {
     std::optional<std::size_t> model;
     std::string left_out;
 };
 
-/// A quarter of what is allowed: while the list of corners grows, there are two of it.
+/// A quarter of the allowed memory: while the list of corners grows, there are two copies.
 std::size_t corners_max(const ModelOptions& options)
 {
     return options.memory_mib
@@ -51,7 +51,7 @@ std::size_t corners_max(const ModelOptions& options)
                : SharedGrids::kCornersMax;
 }
 
-/// For each model the first of those that it meets.
+/// For each model, the first of those that it meets.
 Result<std::vector<std::size_t>, Refusal> find_groups(Scene& scene, const ScenePlan& plan,
                                                       const ModelOptions& options)
 {
@@ -127,7 +127,7 @@ std::optional<Refusal> share_steps(Scene& scene, ScenePlan& plan, const fs::path
     return std::nullopt;
 }
 
-/// Keeps what vertices_beside() takes from: the vertices of models that others may meet.
+/// Stores the vertices of models that others may meet, for vertices_beside().
 std::optional<Refusal> find_borders(Scene& scene, ScenePlan& plan)
 {
     plan.borders_m.resize(plan.meshes.size());

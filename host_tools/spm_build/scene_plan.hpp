@@ -21,42 +21,42 @@
 namespace tactus::spm_build
 {
 
-/// Which meshes become models, and who shows them.
+/// Meshes that become models, and the objects that show them.
 struct ScenePlan
 {
-    std::vector<MeshUse> meshes;            ///< One a model.
-    std::vector<std::string> names;         ///< Likewise.
-    std::vector<Eigen::AlignedBox3d> boxes; ///< Likewise.
-    std::vector<std::size_t> faces;         ///< Likewise; of their meshes.
-    std::vector<GridChoice> grids;          ///< Likewise.
-    std::vector<std::size_t> groups;        ///< Likewise: the first model that shares its grid.
-    /// Likewise: the vertices that others of the group may meet, from the grid's place.
+    std::vector<MeshUse> meshes;            ///< Mesh of each model.
+    std::vector<std::string> names;         ///< Name of each model.
+    std::vector<Eigen::AlignedBox3d> boxes; ///< Box of each model's mesh.
+    std::vector<std::size_t> faces;         ///< Number of faces of each model's mesh.
+    std::vector<GridChoice> grids;          ///< Grid of each model.
+    std::vector<std::size_t> groups;        ///< First model that shares each model's grid.
+    /// Vertices of each model that others of its group may meet, relative to the grid's place.
     std::vector<std::vector<Vec3>> borders_m;
     PlacedModels scene;
-    std::vector<std::string> notes; ///< What is left out.
+    std::vector<std::string> notes; ///< Notes on ignored content.
 };
 
-/// Reads every mesh; equal ones become one model. Objects whose meshes have no surface are left
-/// out. The grids come with choose_grids().
+/// Reads every mesh; equal ones become one model. Objects whose meshes have no surface are ignored.
+/// choose_grids() sets the grids.
 [[nodiscard]] Result<ScenePlan, Refusal> plan_models(Scene& scene,
                                                      const std::filesystem::path& input);
 
-/// Lays each model's grid through the world's origin, as its first object sees it, and gives models
-/// that meet the finest of their steps.
+/// Puts each model's grid through the world's origin, from the view of its first object, and gives
+/// models that meet the finest of their steps.
 [[nodiscard]] std::optional<Refusal> choose_grids(Scene& scene, ScenePlan& plan,
                                                   const std::filesystem::path& input,
                                                   const ModelOptions& options);
 
-/// The boxes of the models that share a model's grid and may meet it, in the mesh's frame.
+/// Boxes, in the mesh's frame, of the models that share a model's grid and may meet it.
 [[nodiscard]] std::vector<Eigen::AlignedBox3d> boxes_beside(const ScenePlan& plan,
                                                             std::size_t model);
 
-/// Vertices of the other models of a model's group that may lie on its borders, in the mesh's
-/// frame.
+/// Vertices, in the mesh's frame, of the other models of a model's group that may lie on its
+/// borders.
 [[nodiscard]] std::vector<std::array<double, 3>> vertices_beside(const ScenePlan& plan,
                                                                  std::size_t model);
 
-/// A model's mesh, for messages.
+/// Name of a model's mesh in messages.
 [[nodiscard]] std::string source_of(const std::filesystem::path& input, const std::string& model);
 
 } // namespace tactus::spm_build

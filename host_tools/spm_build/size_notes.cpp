@@ -17,12 +17,12 @@ namespace tactus::spm_build
 namespace
 {
 
-/// What is meant to be touched is seldom smaller or larger.
+/// Range of the usual sizes of touched models.
 constexpr double kLeastUsual_m = 1e-3;
 constexpr double kMostUsual_m = 10.0;
-/// A terrain's least extent is at most this part of the largest; a mask or a relief has more.
+/// Maximum share of a terrain's least extent in its largest; a mask or a relief has more.
 constexpr double kTerrainRelief = 0.3;
-/// Farther from the origin than so many diagonals, a hand that starts there finds nothing.
+/// Diagonals between model and origin beyond which a user who starts there finds nothing.
 constexpr double kFarDiagonals = 10.0;
 
 bool is_usual(double diagonal_m)
@@ -30,7 +30,7 @@ bool is_usual(double diagonal_m)
     return diagonal_m >= kLeastUsual_m && diagonal_m <= kMostUsual_m;
 }
 
-/// Ways of --unit, such as "mm (0.39 m) or cm (3.9 m)"; empty: none makes the size usual.
+/// Values of --unit, such as "mm (0.39 m) or cm (3.9 m)"; empty: none makes the size usual.
 std::string better_units(const ModelPlace& place)
 {
     std::vector<std::string> ways;
@@ -54,8 +54,8 @@ std::string better_units(const ModelPlace& place)
 
 bool is_like_terrain(const TriangleMesh& mesh)
 {
-    Vec3 sum = Vec3::Zero();      // Of the areas that look along each axis,
-    Vec3 absolute = Vec3::Zero(); // and of these without their signs.
+    Vec3 sum = Vec3::Zero();      // Projected areas along each axis.
+    Vec3 absolute = Vec3::Zero(); // The same areas without their signs.
     for (const auto& [a, b, c] : mesh.faces)
     {
         const Vec3 from = place_of(mesh, a);
@@ -88,7 +88,7 @@ std::vector<std::string> size_notes(const TriangleMesh& mesh, const ModelPlace& 
                               "{}, --scale or --fit-diag",
                               place.diagonal_m, units));
     }
-    double nearest_m = 0.0; // Along the axis on which it is farthest from the box.
+    double nearest_m = 0.0; // Distance along the axis on which it is farthest from the box.
     for (const double low : place.low_corner_m)
     {
         nearest_m = std::max({nearest_m, low, -(low + place.diagonal_m)});
