@@ -13,26 +13,26 @@ namespace tactus
 
 class CommandLine;
 
-/// --extract and the options that say what and where to.
+/// Option --extract and the options for its content and output.
 class Extractor
 {
 public:
-    /// The extractor must outlive the parsing.
+    /// Declares the options. The extractor must outlive the parsing.
     void declare_options(CommandLine& line);
 
-    /// Why the options make no sense together; nothing when they do.
+    /// Fault of a combination of the options, if any.
     [[nodiscard]] std::optional<std::string> wrong_usage() const;
 
     [[nodiscard]] bool is_wanted() const { return wanted_; }
 
-    /// Writes the mesh of a model without faults and says on stderr what it is. Returns why it
-    /// could not be written.
+    /// Writes the mesh of a model without faults and describes it on stderr. Returns the reason if
+    /// it could not be written.
     [[nodiscard]] std::optional<std::string> run(const DecodedModel& model) const;
 
 private:
     bool wanted_{false};
-    ExtractRequest request_; ///< But the zone.
-    std::string region_;     ///< That, as text; empty: none.
+    ExtractRequest request_; ///< Request, except the zone.
+    std::string region_;     ///< Zone as text; empty: none.
     std::string output_;
 };
 

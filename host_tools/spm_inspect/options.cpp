@@ -30,7 +30,7 @@ void declare_options(CommandLine& line, Options& options)
     line.add_log_options();
 }
 
-/// What one option alone can't tell. Empty when all is well.
+/// Fault of a combination of options; empty if there is none.
 std::string check_together(const Options& options)
 {
     if (is_mesh_file_name(options.file))

@@ -15,19 +15,19 @@ class CommandLine;
 namespace tactus::spm_inspect
 {
 
-/// Everything that the command line says; checked, in SI.
+/// Options of the command line; checked, in SI units.
 struct Options
 {
     std::string file;
     bool json{false};
     bool regions{false};
     bool records{false};
-    std::string points; ///< File of those whose distances are asked for; empty: none.
+    std::string points; ///< File of points for distances; empty: none.
     Extractor extractor;
 };
 
-/// Reads the command line. Returns the exit code instead when the program should leave: after
-/// --help, --version, or wrong usage, which gets one line on stderr.
+/// Reads the command line. Returns the exit code instead if the program should leave: after --help,
+/// --version, or wrong usage, which gets one line on stderr.
 [[nodiscard]] std::variant<Options, int> parse_options(CommandLine& line, int argc, char** argv);
 
 } // namespace tactus::spm_inspect

@@ -14,12 +14,12 @@
 namespace tactus
 {
 
-/// Points as text, x y z in metres on each line; blank lines and those that begin with # say
-/// nothing. Refused by the number of the line.
+/// Reads points as text, x y z in metres on each line; blank lines and those that begin with # are
+/// ignored. A refusal names the line.
 [[nodiscard]] Result<std::vector<Vec3>, Refusal> parse_points(std::string_view text);
 
-/// Prints how far the points of a file are from a model's surface, a line each in their order, or
-/// all as one JSON object. Returns why it could not.
+/// Prints the distances of the points of a file to a model's surface, one line each in their order,
+/// or all as one JSON object. Returns the reason if it fails.
 [[nodiscard]] std::optional<std::string>
 print_distances(const std::string& model_file, const std::string& point_file, bool as_json);
 

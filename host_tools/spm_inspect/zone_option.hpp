@@ -12,12 +12,12 @@
 namespace tactus
 {
 
-/// What a zone may be made of, in metres.
+/// Limits of a zone's numbers, in metres.
 inline constexpr double kMaxZoneCoordinate_m = 1e9;
 inline constexpr double kMinZoneRadius_m = 1e-9;
 
-/// Reads sphere:x,y,z,r or box:x0,y0,z0,x1,y1,z1. Numbers are plain decimals, no spaces; a box's
-/// second corner is not below its first on any axis.
+/// Reads sphere:x,y,z,r or box:x0,y0,z0,x1,y1,z1. Numbers are plain decimals without spaces; a
+/// box's second corner must not be below its first on any axis.
 [[nodiscard]] Result<Zone, Refusal> parse_zone(std::string_view text);
 
 } // namespace tactus
