@@ -14,17 +14,17 @@
 namespace tactus
 {
 
-/// What a host serves and what the controllers on its domain do, in Prometheus' text format
+/// Metrics of a server and of the controllers on its domain, in Prometheus' text format
 /// (docs/view.md).
 [[nodiscard]] std::string host_metrics(dds::DdsHost& host, const dds::TelemetryReader& controllers);
 
-/// Keeps /metrics as it is now, to the second.
+/// Keeps /metrics up to date, to the second.
 class HostMetrics
 {
 public:
     explicit HostMetrics(std::unique_ptr<web::MetricsServer> server) : server_(std::move(server)) {}
 
-    /// Call it often, after the reader's poll(); it works when it is due.
+    /// Updates the metrics if due. Call it often, after the reader's poll().
     void update(dds::DdsHost& host, const dds::TelemetryReader& controllers);
 
 private:

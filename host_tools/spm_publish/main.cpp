@@ -39,24 +39,24 @@ namespace
 /// An object that may be shown.
 struct Prop
 {
-    ShownObject shown; ///< Its model's hash is known once the models are open.
+    ShownObject shown; ///< Object; its model's hash is set once the models are open.
     std::size_t model{0};
     bool is_there_from_start{false};
-    std::optional<std::uint32_t> number{}; ///< While it is shown.
+    std::optional<std::uint32_t> number{}; ///< Number while it is shown.
 };
 
-/// What a host does besides serving; each may be none.
+/// Optional parts of the server.
 struct Extras
 {
     std::vector<Prop> props;
     std::optional<PosePlayer> player;
-    std::unique_ptr<dds::TelemetryReader> controllers; ///< Where somebody wants to know of them.
+    std::unique_ptr<dds::TelemetryReader> controllers; ///< Present only if monitoring is requested.
     std::optional<Watch> watch;
     std::optional<HostMetrics> metrics;
-    Namesakes* namesakes{nullptr}; ///< None where they can't be looked for.
+    Namesakes* namesakes{nullptr}; ///< Null if the search for them is impossible.
 };
 
-/// Puts a scene's models in the place of its file, and tells of its objects.
+/// Replaces a scene's file by its models, and returns its objects.
 Result<std::vector<Prop>, Refusal> open_scene(Options& options)
 {
     const auto scene = read_placed_models(options.files.front());
@@ -81,7 +81,7 @@ Result<std::vector<Prop>, Refusal> open_scene(Options& options)
     return props;
 }
 
-/// Without a scene each model may be shown once, under its own name.
+/// Objects without a scene: each model may be shown once, under its own name.
 std::vector<Prop> props_of(const std::vector<std::string>& names)
 {
     std::vector<Prop> props;
@@ -92,7 +92,7 @@ std::vector<Prop> props_of(const std::vector<std::string>& names)
     return props;
 }
 
-/// Reads all chunks; the rest was looked at when the file was opened.
+/// Reads all chunks; the rest was checked when the file was opened.
 std::optional<Refusal> find_damage(const ModelStore& store)
 {
     std::vector<std::byte> coded;
@@ -144,7 +144,7 @@ void print_models(ServingReport& report, dds::DdsHost& host, const std::string& 
     report.print_line(fmt::format("ready on DDS domain {}; end with Ctrl-C", domain));
 }
 
-/// Nothing when no pose file is given.
+/// Lines of the pose file; empty if none is given.
 Result<std::vector<PoseLine>, Refusal> read_poses(const Options& options,
                                                   const std::vector<ScriptedObject>& objects)
 {
@@ -202,7 +202,7 @@ Result<Extras, Refusal> make_extras(const Options& options, dds::DdsHost& host,
     return extras;
 }
 
-/// With --metrics. Tells where they are.
+/// Starts the metrics if --metrics is given, and prints their address.
 std::optional<Refusal> start_metrics(const Options& options, dds::DdsHost& host, Extras& extras,
                                      ServingReport& report)
 {
@@ -219,11 +219,11 @@ std::optional<Refusal> start_metrics(const Options& options, dds::DdsHost& host,
     report.print_line(
         fmt::format("metrics on http://127.0.0.1:{}/metrics", server.value()->port()));
     extras.metrics.emplace(std::move(server).value());
-    extras.metrics->update(host, *extras.controllers); // Before anybody asks.
+    extras.metrics->update(host, *extras.controllers); // Metrics exist before the first request.
     return std::nullopt;
 }
 
-/// How long the host may wait: until a pose is due.
+/// Maximum wait of the server: until a pose is due.
 std::chrono::milliseconds longest_wait(const Extras& extras, double now_s)
 {
     constexpr std::chrono::milliseconds least{1};
@@ -253,13 +253,13 @@ void stand(Prop& prop, const std::optional<Pose>& pose, dds::ObjectPublisher& ob
     if (pose && prop.number)
     {
         const auto moved = objects.move(*prop.number, *pose);
-        TACTUS_ASSERT(moved.has_value()); // Likewise.
+        TACTUS_ASSERT(moved.has_value()); // The file was checked.
     }
     else if (pose)
     {
         prop.shown.pose = *pose;
         const auto number = objects.show(prop.shown);
-        TACTUS_ASSERT(number.has_value()); // There are no more props than a host may show.
+        TACTUS_ASSERT(number.has_value()); // There are no more props than a server may show.
         prop.number = number.value();
     }
     else if (prop.number)
@@ -269,7 +269,7 @@ void stand(Prop& prop, const std::optional<Pose>& pose, dds::ObjectPublisher& ob
     }
 }
 
-/// What the file says by now: objects come, move, feel otherwise and go.
+/// Plays the lines that are due: objects are added, moved, changed and removed.
 void play(Extras& extras, dds::ObjectPublisher& objects, double now_s)
 {
     for (const PoseLine& line : extras.player->take_due(now_s))
@@ -375,7 +375,7 @@ int run(int argc, char** argv)
         return line.fail(host.error().text);
     }
     auto namesakes = Namesakes::create(*host.value(), options.scene, warn);
-    if (!namesakes) // A certificate may not allow it.
+    if (!namesakes) // A certificate may forbid it.
     {
         warn("other servers of these names are not looked for: " + namesakes.error().text);
     }

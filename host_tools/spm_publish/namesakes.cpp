@@ -11,7 +11,7 @@ namespace
 {
 
 constexpr std::chrono::milliseconds kLookEvery{100};
-/// Lines in all: so many strangers don't fill the log.
+/// Maximum number of log lines, so that many unknown servers do not fill the log.
 constexpr std::size_t kMaxTold = 64;
 
 } // namespace

@@ -17,16 +17,17 @@
 namespace tactus
 {
 
-/// Looks for other servers on the domain that offer a model or a scene under a name of ours, and
-/// writes a line for each: a controller takes the one that answers first.
+/// Finds other servers on the domain that offer a model or a scene under one of our names, and logs
+/// each: a controller takes the one that answers first.
 class Namesakes
 {
 public:
-    /// The host must outlive it, and find others: Party::both, or the user's configuration.
+    /// The host must outlive it and be able to find others: Party::both, or the user's
+    /// configuration.
     [[nodiscard]] static Result<Namesakes, Refusal> create(const dds::DdsHost& host,
                                                            std::string scene, Log log);
 
-    /// Call it often; it looks when it is due.
+    /// Searches if due. Call it often.
     void update();
 
 private:
@@ -42,7 +43,8 @@ private:
     RateLimitedLog log_;
     std::uint64_t seen_{0};
     Clock::time_point looked_{};
-    std::set<std::pair<std::uint64_t, std::string>> told_; ///< Of which host, and what.
+    /// Server and name of the logged offers.
+    std::set<std::pair<std::uint64_t, std::string>> told_;
 };
 
 } // namespace tactus

@@ -68,7 +68,7 @@ void declare_options(CommandLine& line, Options& options)
     line.add_log_options();
 }
 
-/// Files that are no models, and what is asked for besides a scene. Empty when all is well.
+/// Fault of the files: no models, or options that a scene does not take; empty if there is none.
 std::string check_files(const Options& options)
 {
     for (const std::string& file : options.files)
@@ -94,7 +94,7 @@ std::string check_files(const Options& options)
     return "";
 }
 
-/// Empty when all is well.
+/// Sets the names; returns the fault, or empty.
 std::string take_names(Options& options)
 {
     if (options.has_scene)
@@ -114,7 +114,7 @@ std::string take_names(Options& options)
     return "";
 }
 
-/// What one option alone can't tell. Empty when all is well.
+/// Fault of a combination of options; empty if there is none.
 std::string check_together(Options& options)
 {
     options.has_scene = std::ranges::any_of(options.files, has_scene_extension);

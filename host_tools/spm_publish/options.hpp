@@ -20,29 +20,30 @@ class CommandLine;
 namespace tactus::spm_publish
 {
 
-/// Everything that the command line says; checked, in SI.
+/// Options of the command line; checked, in SI units.
 struct Options
 {
     std::vector<std::string> files; ///< Models, or one scene.
     bool has_scene{false};
-    std::vector<std::string> names; ///< Of the models, in the order of the files; none of a scene.
-    std::string scene;              ///< Empty: no name.
+    /// Names of the models, in the order of the files; none for a scene.
+    std::vector<std::string> names;
+    std::string scene; ///< Name of the scene; empty: none.
     std::uint32_t domain{0};
     std::optional<double> seconds;
-    std::string poses_path; ///< Empty: no file moves anything.
+    std::string poses_path; ///< Pose file; empty: none.
     bool poses_loop{false};
     std::optional<double> poses_rate_hz;
     bool watch{false};
     std::optional<std::uint32_t> metrics_port;
 };
 
-/// The names that models of these files have: the given ones, and of further files the stems. A
-/// line when one is missing, wrong or there twice.
+/// Names of the models in these files: the given ones, then the stems of further files. Refused if
+/// one is missing, invalid or a duplicate.
 [[nodiscard]] Result<std::vector<std::string>, Refusal>
 choose_names(std::span<const std::string> files, std::span<const std::string> given);
 
-/// Reads the command line. Returns the exit code instead when the program should leave: after
-/// --help, --version, or wrong usage, which gets one line on stderr.
+/// Reads the command line. Returns the exit code instead if the program should leave: after --help,
+/// --version, or wrong usage, which gets one line on stderr.
 [[nodiscard]] std::variant<Options, int> parse_options(CommandLine& line, int argc, char** argv);
 
 } // namespace tactus::spm_publish

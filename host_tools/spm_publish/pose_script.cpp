@@ -27,7 +27,7 @@ constexpr std::size_t kFieldsMin = 9;
 constexpr std::size_t kFieldsMax = 10;
 constexpr std::string_view kSpaces = " \t";
 
-/// One more than a line may have at most, so that too many are seen.
+/// Fields of a line, up to one more than allowed, so that an excess is detected.
 std::vector<std::string_view> fields_of(std::string_view line)
 {
     std::vector<std::string_view> fields;
@@ -60,8 +60,7 @@ std::string refusal_text(PoseRefusal refusal)
     }
 }
 
-/// The first three of eight numbers are the translation, then the rotation, then the scale, which
-/// may be left out.
+/// Pose of eight numbers: translation (3), rotation (4), and the optional scale.
 Result<Pose, Refusal> parse_pose(std::span<const std::string_view> fields, double scale)
 {
     std::array<double, 8> numbers{0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, scale};
@@ -101,7 +100,7 @@ Pose pose_between(const Pose& from, const Pose& to, double share)
     return pose;
 }
 
-/// The first of them, for who typed another.
+/// First names of the list, for a message about an unknown one.
 std::string names_of(std::span<const ScriptedObject> objects)
 {
     constexpr std::size_t kNamed = 8;
@@ -114,7 +113,7 @@ std::string names_of(std::span<const ScriptedObject> objects)
                                    : names;
 }
 
-/// `objects` have the scales that they have by then.
+/// Reads one line. `objects` have the scales at that time.
 Result<PoseLine, Refusal> parse_line(std::string_view text, std::span<ScriptedObject> objects)
 {
     const std::vector<std::string_view> fields = fields_of(text);
@@ -236,7 +235,7 @@ Result<std::vector<PoseLine>, Refusal> interpolated(std::span<const PoseLine> li
     std::vector<const PoseLine*> before(objects, nullptr);
     for (const PoseLine& line : lines)
     {
-        // What an object feels like does not move it.
+        // A change of material is no motion.
         const PoseLine* last = line.material ? nullptr : std::exchange(before[line.object], &line);
         const bool is_between = last != nullptr && last->pose && line.pose;
         const double steps = is_between ? std::floor((line.time_s - last->time_s) * rate_hz) : 0.0;
@@ -248,7 +247,7 @@ Result<std::vector<PoseLine>, Refusal> interpolated(std::span<const PoseLine> li
         for (double step = 1.0; step <= steps; ++step)
         {
             const double time_s = last->time_s + step / rate_hz;
-            if (time_s < line.time_s) // Not beside the line itself.
+            if (time_s < line.time_s) // No pose next to the line itself.
             {
                 const double share = (time_s - last->time_s) / (line.time_s - last->time_s);
                 all.push_back(
@@ -271,10 +270,11 @@ PosePlayer::PosePlayer(std::vector<PoseLine> lines, std::size_t objects, bool lo
 std::vector<PoseLine> PosePlayer::take_due(double now_s)
 {
     const double round_s = lines_.back().time_s;
-    std::vector<const PoseLine*> newest(2 * objects_, nullptr); // Of feeling, then of standing.
+    // Newest material and newest pose by object.
+    std::vector<const PoseLine*> newest(2 * objects_, nullptr);
     if (loops_ && now_s - round_start_s_ > 2.0 * round_s)
     {
-        // A stall of whole rounds: they aren't made up for.
+        // Whole rounds missed in a stall are skipped.
         round_start_s_ += (std::floor((now_s - round_start_s_) / round_s) - 1.0) * round_s;
     }
     for (auto due_s = next_s(); due_s && *due_s <= now_s; due_s = next_s())

@@ -38,7 +38,7 @@ void ServingReport::print_line(const std::string& line, LogLevel level)
         return;
     }
     clear_line();
-    // What goes wrong in serving is no failure of the program: it has no name before it.
+    // A fault in serving is no failure of the program, so the text has no program name before it.
     const LogLevel shown = log_style().is_json ? level : LogLevel::info;
     print_out(log_text(log_style(), shown, "spm_publish", line, std::chrono::system_clock::now()) +
               '\n');

@@ -12,8 +12,8 @@
 namespace tactus
 {
 
-/// Shows on stdout what a host serves at present: on a terminal one line that is written over, a
-/// few times a second; elsewhere a plain line every few seconds while something is sent.
+/// Prints the server's present work on stdout: on a terminal one line that is overwritten a few
+/// times a second; otherwise a plain line every few seconds while something is sent.
 class ServingReport
 {
 public:
@@ -23,9 +23,9 @@ public:
     ServingReport(const ServingReport&) = delete;
     ServingReport& operator=(const ServingReport&) = delete;
 
-    /// Prints a line of its own, above the one that is written over, in the style of the log.
+    /// Prints a separate line above the overwritten one, in the style of the log.
     void print_line(const std::string& line, LogLevel level = LogLevel::info);
-    /// Call it often; it prints when it is due.
+    /// Prints if due. Call it often.
     void update(const dds::DdsHost& host);
 
 private:

@@ -64,7 +64,7 @@ std::string model_text(const ModelIdentity& identity, const ModelTelemetry& mode
     return text + (model.host_gone ? " host gone" : "");
 }
 
-/// Of those that are told of; none where all are here.
+/// Stages of the models in telemetry; empty if all are resident.
 std::string stages_text(const Telemetry& telemetry)
 {
     std::array<std::uint32_t, kModelStages> counts{};
@@ -126,7 +126,7 @@ void Watch::update(const dds::TelemetryReader& controllers, const dds::DdsHost& 
     print_refused(host, report);
 }
 
-/// Controllers of one name together.
+/// Prints controllers, those of one name together.
 void Watch::print_served(const dds::DdsHost& host, double seconds, ServingReport& report)
 {
     std::map<std::string, dds::DdsHost::Subscriber> all;
@@ -149,7 +149,7 @@ void Watch::print_served(const dds::DdsHost& host, double seconds, ServingReport
     served_ = std::move(all);
 }
 
-/// Of the first few; the rest of a crowd is counted.
+/// Prints refusals of the first few participants and counts the others.
 void Watch::print_refused(const dds::DdsHost& host, ServingReport& report)
 {
     constexpr std::size_t kMostLines = 8;

@@ -13,15 +13,15 @@
 namespace tactus
 {
 
-/// What a controller does at present, in one line: the names in it are valid ones.
+/// One line about a controller's present state; names in it are valid ones.
 [[nodiscard]] std::string watch_line(const dds::WatchedController& controller);
 
-/// Prints once a second: a line for each controller on the domain, one for each that this host
-/// sends to, and one for each participant of which something was refused in that second.
+/// Prints once a second: a line for each controller on the domain, one for each that this server
+/// sends to, and one for each participant with refusals in that second.
 class Watch
 {
 public:
-    /// Call it often, after the reader's poll(); it prints when it is due.
+    /// Prints if due. Call it often, after the reader's poll().
     void update(const dds::TelemetryReader& controllers, const dds::DdsHost& host,
                 ServingReport& report);
 
@@ -32,8 +32,10 @@ private:
     void print_refused(const dds::DdsHost& host, ServingReport& report);
 
     Clock::time_point last_{Clock::now()};
-    std::map<std::string, dds::DdsHost::Subscriber> served_; ///< As printed last, by name;
-    std::map<dds::ParticipantId, std::uint64_t> refused_;    ///< likewise, of each in all.
+    /// Subscribers as last printed, by name.
+    std::map<std::string, dds::DdsHost::Subscriber> served_;
+    /// Total refusals as last printed, by participant.
+    std::map<dds::ParticipantId, std::uint64_t> refused_;
 };
 
 } // namespace tactus
