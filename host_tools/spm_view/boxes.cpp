@@ -43,7 +43,7 @@ std::string bytes_of(const std::vector<Aabb>& boxes)
     return bytes;
 }
 
-/// As the forest tells its tree.
+/// The face as the controller's forest passes it to its tree.
 ChangedFace face_of(const DecodedModel& model, const Replay& replay, FaceId id, PrimId prim)
 {
     const ModelCounts counts = model.header().counts();
@@ -87,7 +87,7 @@ Result<std::string, Refusal> tree_box_bytes(const DecodedModel& model,
     {
         return *refusal;
     }
-    // A block may hold a single face, and a node at least two of what is below it.
+    // A block may have a single face, and a node at least two children.
     const std::uint32_t faces = replay.face_count();
     const TreeCapacities capacities{faces, faces + AbTree::kReserve, faces + AbTree::kReserve};
     Arena measure = Arena::measuring();
@@ -124,7 +124,7 @@ Result<std::string, Refusal> chunk_box_bytes(KnownModel& model, std::span<const 
             return Refusal{"the front has a chunk that the model has not"};
         }
         const ContentKey key{ContentKind::index_page, chunk.value >> kChunksPerIndexPageLog2};
-        if (keys.empty() || keys.back() != key) // They are ascending.
+        if (keys.empty() || keys.back() != key) // Keys ascend.
         {
             keys.push_back(key);
         }

@@ -11,27 +11,27 @@
 #include <string>
 #include <vector>
 
-// Any thread, but not the haptic one: calls allocate, and work on their arguments alone.
+// Any thread, except the haptic one: calls allocate, and work on their arguments alone.
 //
 // Bytes, little-endian: u32 boxes n, f32 low and high[6 n], of the model's frame, in metres.
 namespace tactus::view
 {
 
-/// Deepest level of a tree that is told: beyond it there are blocks alone.
+/// Deepest tree level in an answer: beyond it there are only blocks.
 inline constexpr std::uint32_t kTreeLevelsMax = 24;
 
-/// The boxes of the controller's AB-Tree, so many levels of nodes below its root, and the blocks
-/// that lie above: the tree depends on nothing but the faces, so it is built here of the same
-/// pages. Refused as cut_bytes().
+/// Boxes of the controller's AB-Tree, `level` levels of nodes below its root, and the blocks above.
+/// The tree depends only on the faces, so it is built here from the same pages. Refused like
+/// cut_bytes().
 [[nodiscard]] Result<std::string, Refusal>
 tree_box_bytes(const DecodedModel& model, std::span<const FrontPage> pages, std::uint32_t level);
 
-/// The influence boxes of chunks, which are ascending: where what a controller has loaded, or
-/// wishes for, is of use. Waits for index pages (KnownModel::bring). Refused where the chunks
-/// aren't the model's.
+/// Influence boxes of chunks, which must ascend: the regions in which a controller's resident or
+/// requested chunks are of use. Waits for index pages (KnownModel::bring). Refused if the chunks
+/// are not the model's.
 [[nodiscard]] Result<std::string, Refusal> chunk_box_bytes(KnownModel& model,
                                                            std::span<const ChunkId> chunks);
-/// The chunks of the pages.
+/// Chunks of the pages.
 [[nodiscard]] std::vector<ChunkId> chunks_of(std::span<const FrontPage> pages);
 
 } // namespace tactus::view

@@ -26,7 +26,7 @@ void append(std::string& bytes, const T& value)
     bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
 }
 
-/// Refused where the model has no such records.
+/// Refuses pages with records that the model lacks.
 std::optional<Refusal> look_at(const ModelCounts& counts, std::span<const FrontPage> pages)
 {
     for (const FrontPage& page : pages)
@@ -46,7 +46,7 @@ std::optional<Refusal> look_at(const ModelCounts& counts, std::span<const FrontP
     return std::nullopt;
 }
 
-/// In an order in which they can be split: by depth, then by number.
+/// Split records in an order in which they can be split: by depth, then by number.
 std::vector<RecordId> split_records(const DecodedModel& model, std::span<const FrontPage> pages)
 {
     std::vector<RecordId> records;
@@ -63,7 +63,7 @@ std::vector<RecordId> split_records(const DecodedModel& model, std::span<const F
     return records;
 }
 
-/// Those that some face uses, and where each id is among them.
+/// Appends the vertices that faces use; returns the place of each id among them.
 std::vector<std::uint32_t> append_vertices(const DecodedModel& model, const Replay& replay,
                                            std::string& bytes)
 {

@@ -25,11 +25,12 @@ namespace tactus::view
 namespace
 {
 
-/// What recordings have of a model: its base mesh and what came.
+/// Data of a model in recordings: its base mesh and the pieces received.
 class RecordedPieces final : public KnownModel
 {
 public:
-    using Source = std::pair<std::shared_ptr<const Recording>, std::uint32_t>; ///< And its number.
+    /// Recording, and number of the model in it.
+    using Source = std::pair<std::shared_ptr<const Recording>, std::uint32_t>;
 
     RecordedPieces(Source source, std::string name)
         : sources_{std::move(source)}
@@ -38,7 +39,7 @@ public:
         , hash_(model_hash(model_of(sources_[0]).header))
     {
     }
-    /// The same model in another recording. Before anybody reads.
+    /// Adds the same model in another recording; call it before any read.
     void add(Source source) { sources_.push_back(std::move(source)); }
 
     [[nodiscard]] const std::string& name() const noexcept override { return name_; }
@@ -79,7 +80,7 @@ private:
     ContentHash hash_;
 };
 
-/// Of which more than one recording may have pieces.
+/// Puts a model on the shelf; several recordings may have pieces of it.
 void put_on(ModelShelf& shelf, const std::shared_ptr<RecordedPieces>& model,
             RecordedPieces::Source source)
 {
@@ -91,7 +92,7 @@ void put_on(ModelShelf& shelf, const std::shared_ptr<RecordedPieces>& model,
     shelf.add(model);
 }
 
-/// In the words of hrtc's --tool, as far as a view can draw it.
+/// Shape in the form of hrtc's --tool, as far as a view can draw it.
 std::string shape_of(const ToolSpec& tool)
 {
     if (const auto* segment = std::get_if<Segment>(&tool.core))
@@ -109,7 +110,7 @@ std::string shape_of(const ToolSpec& tool)
                                                         : "mesh";
 }
 
-/// Names of controllers are such that no text format needs an escape.
+/// Name without characters that a text format must escape, as for controllers.
 std::string name_of(const std::string& path)
 {
     std::string name = std::filesystem::path(path).filename().string();
@@ -178,13 +179,13 @@ std::uint64_t hash_of(const std::vector<DoorEvent>& events)
 
 } // namespace
 
-/// Takes what each frame shows while the recording is replayed.
+/// Collects the data of each frame while the recording is replayed.
 struct Film::Maker
 {
     Film& film;
     const RecordedSetup& setup;
-    Frame* frame{nullptr};         ///< From the replay's start on.
-    std::vector<PageMeta> slots{}; ///< As of the frame before.
+    Frame* frame{nullptr};         ///< Set from the replay's start on.
+    std::vector<PageMeta> slots{}; ///< Slots in the previous frame.
 
     void take(std::uint64_t number, const RecordedFrame& given, const FrameOutput& returned)
     {
@@ -227,7 +228,7 @@ struct Film::Maker
     }
 
 private:
-    /// As hrtc counts: decided before exact, within tolerance, bracket, stale.
+    /// Worst kind in the order of hrtc's counts: decided, exact, within tolerance, bracket, stale.
     static AnswerKind worst_of(std::span<const PairOutput> pairs)
     {
         constexpr std::array order{AnswerKind::stale, AnswerKind::bracket,
@@ -242,7 +243,7 @@ private:
         return AnswerKind::decided;
     }
 
-    /// Pages that leave go first: another slot may have the same chunk now.
+    /// Records pages that are removed first, since another slot may have the same chunk now.
     void take_pages(std::uint64_t number)
     {
         const std::span<const PageMeta> metas = frame->pools().cache.pages.metas;
@@ -447,7 +448,7 @@ FrontPointer Film::front(std::uint64_t frame) const
 namespace
 {
 
-/// The largest distance between the places, or 0.
+/// The largest distance between the positions, or 0.
 double apart(const std::array<double, 3>& a, const std::array<double, 3>& b)
 {
     return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
@@ -518,7 +519,7 @@ namespace
 struct Kind
 {
     const char* what;
-    const char* unit; ///< Null: it differs or it doesn't.
+    const char* unit; ///< Unit; null: the difference has no amount.
     double per_unit;
 };
 

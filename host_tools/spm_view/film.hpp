@@ -23,21 +23,21 @@
 namespace tactus::view
 {
 
-/// A recording that was run through once: of every frame what a viewer would have heard of it, so
-/// that any frame can be shown at once. Some 400 bytes a frame of one tool, and what changes. One
-/// thread makes it, any reads it.
+/// A recording prepared for a viewer: the data that a viewer would have received in each frame, so
+/// that any frame can be shown at once. Some 400 bytes a frame with one tool, and the changes. One
+/// thread creates it, any thread reads it.
 class Film
 {
 public:
-    /// Replays the recording, which takes the time of its frames, and puts its models on the shelf;
-    /// ends early, with what there is by then, when `goes_on` returns false. `number` tells films
-    /// apart. Refused when the file is, or no frame can be made of it or it has none.
+    /// Replays the recording, which takes the time of its frames, and puts its models on the shelf.
+    /// Ends early, with the frames so far, if `goes_on` returns false. `number` distinguishes
+    /// films. Refused if the file is, if no frame can be created from it or it has none.
     [[nodiscard]] static Result<std::unique_ptr<Film>, Refusal>
     develop(const std::string& path, std::uint8_t number, ModelShelf& shelf,
             const std::function<bool()>& goes_on);
 
-    /// The controller in one frame, the last one for numbers beyond: what it told, its front with
-    /// the frame's number as serial, and its objects.
+    /// State of the controller in one frame, the last one for numbers beyond: its telemetry, its
+    /// refinement state with the frame's number as serial, and its objects.
     [[nodiscard]] LiveController at(std::uint64_t frame) const;
     [[nodiscard]] FrontPointer front(std::uint64_t frame) const;
 
@@ -45,45 +45,46 @@ public:
     [[nodiscard]] const std::string& name() const noexcept { return name_; }
     [[nodiscard]] std::int64_t period_ns() const noexcept { return period_ns_; }
     [[nodiscard]] std::uint64_t frames() const noexcept { return moments_.size(); }
-    /// Why it ends where it ends, where that is not the recording's end; else empty.
+    /// Reason why the film ends before the recording does; otherwise empty.
     [[nodiscard]] const std::string& note() const noexcept { return note_; }
 
-    /// What differs in a frame of two films, and by how much.
+    /// Difference of two films in a frame.
     struct Gap
     {
         bool differs{false};
-        double amount{0.0}; ///< In metres, newtons or as many.
+        double amount{0.0}; ///< Amount, in metres, newtons or a count.
     };
-    /// In the order in which one follows from the other.
+    /// Kinds of difference, in the order of cause and effect.
     enum class What : std::uint8_t
     {
-        hand,    ///< Where devices are.
-        scene,   ///< Objects that come, move or go.
-        pieces,  ///< What came from hosts.
-        faces,   ///< Which are active.
-        answers, ///< Distances: brackets and their kinds.
-        forces,  ///< That went out.
+        hand,    ///< Poses of devices.
+        scene,   ///< Objects added, moved or removed.
+        pieces,  ///< Pieces received from servers.
+        faces,   ///< Active faces.
+        answers, ///< Distances: their bounds and kinds.
+        forces,  ///< Forces sent.
     };
     static constexpr std::size_t kWhats = 6;
-    /// Both have the frame.
+    /// Compares a frame, which both films must have.
     [[nodiscard]] static Gap compare(const Film& a, const Film& b, std::uint64_t frame, What what);
 
 private:
-    /// Of one frame; tools and pairs follow one another in vectors of their own.
+    /// Data of one frame; tools and pairs are in separate vectors.
     struct Moment
     {
         std::int64_t time_ns{0};
-        std::uint64_t scene{0};                 ///< Hash of the frame's changes,
-        std::uint64_t pieces{0};                ///< of what came,
-        std::uint64_t faces{0};                 ///< and of the models' state hashes.
-        std::array<std::uint32_t, 5> answers{}; ///< Frames so far, by the worst answer's kind.
+        std::uint64_t scene{0};  ///< Hash of the frame's changes of the scene.
+        std::uint64_t pieces{0}; ///< Hash of the frame's arrivals.
+        std::uint64_t faces{0};  ///< Hash of the models' state hashes.
+        /// Number of frames so far by the worst answer's kind.
+        std::array<std::uint32_t, 5> answers{};
         std::uint32_t faults{0};
         std::uint32_t faults_seen{0};
         std::uint32_t pairs_end{0};
         std::uint32_t regions_end{0};
         AnswerKind kind{AnswerKind::decided};
     };
-    /// A page's split records; none while it isn't here.
+    /// Split records of a page; none while it is not resident.
     using Page = std::optional<std::uint64_t>;
     using PageName = std::pair<std::uint32_t, std::uint32_t>; ///< Model and chunk.
     struct Maker;
@@ -108,27 +109,27 @@ private:
     std::string note_;
     std::int64_t period_ns_{1};
     std::size_t tool_count_{0};
-    std::vector<FrontTool> shapes_;     ///< One a tool.
-    std::vector<ModelIdentity> models_; ///< One a model.
-    std::vector<Moment> moments_;       ///< One a frame.
-    std::vector<ToolTelemetry> tools_;  ///< tool_count_ a frame.
-    std::vector<PairTelemetry> pairs_;  ///< Up to a moment's pairs_end.
-    std::vector<FrontRegion> regions_;  ///< Up to a moment's regions_end.
+    std::vector<FrontTool> shapes_;     ///< Shapes by tool.
+    std::vector<ModelIdentity> models_; ///< Identities by model.
+    std::vector<Moment> moments_;       ///< Moments by frame.
+    std::vector<ToolTelemetry> tools_;  ///< Tools by frame, tool_count_ each.
+    std::vector<PairTelemetry> pairs_;  ///< Pairs; those of a moment end at its pairs_end.
+    std::vector<FrontRegion> regions_;  ///< Regions; those of a moment end at its regions_end.
     Timeline<Budgets, SameBudgets> budgets_;
-    std::vector<Timeline<ModelTelemetry>> model_states_; ///< One a model.
+    std::vector<Timeline<ModelTelemetry>> model_states_; ///< States by model.
     std::map<PageName, Timeline<Page>> pages_;
-    std::map<std::uint32_t, Timeline<std::optional<SeenObject>>> objects_; ///< By number.
+    std::map<std::uint32_t, Timeline<std::optional<SeenObject>>> objects_; ///< Objects by number.
 };
 
-/// What two films have of one kind that differs.
+/// Difference of two films in one kind.
 struct FilmDifference
 {
-    std::string what;       ///< In words.
-    std::string how;        ///< Likewise: how much at first, and at most.
-    std::uint64_t frame{0}; ///< The first one.
+    std::string what;       ///< Kind of the difference, as text.
+    std::string how;        ///< First amount and maximum, as text.
+    std::uint64_t frame{0}; ///< First frame.
 };
 
-/// One recording, or two to be compared.
+/// One recording, or two for comparison.
 class Films
 {
 public:
@@ -138,16 +139,16 @@ public:
     {
         return films_;
     }
-    /// Of the longest.
+    /// Number of frames of the longest film.
     [[nodiscard]] std::uint64_t frames() const noexcept;
-    /// What first differs, in the order of Film::What, and the length; none of one film.
+    /// First differences, in the order of Film::What, and that of the length; none for one film.
     [[nodiscard]] const std::vector<FilmDifference>& differences() const noexcept
     {
         return differences_;
     }
-    /// All of them in one frame; serial and fronts as Film::at() has them.
+    /// All films in one frame; serial and refinement states as in Film::at().
     [[nodiscard]] Snapshot at(std::uint64_t frame) const;
-    /// Null where there is no such film or frame.
+    /// Null if there is no such film or frame.
     [[nodiscard]] FrontPointer front(const std::string& controller, std::uint64_t frame) const;
 
 private:

@@ -21,7 +21,7 @@ struct Words
     const char* back; ///< "comes back ..."
 };
 
-/// In the order of ForceOff's bits (docs/safety.md).
+/// Texts in the order of ForceOff's bits (docs/safety.md).
 constexpr auto kWords = std::to_array<Words>({
     {"the hand is too fast", "when it is slower than half the limit"},
     {"the device got no force in time and cut it off", "when frames are in time again"},

@@ -11,8 +11,8 @@
 namespace tactus::view
 {
 
-/// What becomes of a tool's force, for people: "on", or "off: " with each cause and what brings the
-/// force back. `models` are those of the controller. Any thread.
+/// Text about a tool's force: "on", or "off: " with each cause and the condition for its return.
+/// `models` are those of the controller. Any thread.
 [[nodiscard]] std::string force_words(const FrontTool& tool, const ToolTelemetry& telemetry,
                                       std::span<const ModelTelemetry> models);
 

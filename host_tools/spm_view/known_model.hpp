@@ -16,8 +16,7 @@
 namespace tactus::view
 {
 
-/// A model whose faces the viewer can rebuild, wherever its pieces are: in a file, with a host, in
-/// a recording. Any thread.
+/// A model whose faces the viewer can rebuild, from a file, a server or a recording. Any thread.
 class KnownModel
 {
 public:
@@ -28,16 +27,16 @@ public:
     KnownModel(KnownModel&&) = delete;
     KnownModel& operator=(KnownModel&&) = delete;
 
-    /// Of its file, or as its host calls it.
+    /// Name from its file or from its server.
     [[nodiscard]] virtual const std::string& name() const noexcept = 0;
     [[nodiscard]] virtual const ContentHash& hash() const noexcept = 0;
     [[nodiscard]] virtual const ModelHeader& header() const noexcept = 0;
 
-    /// Waits until these pieces can be read, a second or two at most: refused then, in words that
-    /// say what is missing. The keys are the model's.
+    /// Waits until these pieces can be read, a second or two at most; then refused with the missing
+    /// ones. The keys must be the model's.
     [[nodiscard]] virtual std::optional<Refusal> bring(std::span<const ContentKey> keys) = 0;
-    /// A piece in its coded form, verified against its hash; refused where it isn't here. May wait
-    /// for a disk.
+    /// Reads a piece in its coded form, verified against its hash; refused if it is missing. May
+    /// wait for a disk.
     [[nodiscard]] virtual Result<Done, Refusal> read(ContentKey key,
                                                      std::vector<std::byte>& coded) = 0;
 };

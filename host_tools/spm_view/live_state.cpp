@@ -106,7 +106,8 @@ void LiveState::keep(const dds::SeenFront& front)
     add_objects(kept, front.front);
 }
 
-/// Of the numbers that the front went through those that it doesn't list are gone.
+/// Updates the objects. An object in the listed range of numbers that the refinement state lacks
+/// was removed.
 void LiveState::add_objects(Kept& kept, const Front& front)
 {
     kept.objects.erase(kept.objects.lower_bound(front.sweep_begin),

@@ -22,57 +22,58 @@ namespace tactus::view
 
 using FrontPointer = std::shared_ptr<const dds::SeenFront>;
 
-/// An object where it was last seen.
+/// An object and its last known pose.
 struct SeenObject
 {
     FrontObject object;
     ContentHash model{};
-    std::string name{}; ///< Its own, of a recording; may be empty.
+    std::string name{}; ///< Name in a recording; may be empty.
 
     bool operator==(const SeenObject&) const = default;
 };
 
-/// One controller as it is now.
+/// Present state of one controller.
 struct LiveController
 {
     dds::WatchedController told;
-    FrontPointer front;              ///< Null: it shows none.
-    std::vector<SeenObject> objects; ///< By their numbers on the controller.
-    /// Of a recording: nothing is known of times, deadlines and of why a force was withheld.
+    FrontPointer front;              ///< Refinement state; null: not published.
+    std::vector<SeenObject> objects; ///< Objects by their numbers on the controller.
+    /// True for a recording, which has no times, no deadlines and no reasons for withheld forces.
     bool is_recorded{false};
 };
 
-/// All that is known of the controllers at one moment.
+/// State of all controllers at one moment.
 struct Snapshot
 {
-    std::uint64_t serial{1}; ///< Grows by one each time there is news.
+    std::uint64_t serial{1}; ///< Serial number; increases by one with each change.
     std::vector<LiveController> controllers;
 
-    /// By its id in hexadecimal digits, or the first one where `id` is empty; null when not there.
+    /// Controller with this id in hexadecimal digits, or the first one if `id` is empty; null if it
+    /// is missing.
     [[nodiscard]] const LiveController* find(const std::string& id) const;
 };
 
-/// Between the thread that hears DDS and those that answer the browser: the newest snapshot, and
-/// the fronts of the last minute. Any thread.
+/// State shared by the thread that receives DDS data and those that answer the browser: the newest
+/// snapshot, and the refinement states of the last minute. Any thread.
 class LiveState
 {
 public:
-    /// Fronts that are kept of one controller: a minute's.
+    /// Maximum number of stored refinement states of one controller: a minute's.
     static constexpr std::size_t kFronts = 600;
-    /// Bytes that all kept fronts may take, some more while they are read.
+    /// Maximum bytes of all stored refinement states; a few more while they are read.
     static constexpr std::size_t kFrontBytes = std::size_t{64} << 20U;
 
-    /// The one thread that hears DDS.
+    /// Publishes a snapshot. Only for the thread that receives DDS data.
     void publish(const std::vector<dds::WatchedController>& told,
                  const std::vector<dds::SeenFront>& fronts);
 
-    /// Never null.
+    /// The newest snapshot; never null.
     [[nodiscard]] std::shared_ptr<const Snapshot> newest() const;
-    /// The newest one once it is newer than `seen`, or after `patience` whatever there is.
+    /// The newest snapshot as soon as it is newer than `seen`; after `patience` in any case.
     [[nodiscard]] std::shared_ptr<const Snapshot>
     wait_newer(std::uint64_t seen, std::chrono::milliseconds patience) const;
 
-    /// A front of the last minute; null when it isn't kept.
+    /// A refinement state of the last minute; null if it is not stored.
     [[nodiscard]] FrontPointer front(const std::string& controller, std::uint64_t serial) const;
 
 private:
@@ -84,7 +85,7 @@ private:
     };
 
     static void add_objects(Kept& kept, const Front& front);
-    /// Whether anything came, or anybody went, since the last snapshot.
+    /// True if the controllers or their data changed since the last snapshot.
     [[nodiscard]] bool is_news(const std::vector<dds::WatchedController>& told,
                                const std::vector<dds::SeenFront>& fronts) const;
     void keep(const dds::SeenFront& front);
@@ -95,7 +96,7 @@ private:
     std::map<dds::ControllerId, Kept> kept_;
 };
 
-/// A controller's id in hexadecimal digits.
+/// Text of a controller's id in hexadecimal digits.
 [[nodiscard]] std::string id_text(const dds::ControllerId& id);
 
 } // namespace tactus::view

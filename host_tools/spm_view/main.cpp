@@ -32,11 +32,12 @@ namespace tactus::view
 namespace
 {
 
-/// Between two looks at what has come over DDS, and while pieces of models are on their way.
+/// Interval of the checks for DDS data; the second one applies while pieces of models are in
+/// transit.
 constexpr std::chrono::milliseconds kLook{25};
 constexpr std::chrono::milliseconds kBusyLook{1};
 
-/// Since the program began to serve.
+/// Time since the program began to serve.
 class Stay
 {
 public:
@@ -54,12 +55,12 @@ private:
     Clock::time_point start_{Clock::now()};
 };
 
-/// What is heard over DDS.
+/// Readers of DDS data.
 struct Ears
 {
     std::unique_ptr<dds::TelemetryReader> telemetry;
     std::unique_ptr<dds::FrontReader> fronts;
-    std::unique_ptr<ModelFetcher> models; ///< Null where hosts may not be asked.
+    std::unique_ptr<ModelFetcher> models; ///< Null if requests to servers are not possible.
 };
 
 void look(Ears& ears, LiveState& live)
@@ -116,7 +117,7 @@ Result<Ears, Refusal> listen(const dds::Domain& domain, ModelShelf& shelf)
     {
         ears.models = std::move(models).value();
     }
-    else // One may be allowed to watch, and not to wish for pieces.
+    else // A participant may be allowed to watch but not to request pieces.
     {
         log_message(LogLevel::warning, "spm_view",
                     fmt::format("no models but those of files: {}", models.error().text));
@@ -124,7 +125,7 @@ Result<Ears, Refusal> listen(const dds::Domain& domain, ModelShelf& shelf)
     return ears;
 }
 
-/// The page, until the program is to end; `what` it shows, in words.
+/// Serves the page until the program ends; `what` describes its content.
 Result<std::unique_ptr<WebServer>, Refusal> serve(const WebServer::Parts& parts,
                                                   const Options& options, const std::string& what)
 {

@@ -29,13 +29,13 @@ namespace
 
 using Clock = std::chrono::steady_clock;
 
-/// Nothing came for so long: asked again.
+/// Silence after which pieces are requested again.
 constexpr std::chrono::milliseconds kAgain{100};
-/// For pieces to come to who asks for them.
+/// Maximum wait for requested pieces.
 constexpr std::chrono::milliseconds kPatience{1'500};
-/// Asked for at once.
+/// Maximum number of pieces in one request.
 constexpr std::size_t kPiecesAtOnce = 256;
-/// By which hosts know it.
+/// Name by which servers know the viewer.
 constexpr const char* kName = "spm_view";
 
 struct KeyOrder
@@ -48,11 +48,11 @@ struct KeyOrder
 
 } // namespace
 
-/// What came of it stays, at most the model's file.
+/// A model from a server. Its pieces stay in memory, at most the size of the model's file.
 class FetchedModel final : public KnownModel, private PieceSink
 {
 public:
-    /// `served` has its base mesh.
+    /// `served` must have its base mesh.
     explicit FetchedModel(ServedModel served)
         : served_(std::move(served)), header_(ModelHeader::parse(served_.header).value())
     {
@@ -92,7 +92,7 @@ public:
         return Done{};
     }
 
-    /// The fetcher's thread alone, as what follows.
+    /// Polls the link and requests pieces. Only for the fetcher's thread, like leave_host().
     void step()
     {
         served_.link->poll(*this);
@@ -116,7 +116,7 @@ public:
         const std::lock_guard lock(mutex_);
         return !wanted_.empty() && !is_gone_;
     }
-    /// What isn't here won't come.
+    /// Ends the requests; missing pieces stay missing.
     void leave_host()
     {
         served_.link.reset();
@@ -127,7 +127,7 @@ public:
 private:
     using Entries = std::array<ChunkEntry, kChunksPerIndexPage>;
 
-    /// A chunk's index page comes first: it says which bytes are the chunk's.
+    /// Requests a piece. The index page of a chunk is requested first: it has the chunk's hash.
     void want(ContentKey key)
     {
         if (!pieces_.contains(key))
@@ -183,23 +183,23 @@ private:
         return bytes.size() == entry.coded_bytes && content_hash(bytes) == entry.hash;
     }
 
-    ServedModel served_; ///< Of the link only the fetcher's thread knows.
+    ServedModel served_; ///< Model; its link belongs to the fetcher's thread.
     ModelHeader header_;
     std::uint64_t session_{0};
     std::uint32_t generation_{0};
     Clock::time_point progress_{};
 
-    mutable std::mutex mutex_; ///< For what follows.
+    mutable std::mutex mutex_; ///< Protects the members below.
     std::condition_variable came_;
     bool is_gone_{false};
     std::map<ContentKey, std::vector<std::byte>, KeyOrder> pieces_;
-    std::map<std::uint32_t, Entries> entries_; ///< By index page.
-    std::set<ContentKey, KeyOrder> wanted_;    ///< Can be asked for.
-    std::set<ContentKey, KeyOrder> waiting_;   ///< Chunks whose index pages aren't here.
-    std::vector<ContentKey> asked_;            ///< Last, and not come.
+    std::map<std::uint32_t, Entries> entries_; ///< Entries by index page.
+    std::set<ContentKey, KeyOrder> wanted_;    ///< Pieces that can be requested.
+    std::set<ContentKey, KeyOrder> waiting_;   ///< Chunks whose index pages are missing.
+    std::vector<ContentKey> asked_; ///< Pieces of the last request that have not arrived.
 };
 
-/// For one model.
+/// Search for one model.
 struct ModelFetcher::Search
 {
     Search(dds::PieceExchange& exchange, dds::Catalogue& catalogue, const ContentHash& hash)
@@ -207,12 +207,12 @@ struct ModelFetcher::Search
     {
     }
 
-    dds::HeaderSearch header; ///< Until there is `served`.
-    bool is_announced{false}; ///< To the shelf.
-    std::string objection;    ///< That was told last.
-    ServedModel served;       ///< From then on until the base mesh is.
+    dds::HeaderSearch header; ///< Search for the header, until `served` is set.
+    bool is_announced{false}; ///< True once announced to the shelf.
+    std::string objection;    ///< Last logged objection.
+    ServedModel served;       ///< Model, from the header until its base mesh is complete.
     std::unique_ptr<BaseFetch> base;
-    std::shared_ptr<FetchedModel> model; ///< In the end.
+    std::shared_ptr<FetchedModel> model; ///< Model, in the end.
 };
 
 Result<std::unique_ptr<ModelFetcher>, Refusal> ModelFetcher::create(const dds::Domain& domain,

@@ -17,27 +17,28 @@ namespace tactus::view
 
 class FetchedModel;
 
-/// Brings models from the hosts that serve them to a shelf, by their hashes: header and base mesh
-/// when one is looked for, pieces as they are asked for. Everything is verified as a controller
-/// verifies it. One thread, but for the models on the shelf.
+/// Fetches models from their servers to a shelf, by their hashes: header and base mesh when a model
+/// is requested, pieces on demand. All data are verified as in a controller. One thread, except for
+/// the models on the shelf.
 class ModelFetcher
 {
 public:
-    /// Models that are looked for at most; further ones are passed over.
+    /// Maximum number of requested models; further ones are ignored.
     static constexpr std::size_t kMaxModels = 256;
 
-    /// All must outlive it and the shelf's use; `domain` was joined as Party::both.
+    /// All arguments must outlive the fetcher and the use of the shelf; `domain` must have been
+    /// joined as Party::both.
     [[nodiscard]] static Result<std::unique_ptr<ModelFetcher>, Refusal>
     create(const dds::Domain& domain, ModelShelf& shelf, Log log);
     ModelFetcher(const ModelFetcher&) = delete;
     ModelFetcher& operator=(const ModelFetcher&) = delete;
     ~ModelFetcher();
 
-    /// From now on, unless it is on the shelf already.
+    /// Requests a model, unless it is on the shelf already.
     void look_for(const ContentHash& hash);
-    /// Takes what has come and asks for what is missing. Never waits.
+    /// Takes arrivals and requests missing data. Never waits.
     void step();
-    /// Whether something is on its way: step again soon.
+    /// True while data are in transit: step again soon.
     [[nodiscard]] bool is_busy() const;
 
 private:
@@ -51,7 +52,7 @@ private:
     dds::Catalogue catalogue_;
     ModelShelf& shelf_;
     Log log_;
-    std::unique_ptr<dds::PieceExchange> exchange_; ///< From create() on.
+    std::unique_ptr<dds::PieceExchange> exchange_; ///< Valid after create().
     std::map<ContentHash, std::unique_ptr<Search>> searches_;
 };
 

@@ -37,7 +37,7 @@ public:
 private:
     ModelStore store_;
     std::string name_;
-    std::mutex mutex_; ///< A store is one thread's at a time.
+    std::mutex mutex_; ///< A store belongs to one thread at a time.
 };
 
 } // namespace

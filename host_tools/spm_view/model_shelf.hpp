@@ -16,18 +16,18 @@
 namespace tactus::view
 {
 
-/// The models that the viewer has, by their hashes: those of files, and those that others add. None
-/// is ever taken away. Any thread.
+/// The viewer's models by hash: those of files, and those added later. None is ever removed. Any
+/// thread.
 class ModelShelf
 {
 public:
-    /// Refused as ModelStore::open() is.
+    /// Opens the files; refused like ModelStore::open().
     [[nodiscard]] static Result<std::unique_ptr<ModelShelf>, Refusal>
     open(std::span<const std::string> files);
 
-    /// One of a hash that is here already changes nothing.
+    /// Adds a model, unless one with its hash is present.
     void add(std::shared_ptr<KnownModel> model);
-    /// It isn't here yet, but somebody brings it.
+    /// Marks a model as in transit.
     void announce(const ContentHash& hash);
 
     struct Label
@@ -40,7 +40,7 @@ public:
     [[nodiscard]] bool has(const ContentHash& hash) const { return find(hash) != nullptr; }
     [[nodiscard]] bool is_coming(const ContentHash& hash) const;
 
-    /// Null where there is no such model.
+    /// The model; null if it is missing.
     [[nodiscard]] std::shared_ptr<KnownModel> find(const ContentHash& hash) const;
 
 private:

@@ -16,18 +16,18 @@ class CommandLine;
 namespace tactus::view
 {
 
-/// Everything that the command line says; checked, in SI.
+/// Options of the command line; checked, in SI units.
 struct Options
 {
     std::vector<std::string> files;
-    std::vector<std::string> recordings; ///< At most two; none: what is live is shown.
+    std::vector<std::string> recordings; ///< At most two recordings; none: live data are shown.
     std::uint32_t port{7'300};
     std::uint32_t domain{0};
     std::optional<double> seconds;
 };
 
-/// Reads the command line. Returns the exit code instead when the program should leave: after
-/// --help, --version, or wrong usage, which gets one line on stderr.
+/// Reads the command line. Returns the exit code instead if the program should leave: after --help,
+/// --version, or wrong usage, which gets one line on stderr.
 [[nodiscard]] std::variant<Options, int> parse_options(CommandLine& line, int argc, char** argv);
 
 } // namespace tactus::view

@@ -7,7 +7,7 @@
 namespace tactus::view
 {
 
-/// A file of the page, as it is in host_tools/spm_view/page.
+/// A file of the page, from host_tools/spm_view/page.
 struct PageFile
 {
     const char* url;
@@ -15,7 +15,7 @@ struct PageFile
     const char* text;
 };
 
-/// All of them. Any thread.
+/// All files of the page. Any thread.
 [[nodiscard]] std::span<const PageFile> page_files() noexcept;
 
 } // namespace tactus::view

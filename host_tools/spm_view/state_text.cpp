@@ -29,14 +29,14 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::array kKindNames{"exact", "decided", "bracket", "stale", "within_tolerance"};
 
-/// Names of FrontTimes after the stages.
+/// Names of FrontTimes, the stages first.
 const char* time_name(std::size_t i)
 {
     constexpr std::array<const char*, 2> others{"frame", "cpu"};
     return i < kStages ? kStageNames[i] : others[i - kStages];
 }
 
-/// JSON has no infinity.
+/// Number; null if infinite, which JSON cannot represent.
 Json number_of(double value)
 {
     return std::isfinite(value) ? Json(value) : Json(nullptr);
@@ -241,7 +241,7 @@ Json controller_json(const LiveController& controller, const ModelShelf& shelf)
             {"front", front_json(controller, shelf)}};
 }
 
-/// What there is nothing to see for want of; empty: nothing.
+/// Reason why nothing is visible; empty if there is none.
 std::string waits_for(const LiveController* controller, const ModelShelf& shelf,
                       const std::string& chosen, std::uint32_t domain_id)
 {
@@ -320,7 +320,7 @@ std::string state_json(const Snapshot& snapshot, const ModelShelf& shelf, const 
                      {"film", films == nullptr ? Json(nullptr) : films_json(*films)},
                      {"controller",
                       controller == nullptr ? Json(nullptr) : controller_json(*controller, shelf)}};
-    // A file's name may be no UTF-8.
+    // A file's name may not be UTF-8.
     return state.dump(-1, ' ', true, Json::error_handler_t::replace);
 }
 

@@ -12,9 +12,9 @@
 namespace tactus::view
 {
 
-/// A snapshot as one line of JSON (docs/view.md): who is there, and of the controller `chosen`
-/// (empty: the first one) everything. `domain_id` is that of the program; with `films` the snapshot
-/// is of those, and something of them is told as well.
+/// A snapshot as one line of JSON (docs/view.md): all controllers, and all data of the controller
+/// `chosen` (empty: the first one). `domain_id` is that of the program. With `films`, the snapshot
+/// is from those, and the line contains data about them.
 [[nodiscard]] std::string state_json(const Snapshot& snapshot, const ModelShelf& shelf,
                                      const std::string& chosen, std::uint32_t domain_id,
                                      const Films* films = nullptr);

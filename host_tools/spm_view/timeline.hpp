@@ -13,12 +13,12 @@
 namespace tactus::view
 {
 
-/// Something that changes now and then, by the frames in which it does.
+/// A value that changes from time to time, with the frames of its changes.
 template <typename T, typename Equal = std::equal_to<T>>
 class Timeline
 {
 public:
-    /// From this frame on, which is none before the last one that was set.
+    /// Sets the value from this frame on, which must not be before the last one set.
     void set(std::uint64_t frame, const T& value)
     {
         if (steps_.empty() || !Equal{}(steps_.back().second, value))
@@ -26,7 +26,7 @@ public:
             steps_.emplace_back(frame, value);
         }
     }
-    /// Null before the first.
+    /// Value at a frame; null before the first.
     [[nodiscard]] const T* at(std::uint64_t frame) const
     {
         const auto next =

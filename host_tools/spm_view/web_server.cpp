@@ -40,18 +40,19 @@ using web::answer;
 using web::LoopbackServer;
 using Clock = std::chrono::steady_clock;
 
-/// Between two events of one viewer.
+/// Interval of the events of one viewer.
 constexpr milliseconds kEventPeriod{50};
-/// Without news, so that a gone viewer is noticed.
+/// Interval of events without news, which detect a viewer that is gone.
 constexpr milliseconds kHeartbeat{1'000};
-/// Between two looks for the end.
+/// Interval of the checks for the end.
 constexpr milliseconds kLook{100};
-/// States of one answer of /states.
+/// Maximum number of states in one answer of /states.
 constexpr std::uint64_t kStatesMax = 200;
-/// Answers about fronts that are kept for other viewers.
+/// Number of built answers that are kept for other viewers.
 constexpr std::size_t kKeptAnswers = 16;
 
-/// What `tell` makes of the front's cut of the model, or of as much of it as can be told.
+/// Result of `tell` for the cut of the model in the refinement state, or for the part of it that
+/// can be shown.
 template <typename Tell>
 Result<std::string, Refusal> with_cut(KnownModel& model, const FrontModel& front, bool is_whole,
                                       const Tell& tell)
@@ -68,7 +69,7 @@ Result<std::string, Refusal> with_cut(KnownModel& model, const FrontModel& front
 struct Library
 {
     const char* url;
-    const char* file; ///< Below Parts::libraries.
+    const char* file; ///< Path below Parts::libraries.
     const char* type;
 };
 
@@ -100,8 +101,8 @@ struct WebServer::Inside
     void send_states(const httplib::Request& request, httplib::Response& response) const;
     void send_events(const httplib::Request& request, httplib::Response& response);
     bool send_next(httplib::DataSink& sink, const std::string& chosen, std::uint64_t& seen);
-    /// What is built of one model of a front, and a name that tells it from all else.
-    /// `is_whole`: the front has all pages of the controller.
+    /// Builder of an answer about one model of a refinement state; `what` in send_built() names its
+    /// kind. `is_whole`: the state has all pages of the controller.
     using Build =
         std::function<Result<std::string, Refusal>(KnownModel&, const FrontModel&, bool is_whole)>;
     void send_built(const httplib::Request& request, httplib::Response& response,
@@ -111,12 +112,12 @@ struct WebServer::Inside
     [[nodiscard]] std::shared_ptr<const std::string> find_kept(const std::string& name);
 
     Parts parts;
-    std::map<std::string, std::string> libraries; ///< By url.
+    std::map<std::string, std::string> libraries; ///< Contents by url.
     std::atomic<bool> ends{false};
     std::atomic<std::size_t> viewers{0};
-    std::mutex kept_mutex; ///< Of what follows.
+    std::mutex kept_mutex; ///< Protects the members below.
     std::deque<std::pair<std::string, std::shared_ptr<const std::string>>> kept;
-    LoopbackServer local{kThreads}; ///< Last: its threads use the others.
+    LoopbackServer local{kThreads}; ///< Last member, since its threads use the others.
     httplib::Server& server{local.server()};
 };
 
@@ -146,7 +147,7 @@ void WebServer::Inside::declare_answers()
         server.Get(file.url, [&file](const Request&, Response& response)
                    { response.set_content(file.text, file.type); });
     }
-    // Browsers ask for it by themselves.
+    // Browsers request it by themselves.
     server.Get("/favicon.ico", [](const Request&, Response& response) { response.status = 204; });
     for (const Library& library : kLibraries)
     {
@@ -216,7 +217,7 @@ std::string WebServer::Inside::state_for(const httplib::Request& request) const
     return state_json(parts.films->at(frame), parts.shelf, chosen, parts.domain, parts.films);
 }
 
-/// Frames of the films before one, and that one, some apart from one another.
+/// Sends frames of the films up to one, at a fixed spacing.
 void WebServer::Inside::send_states(const httplib::Request& request,
                                     httplib::Response& response) const
 {
@@ -264,8 +265,8 @@ void WebServer::Inside::send_events(const httplib::Request& request, httplib::Re
         [this](bool) { viewers.fetch_sub(1); });
 }
 
-/// One event, the first one at once. Each is the whole state, so that a slow viewer misses some and
-/// reads no old news. `seen`: the serial of the last one.
+/// Sends one event, the first one at once. Each is the whole state, so that a slow viewer skips
+/// some and receives no old ones. `seen`: serial of the last one.
 bool WebServer::Inside::send_next(httplib::DataSink& sink, const std::string& chosen,
                                   std::uint64_t& seen)
 {
@@ -313,7 +314,7 @@ void WebServer::Inside::send_built(const httplib::Request& request, httplib::Res
     }
     const auto found = std::ranges::find(seen->front.models, *hash, &FrontModel::hash);
     const FrontModel front = found == seen->front.models.end() ? FrontModel{*hash, {}, {}} : *found;
-    // Where boxes of chunks are asked for these count, split records or not.
+    // Boxes of chunks depend on the chunks, split or not.
     std::uint64_t chunks = 0xCBF2'9CE4'8422'2325U;
     for (const ChunkId chunk : what == "loaded"   ? chunks_of(front.pages)
                                : what == "wished" ? front.wished

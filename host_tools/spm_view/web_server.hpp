@@ -14,28 +14,28 @@
 namespace tactus::view
 {
 
-/// The page and what it asks for, on this machine's loopback only (docs/view.md). It reads and
-/// never writes: there is nothing in it that could change a controller.
+/// Serves the page and its data on this machine's loopback only (docs/view.md). Read-only: no
+/// request can change a controller.
 class WebServer
 {
 public:
-    /// Browsers that may listen to events at once; each holds a thread.
+    /// Maximum number of browsers that listen to events at once; each holds a thread.
     static constexpr std::size_t kViewersMax = 4;
-    /// Threads that answer: with all viewers there, four are left for everything else.
+    /// Number of threads: with all viewers present, four remain for other requests.
     static constexpr std::size_t kThreads = kViewersMax + 4;
 
     struct Parts
     {
         const LiveState& live;
         ModelShelf& shelf;
-        std::uint32_t domain{0};         ///< Told on the page.
-        std::filesystem::path libraries; ///< The folder with three and dygraphs.
-        const Films* films{nullptr};     ///< To be shown in place of what is live; may be null.
+        std::uint32_t domain{0};         ///< Domain shown on the page.
+        std::filesystem::path libraries; ///< Folder with three and dygraphs.
+        const Films* films{nullptr};     ///< Films to show in place of live data; may be null.
     };
 
-    /// Listens on 127.0.0.1 until it is destroyed, which takes some 100 ms. `parts` outlive it.
-    /// Port 0: any that is free. Refused when the port can't be had or a library's file isn't
-    /// there.
+    /// Listens on 127.0.0.1 until it is destroyed, which takes some 100 ms. `parts` must outlive
+    /// it. Port 0: any free one. Refused if the port is not available or a library's file is
+    /// missing.
     [[nodiscard]] static Result<std::unique_ptr<WebServer>, Refusal> start(const Parts& parts,
                                                                            std::uint16_t port);
     WebServer(const WebServer&) = delete;
@@ -45,7 +45,7 @@ public:
     [[nodiscard]] std::uint16_t port() const noexcept;
 
 private:
-    struct Inside; ///< The only place that knows cpp-httplib.
+    struct Inside; ///< The only user of cpp-httplib.
 
     explicit WebServer(std::unique_ptr<Inside> inside);
 
