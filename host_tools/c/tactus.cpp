@@ -41,10 +41,10 @@ using namespace tactus;
 
 struct tactus_model
 {
-    std::unique_ptr<dds::DdsClient> client; ///< First, since it must outlive the link.
+    std::unique_ptr<dds::DdsClient> client; ///< First member, since it must outlive the link.
     ServedModel served;
-    std::optional<ModelHeader> header; ///< A view into `served`.
-    bool is_taken{false};              ///< By a frame; under `registry`.
+    std::optional<ModelHeader> header; ///< View of `served`.
+    bool is_taken{false}; ///< True while a frame has it; protected by `registry_mutex`.
 };
 
 struct tactus_static_model
@@ -62,16 +62,17 @@ struct tactus_frame
     std::optional<Frame> frame;
     std::optional<Courier> courier;
     std::vector<ToolState> states;
-    /// What the next frame begins with. Of an object that moves it says where it is to be: it stays
-    /// until the object is there.
+    /// Changes for the next frame. The change of a moving object has the target pose and stays
+    /// until the object has reached it.
     StaticVector<SceneChange, kMaxSceneChanges> changes;
     std::uint32_t objects{0};
-    std::vector<Similarity> places;          ///< Of the objects, as the frame has them.
-    ObjectTouches touches;                   ///< After the last frame.
-    std::array<bool, kMaxTools> is_outrun{}; ///< Of tools, in the last frame.
+    std::vector<Similarity> places;          ///< Present places of the objects in the frame.
+    ObjectTouches touches;                   ///< Touches after the last frame.
+    std::array<bool, kMaxTools> is_outrun{}; ///< Flags by tool, from the last frame.
     BelievedSpeed belief;
     std::int64_t period_ns{0};
-    std::atomic<std::int64_t> now_ns{0}; ///< Written where frames run, read where they load.
+    /// Time of the frames, written by tactus_frame_run() and read by tactus_frame_load().
+    std::atomic<std::int64_t> now_ns{0};
     std::uint64_t frames{0};
     FrameOutput output;
 };
@@ -79,14 +80,14 @@ struct tactus_frame
 namespace
 {
 
-/// Thrown inside a call, told by its result.
+/// Fault of a call; its result is returned.
 struct Fault
 {
     tactus_result result;
     std::string text;
 };
 
-/// The frames that there are, for what no two may share.
+/// Existing frames, to detect shared memory and models.
 std::mutex registry_mutex;
 std::vector<const tactus_frame*>& registry()
 {
@@ -104,7 +105,7 @@ void tell(tactus_error* error, const std::string& text) noexcept
     }
 }
 
-/// Nothing that is thrown leaves a call.
+/// Executes a call; converts every exception to a result.
 template <typename Work>
 tactus_result guarded(tactus_error* error, Work&& work) noexcept
 {
@@ -178,13 +179,13 @@ void check_abi(std::uint32_t abi)
 
 void check_range(double value, double low, double high, const std::string& name)
 {
-    if (!(value >= low && value <= high)) // So that NaN is refused.
+    if (!(value >= low && value <= high)) // Also refuses NaN.
     {
         refuse(TACTUS_BAD_ARGUMENT, "{}: {}; {} to {} is allowed", name, value, low, high);
     }
 }
 
-/// Of each place, rotation or number of an array.
+/// Refuses an array with a number that is not finite.
 void check_finite(const double* values, std::size_t count, const char* name)
 {
     const double* end = values + count;
@@ -246,7 +247,7 @@ ToolSpec tool_of(const tactus_tool& tool, std::size_t index)
     const std::string name = fmt::format("tools[{}].", index);
     check_size(tool, name.c_str());
     check_range(tool.shape, TACTUS_SPHERE, TACTUS_BOX, name + "shape");
-    const double largest_m = tool.passes_through != 0 ? 1e3 : 1.0; // A hand holds none larger.
+    const double largest_m = tool.passes_through != 0 ? 1e3 : 1.0; // No tool of a hand is larger.
     check_range(tool.radius_m, 1e-6, largest_m, name + "radius_m");
     check_range(tool.stiffness_n_per_m, 1e-3, 1e6, name + "stiffness_n_per_m");
     check_range(tool.force_max_n, 1e-3, 1e6, name + "force_max_n");
@@ -332,7 +333,7 @@ Material material_of(const tactus_material& from)
     return material;
 }
 
-/// With the next frame; of an object that is in the set-up.
+/// Adds a change for the next frame; checks the object's number.
 void add_change(tactus_frame& frame, const SceneChange& change)
 {
     check_range(change.number, 0, frame.objects - 1, "object");
@@ -350,7 +351,7 @@ void add_change(tactus_frame& frame, const SceneChange& change)
     }
 }
 
-/// The records of the library for those of the caller, who keeps the models.
+/// Records of the library that correspond to the caller's; the caller keeps the models.
 struct Scene
 {
     std::vector<ToolSpec> tools;
@@ -420,7 +421,7 @@ void plan_pools(const tactus_setup& from, std::size_t bytes, Scene& scene)
     scene.setup.models = scene.sources;
 }
 
-/// No two frames share memory or a model.
+/// Registers a frame; refuses memory or a model of another one.
 void enter(tactus_frame& frame)
 {
     const std::lock_guard lock(registry_mutex);
@@ -487,7 +488,7 @@ void load(tactus_frame& frame)
     frame.courier->step(frame.now_ns.load(std::memory_order_relaxed));
 }
 
-/// How far an object would move what some tool may meet of it.
+/// Greatest distance that the move of an object causes at a place that some tool may touch.
 double way_near_m(const tactus_frame& frame, std::uint32_t object, const Similarity& to)
 {
     double way_m = 0.0;
@@ -502,7 +503,7 @@ double way_near_m(const tactus_frame& frame, std::uint32_t object, const Similar
     return way_m;
 }
 
-/// An object's move of this frame. False where it has to go on with the next one.
+/// Moves an object in this frame. False if the move must continue in the next one.
 bool carry(tactus_frame& frame, SceneChange& move)
 {
     const double since_s = 1e-9 * static_cast<double>(frame.period_ns);
@@ -525,7 +526,7 @@ bool carry(tactus_frame& frame, SceneChange& move)
     return !is_held;
 }
 
-/// The changes of this frame; what can't be done at once stays for the next one.
+/// Changes of this frame; moves that need further frames stay for the next one.
 StaticVector<SceneChange, kMaxSceneChanges> take_changes(tactus_frame& frame)
 {
     StaticVector<SceneChange, kMaxSceneChanges> changes = frame.changes;
@@ -549,7 +550,7 @@ void run_one(tactus_frame& frame)
     const auto changes = take_changes(frame);
     frame.output = frame.frame->run(
         {.tools = frame.states, .changes = changes.view(), .budgets = {}, .now_ns = now_ns});
-    // For the changes of the next frame.
+    // Input of the next frame's changes.
     list_touches(*frame.frame, frame.output.pairs, frame.belief, frame.touches);
     ++frame.frames;
 }
@@ -623,7 +624,7 @@ void write_answers(const tactus_frame& frame, const tactus_poses& poses, std::si
         write(poses.torque_nm, first + t, tool.torque_nm);
         write(poses.proxy_m, first + t, tool.proxy_m);
         write(poses.flags, first + t, flags_of(tool, frame.is_outrun[t]));
-        // Of an object that no pair is of the tool is proven clear.
+        // An object without a pair is proven clear of the tool.
         for (std::size_t k = 0; k < frame.objects; ++k)
         {
             const std::size_t index = (first + t) * frame.objects + k;
@@ -662,7 +663,7 @@ void check_poses(const tactus_frame& frame, const tactus_poses& poses)
     const double* positions_m = &given(poses.positions_m, "poses.positions_m");
     for (std::size_t i = 0; i < 3 * places; ++i)
     {
-        if (!(std::abs(positions_m[i]) < kGoalRange_m)) // So that NaN is refused.
+        if (!(std::abs(positions_m[i]) < kGoalRange_m)) // Also refuses NaN.
         {
             refuse(TACTUS_BAD_ARGUMENT,
                    "poses.positions_m: element {} is {}; below {} m is allowed", i, positions_m[i],

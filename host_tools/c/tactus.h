@@ -2,20 +2,20 @@
 // Copyright the Tactus authors.
 #pragma once
 
-/* The library for C, and for every language that can call C. Distances and forces of tools at
- * models, as docs/accuracy.md promises them. Units are SI: m, N, N m, s, rad; frames of reference
- * are right-handed, and the world's where no other one is named. A rotation is a 3 x 3 matrix, row
- * by row, orthonormal to 1e-6; a position is x, y, z. Numbers that are given are finite; one out of
- * its range is TACTUS_BAD_ARGUMENT where nothing else is said.
+/* C interface of the library, for C and languages that can call C: distances and forces between
+ * tools and models, with the accuracy of docs/accuracy.md. Units are SI: m, N, N m, s, rad. Frames
+ * of reference are right-handed; positions are in the world frame unless another one is named. A
+ * rotation is a 3 x 3 matrix, row by row, orthonormal to 1e-6; a position is x, y, z. Inputs must
+ * be finite; the result for one out of its range is TACTUS_BAD_ARGUMENT unless stated otherwise.
  *
- * Calls return TACTUS_DONE or the kind of what was wrong, and write one line about it, unless
- * `error` is null; nothing has changed then. No exception leaves a call. Records begin with `size`:
- * set it to sizeof of the record, so that a library of another version refuses what it does not
- * know. What a call is given is read during the call, but for memory and models of a frame.
+ * Calls return TACTUS_DONE or the kind of fault. A fault changes nothing and is described in one
+ * line in `error`, unless that is null. No exception leaves a call. Records begin with `size`: set
+ * it to sizeof of the record, so that a library of another version refuses unknown records. Inputs
+ * are read during the call only, except the memory and models of a frame.
  *
- * Threads: a frame and its models are one thread's at a time, except that tactus_frame_load() may
- * run on one thread beside tactus_frame_run() without `rounds` on another one. Different frames,
- * and models of none, may be used at the same time. */
+ * Threads: a frame and its models belong to one thread at a time, with one exception:
+ * tactus_frame_load() may run on one thread while tactus_frame_run() without `rounds` runs on
+ * another one. Different frames, and models without a frame, may be used at the same time. */
 
 #include <stddef.h>
 #include <stdint.h>
@@ -26,21 +26,21 @@
 #define TACTUS_CALL extern
 #endif
 
-/* Of records and calls; both sides must have the same one. */
+/* Version of records and calls; caller and library must have the same one. */
 #define TACTUS_ABI 3U
-/* The lent memory of a frame starts on a multiple of it. */
+/* Alignment of the start of a frame's memory, in bytes. */
 #define TACTUS_ALIGNMENT 64U
 
 typedef enum tactus_result
 {
     TACTUS_DONE = 0,
-    TACTUS_BAD_ARGUMENT = 1, /* A null pointer, a number out of range, NaN. */
-    TACTUS_BAD_VERSION = 2,  /* Made for another version of the library, or `size` isn't set. */
-    TACTUS_REFUSED = 3,      /* A file, a host or the memory is not good for it. */
-    TACTUS_BUSY = 4          /* Memory or a model that a frame has; too many changed objects. */
+    TACTUS_BAD_ARGUMENT = 1, /* Null pointer, number out of range, NaN. */
+    TACTUS_BAD_VERSION = 2,  /* Another version of the library, or `size` not set. */
+    TACTUS_REFUSED = 3,      /* Unsuitable file, model server or memory. */
+    TACTUS_BUSY = 4          /* Memory or model in use by a frame; too many changes. */
 } tactus_result;
 
-/* One line, without a line end, cut where it is longer; empty after TACTUS_DONE. */
+/* One line without a line end, truncated if longer; empty after TACTUS_DONE. */
 typedef struct tactus_error
 {
     char text[512];
@@ -50,7 +50,7 @@ typedef struct tactus_model tactus_model;
 typedef struct tactus_frame tactus_frame;
 typedef struct tactus_static_model tactus_static_model;
 
-/* The TACTUS_ABI and the version ("0.2.0", static) of the library that is loaded. */
+/* TACTUS_ABI and version ("0.2.0", static) of the loaded library. */
 TACTUS_CALL uint32_t tactus_abi(void);
 TACTUS_CALL const char* tactus_version(void);
 
@@ -61,88 +61,91 @@ typedef struct tactus_model_info
     size_t size;
     double low_m[3]; /* Box of the source mesh, in its own frame. */
     double high_m[3];
-    double diagonal_m; /* Of that box. */
-    uint32_t faces;    /* Of the source mesh. */
+    double diagonal_m; /* Diagonal of that box. */
+    uint32_t faces;    /* Faces of the source mesh. */
     uint32_t vertices;
-    int32_t is_closed; /* Not 0: the surface has an inside. */
+    int32_t is_closed; /* Not 0: the surface encloses an inside. */
     char hash[33];     /* 32 hexadecimal digits. */
 } tactus_model_info;
 
-/* Opens an .spm file; all but its chunks is checked now, each chunk when it is read. Waits for the
- * file. The model is the caller's until tactus_model_close(). */
+/* Opens an .spm file. Checks everything except the chunks, which are checked when read. Waits for
+ * the file. The caller owns the model until tactus_model_close(). */
 TACTUS_CALL tactus_result tactus_model_open(uint32_t abi, const char* path, tactus_model** model,
                                             tactus_error* error);
-/* Finds NAME or NAME@HASH on a DDS domain, 0 to 232; waits at most 0 to 3600 seconds, and is
- * TACTUS_REFUSED where nobody serves it by then. */
+/* Finds a model NAME or NAME@HASH on a DDS domain, 0 to 232. Waits at most `wait_s`, 0 to 3600 s;
+ * TACTUS_REFUSED if no server offers the model by then. */
 TACTUS_CALL tactus_result tactus_model_find(uint32_t abi, const char* name, uint32_t domain,
                                             double wait_s, tactus_model** model,
                                             tactus_error* error);
 TACTUS_CALL tactus_result tactus_model_info_of(const tactus_model* model, tactus_model_info* info,
                                                tactus_error* error);
-/* Null is nothing to close. TACTUS_BUSY while a frame has it. */
+/* Closes a model; null has no effect. TACTUS_BUSY while a frame uses it. */
 TACTUS_CALL tactus_result tactus_model_close(tactus_model* model, tactus_error* error);
 
 /* ---- Distances without frames ---- */
 
 typedef enum tactus_side
 {
-    TACTUS_UNSIGNED = 0, /* The surface is open, or the point is on it. */
+    TACTUS_UNSIGNED = 0, /* Open surface, or point on the surface. */
     TACTUS_OUTSIDE = 1,
     TACTUS_INSIDE = 2
 } tactus_side;
 
-/* Opens an .spm file and refines all of it to its source mesh: about 200 bytes and two microseconds
- * a face. It is the caller's until tactus_static_model_close(). */
+/* Opens an .spm file and refines it to its source mesh: about 200 bytes and two microseconds a
+ * face. The caller owns the model until tactus_static_model_close(). */
 TACTUS_CALL tactus_result tactus_static_model_open(uint32_t abi, const char* path,
                                                    tactus_static_model** model,
                                                    tactus_error* error);
-/* From N points, N x 3 in the source's frame, to the surface: between lower_m and upper_m, which
- * differ by rounding; nearest_m, N x 3, is of the surface. An output that is null is not written.
- * Any thread, several at once. Some microseconds a point. */
+/* Computes the distances from `count` points, N x 3 in the source's frame, to the surface. Each is
+ * between lower_m and upper_m, which differ by rounding; nearest_m, N x 3, is the nearest point of
+ * the surface. Null outputs are not written. Any thread, several at once. Some microseconds a
+ * point. */
 TACTUS_CALL tactus_result tactus_static_model_distances(const tactus_static_model* model,
                                                         size_t count, const double* points_m,
                                                         double* lower_m, double* upper_m,
                                                         uint8_t* side, double* nearest_m,
                                                         tactus_error* error);
-/* Null is nothing to close. */
+/* Closes a model; null has no effect. */
 TACTUS_CALL void tactus_static_model_close(tactus_static_model* model);
 
 /* ---- Frames ---- */
 
 typedef enum tactus_shape
 {
-    TACTUS_SPHERE = 0,  /* A point with the radius. */
-    TACTUS_CAPSULE = 1, /* The segment from -half_m to half_m with the radius. */
-    TACTUS_BOX = 2      /* The box of the half extents half_m with the radius. */
+    TACTUS_SPHERE = 0,  /* Point with the radius. */
+    TACTUS_CAPSULE = 1, /* Segment from -half_m to half_m with the radius. */
+    TACTUS_BOX = 2      /* Box of the half extents half_m with the radius. */
 } tactus_shape;
 
-/* What touches. tactus_tool_default() sets all but the radius. */
+/* A tool. tactus_tool_default() sets all members except the radius. */
 typedef struct tactus_tool
 {
     size_t size;
-    int32_t shape;          /* tactus_shape */
-    int32_t passes_through; /* 0: surfaces stop it and make forces. Else it measures where it is. */
-    double radius_m;        /* 1e-6 to 1, of one that passes through to 1e3. Within it distances
-                             * are exact. */
-    double half_m[3];       /* Of a capsule or box, in the tool's frame; up to 1 or 1e3 likewise,
-                             * either way, of a box from 0. */
-    double stiffness_n_per_m; /* 1e-3 to 1e6: of the spring from proxy to hand. */
-    double force_max_n;       /* 1e-3 to 1e6: the force's norm is clamped to it. */
-    double torque_max_nm;     /* 0 to 1e6, likewise. A sphere has no torque. */
-    double speed_max_m_per_s; /* 1e-6 to 1e6. In contact a hand that is faster is followed at this
-                               * speed. */
-    double smooth_m;          /* 0, or 1e-4 to 0.1: a sphere feels facets within this width as one
-                               * smooth surface; it is within an eighth of it of the mesh. */
-    int32_t wants_distance;   /* Not 0: distances become exact however far off, too, in frames
-                               * that do so bit by bit behind what a force needs; a BRACKET or
-                               * DECIDED until then, or where the memory is too little. */
+    int32_t shape;            /* tactus_shape */
+    int32_t passes_through;   /* Not 0: query-only, it measures at its position without forces. 0:
+                               * surfaces stop it and cause forces. */
+    double radius_m;          /* Radius, 1e-6 to 1, up to 1e3 if query-only. Distances within it are
+                               * exact. */
+    double half_m[3];         /* Half extents of a capsule or box, in the tool's frame; within 1, or
+                               * 1e3 if query-only, in both directions; not negative for a box. */
+    double stiffness_n_per_m; /* Stiffness of the spring from proxy to device, 1e-3 to 1e6. */
+    double force_max_n;       /* Limit of the force's norm, 1e-3 to 1e6. */
+    double torque_max_nm;     /* Limit of the torque's norm, 0 to 1e6. A sphere has no torque. */
+    double speed_max_m_per_s; /* Proxy speed limit in contact, 1e-6 to 1e6: a faster device pose is
+                               * followed at this speed. */
+    double smooth_m;          /* Width of force shading, 0 or 1e-4 to 0.1, for spheres only: facets
+                               * within it are felt as one smooth surface, which is within an
+                               * eighth of it of the mesh. */
+    int32_t wants_distance;   /* Not 0: distances become exact at any range too, over several frames
+                               * and after the needs of forces; BRACKET or DECIDED until then, or
+                               * if the memory does not suffice. */
 } tactus_tool;
 
-/* Where an object stands: place = translation + scale * rotation * place in the source mesh. */
+/* Pose of an object: position = translation + scale * rotation * position in the source mesh. */
 typedef struct tactus_pose
 {
     double rotation[9];
-    double translation_m[3]; /* Up to 1e4 either way. */
+    double translation_m[3]; /* Within 1e4 in both directions. */
     double scale;            /* 1e-3 to 1e3. */
 } tactus_pose;
 
@@ -151,21 +154,21 @@ typedef struct tactus_object
     size_t size;
     uint32_t model; /* Index into the set-up's models. */
     tactus_pose pose;
-    double static_friction;  /* 0 to 3, Coulomb's. */
+    double static_friction;  /* Coulomb coefficient, 0 to 3. */
     double dynamic_friction; /* 0 to the static one. */
 } tactus_object;
 
-/* How an object feels. tactus_material_default() makes it smooth and as stiff as the tool. */
+/* Material of an object. tactus_material_default() makes it smooth and as stiff as the tool. */
 typedef struct tactus_material
 {
     size_t size;
-    double stiffness_n_per_m;   /* 1e-3 to 1e6: the softer of this and the tool's counts; or 0. */
-    double static_friction;     /* 0 to 3, Coulomb's. */
+    double stiffness_n_per_m;   /* 1e-3 to 1e6, limited to the tool's; or 0: the tool's. */
+    double static_friction;     /* Coulomb coefficient, 0 to 3. */
     double dynamic_friction;    /* 0 to the static one. */
-    double damping_n_s_per_m;   /* 0 to 20, across the surface. */
-    double viscosity_n_s_per_m; /* 0 to 20, along it. */
-    double texture_height_m;    /* 0, or bumps, at most 1/32 of their length. */
-    double texture_length_m;    /* With bumps 1e-4 to 1; else 0 to 1. */
+    double damping_n_s_per_m;   /* 0 to 20, normal to the surface. */
+    double viscosity_n_s_per_m; /* 0 to 20, tangential. */
+    double texture_height_m;    /* 0: smooth; at most 1/32 of the length. */
+    double texture_length_m;    /* 1e-4 to 1; without texture 0 to 1. */
 } tactus_material;
 
 typedef struct tactus_setup
@@ -173,102 +176,104 @@ typedef struct tactus_setup
     size_t size;
     uint32_t abi;                /* TACTUS_ABI */
     uint32_t model_count;        /* 1 to 256. */
-    tactus_model* const* models; /* No model twice. */
+    tactus_model* const* models; /* Different models. */
     const tactus_tool* tools;
     const tactus_object* objects;
     uint32_t tool_count;   /* 1 to 16. */
     uint32_t object_count; /* 1 to 4096. */
-    int64_t period_ns;     /* From frame to frame, 1e4 to 1e9. */
-    int32_t loads_whole;   /* Not 0: a model that fits its share of the memory is loaded wholly. */
-    double object_speed_max_m_per_s; /* 1e-6 to 1e6: see tactus_frame_place(). */
+    int64_t period_ns;     /* Period of frames, 1e4 to 1e9. */
+    int32_t loads_whole;   /* Not 0: models that fit their share of the memory are loaded fully. */
+    double object_speed_max_m_per_s; /* 1e-6 to 1e6, see tactus_frame_place(). */
 } tactus_setup;
 
-/* Identity pose, no friction; a hand of 500 N/m, 8 N, 0.5 N m, 1 m/s; 1 ms, objects of 0.5 m/s.
- * Sizes and abi, too; all else 0. Null is nothing to fill. */
+/* Fill a record with defaults: identity pose, no friction; a tool of 500 N/m, 8 N, 0.5 N m, 1 m/s;
+ * 1 ms and 0.5 m/s for objects; `size` and `abi`; all else 0. Null has no effect. */
 TACTUS_CALL void tactus_tool_default(tactus_tool* tool);
 TACTUS_CALL void tactus_object_default(tactus_object* object);
 TACTUS_CALL void tactus_material_default(tactus_material* material);
 TACTUS_CALL void tactus_setup_default(tactus_setup* setup);
 
-/* Makes a frame in memory that the caller lends until tactus_frame_end(); nothing grows. It starts
- * on a multiple of TACTUS_ALIGNMENT; with too few bytes the call is TACTUS_REFUSED and says how
- * many the models need. Each model serves one frame at a time, and stays open until that ends. */
+/* Creates a frame in memory that the caller provides until tactus_frame_end(); it never grows. The
+ * memory must start on a multiple of TACTUS_ALIGNMENT. TACTUS_REFUSED if it is too small; the line
+ * in `error` has the number of bytes that the models need. Each model serves one frame at a time,
+ * and must stay open until that ends. */
 TACTUS_CALL tactus_result tactus_frame_make(const tactus_setup* setup, void* memory, size_t bytes,
                                             tactus_frame** frame, tactus_error* error);
-/* The memory and the models are the caller's again. Null is nothing to end. */
+/* Ends a frame and releases its memory and models to the caller. Null has no effect. */
 TACTUS_CALL void tactus_frame_end(tactus_frame* frame);
 
-/* One round of loading: what the last frame asked for comes in with the next one, or from a host
- * with a later one. May wait for a file, allocates, not for a real-time thread. */
+/* Runs one round of loading: data that the last frame requested arrive with the next one, from a
+ * model server with a later one. May wait for a file, and allocates: not for a real-time thread. */
 TACTUS_CALL tactus_result tactus_frame_load(tactus_frame* frame, tactus_error* error);
 
-/* What is true of a tool, flags of tactus_poses. */
+/* Flags of a tool, for tactus_poses. */
 #define TACTUS_IN_CONTACT 1U
-#define TACTUS_FROZEN 2U     /* The surface near it has not come yet; its force must fade. */
-#define TACTUS_SQUEEZED 4U   /* Objects leave it no room; its force must fade. */
-#define TACTUS_CROWDED 8U    /* More touches it than the limits allow. */
-#define TACTUS_HELD_BACK 16U /* It went as far as the surface is known. */
-#define TACTUS_OUTRUN 32U    /* What it may touch lags its pose; its force must fade. */
+#define TACTUS_FROZEN 2U     /* Proxy halted: nearby surface not loaded; force must fade. */
+#define TACTUS_SQUEEZED 4U   /* Over-constrained by objects; force must fade. */
+#define TACTUS_CROWDED 8U    /* Contact capacity exceeded. */
+#define TACTUS_HELD_BACK 16U /* Data-limited: proxy moved as far as the loaded surface. */
+#define TACTUS_OUTRUN 32U    /* An object within reach lags its pose; force must fade. */
 
 typedef enum tactus_kind
 {
     TACTUS_EXACT = 0,   /* lower_m and upper_m differ by rounding only. */
-    TACTUS_DECIDED = 1, /* Proven to be out of touch. */
-    TACTUS_BRACKET = 2, /* Lower bound and upper bound, and the question is open. */
-    TACTUS_STALE = 3,   /* Of a pose that is too old. */
-    /* As exact, where coarser faces whose error is taken off lower_m count as the surface. */
+    TACTUS_DECIDED = 1, /* Separated: proven to be out of contact. */
+    TACTUS_BRACKET = 2, /* Bounded below and above; contact undecided. */
+    TACTUS_STALE = 3,   /* Answer for an outdated pose. */
+    /* Exact for coarser faces, whose error is subtracted from lower_m. */
     TACTUS_WITHIN_TOLERANCE = 4
 } tactus_kind;
 
-/* All arrays are the caller's. N poses, T tools, J objects of the set-up, the last index fastest.
- * An output that is null is not written. */
+/* Arrays of the caller for N poses, T tools and J objects of the set-up, last index fastest. Null
+ * outputs are not written. */
 typedef struct tactus_poses
 {
     size_t size;
     size_t count;              /* N */
-    const double* positions_m; /* N x T x 3: the tools' centres, below 1e6 on each axis. */
-    const double* rotations;   /* N x T x 9, or null: none is turned. */
-    double* force_n;           /* N x T x 3, on the hand. */
-    double* torque_nm;         /* N x T x 3, on the hand, about the tool's position. */
-    double* proxy_m;           /* N x T x 3: where the surface lets the tool be. */
+    const double* positions_m; /* N x T x 3: centres of the tools, within 1e6 on each axis. */
+    const double* rotations;   /* N x T x 9, or null: all are the identity. */
+    double* force_n;           /* N x T x 3, on the device. */
+    double* torque_nm;         /* N x T x 3, on the device, about the tool's position. */
+    double* proxy_m;           /* N x T x 3: positions of the proxies. */
     uint32_t* flags;           /* N x T */
-    /* From the tool's core, its radius not taken off, at its place: the proxy at the start of the
-     * frame. */
-    double* lower_m;   /* N x T x J: no surface is nearer. */
-    double* upper_m;   /* N x T x J: some surface is within it; infinite where none is known. */
+    /* Distances from the tool's core, radius not subtracted, at the proxy's position at the start
+     * of the frame. */
+    double* lower_m;   /* N x T x J: lower bounds. */
+    double* upper_m;   /* N x T x J: upper bounds; infinite if unknown. */
     uint8_t* kind;     /* N x T x J: tactus_kind. */
-    double* nearest_m; /* N x T x J x 3: of the surface; NaN where kind isn't TACTUS_EXACT. */
-    uint32_t rounds;   /* Frames for each pose, with loading between: until the answers are exact
-                        * (or decided, of a tool without wants_distance) and no tool waits for the
-                        * surface and nothing is on its way, at most so many, 1 to 10000. 0: one
-                        * frame, no loading. */
+    double* nearest_m; /* N x T x J x 3: nearest points of the surface; NaN unless kind is
+                        * TACTUS_EXACT or TACTUS_WITHIN_TOLERANCE. */
+    uint32_t rounds;   /* Maximum number of frames for each pose, 1 to 10000, with loading between
+                        * them. They end early when the answers are exact (or DECIDED for a tool
+                        * without wants_distance), no tool waits for data, and all motion has
+                        * ended. 0: one frame, no loading. */
 } tactus_poses;
 
-/* Moves the tools through the poses, a frame for each or as many as `rounds` allows; a pose's
- * answers are those of its last frame. All is checked before the first frame runs, in time by the
- * arrays. Without `rounds` it allocates nothing and makes no system call; with them it may do both,
- * and wait for a file. */
+/* Moves the tools through the poses, one frame for each or up to `rounds`; the answers of a pose
+ * are those of its last frame. All inputs are checked before the first frame; that cost grows with
+ * the arrays. Without `rounds` the call does not allocate and makes no system call; with `rounds`
+ * it may do both, and wait for a file. */
 TACTUS_CALL tactus_result tactus_frame_run(tactus_frame* frame, const tactus_poses* poses,
                                            tactus_error* error);
-/* With the next frame the object stands there. While a tool touches it, or may within 20 ms, it is
- * carried there with that frame and those after it: no point of it in the tool's reach goes faster
- * than object_speed_max_m_per_s, so no step of a pose makes a force change faster than by stiffness
- * x speed. Behind by more than 20 ms of that, TACTUS_OUTRUN is true of a tool that it may touch in
- * this frame. The last place that was said counts. At most 64 of these, of objects that are being
- * carried, and of tactus_frame_feel() wait for one frame, of more TACTUS_BUSY. On the thread of
- * tactus_frame_run(), as is tactus_frame_state_of(). */
+/* Sets the pose of an object from the next frame on; the last call counts. If a tool touches the
+ * object, or may within 20 ms, the motion is rate-limited over several frames: no point of the
+ * object in the tool's reach moves faster than object_speed_max_m_per_s, so a step of the pose
+ * changes the force at most at the rate stiffness x speed. If the object is more than 20 ms of that
+ * speed behind, a tool that may touch it in this frame has TACTUS_OUTRUN. Calls of this function
+ * and of tactus_frame_feel(), and objects in motion, occupy up to 64 places for a frame;
+ * TACTUS_BUSY beyond. Thread of tactus_frame_run(), also for tactus_frame_state_of(). */
 TACTUS_CALL tactus_result tactus_frame_place(tactus_frame* frame, uint32_t object,
                                              const tactus_pose* pose, tactus_error* error);
 
-/* From the next frame on the object feels so; tools that touch it go there from what they felt, in
- * even steps within 50 ms. On the same thread. */
+/* Sets the material of an object from the next frame on; tools in contact blend to it linearly
+ * within 50 ms. Thread of tactus_frame_run(). */
 TACTUS_CALL tactus_result tactus_frame_feel(tactus_frame* frame, uint32_t object,
                                             const tactus_material* material, tactus_error* error);
 
-/* Whether each tool, with its centre there, begins inside a closed object where that stands now:
- * the surface then holds it from within, and pulls back a hand that leaves. For before the first
- * frame; allocates, not for a real-time thread. positions_m, T x 3; inside, T: 0 of one that
- * doesn't, and of one that passes through. */
+/* Tests before the first frame whether tools begin inside a closed object at its present pose: the
+ * surface would hold such a tool inside, and pull back a hand that leaves. positions_m, T x 3, has
+ * the tools' centres; inside, T, is set to 1 or 0, and to 0 for query-only tools. Allocates: not
+ * for a real-time thread. */
 TACTUS_CALL tactus_result tactus_frame_begins_inside(const tactus_frame* frame,
                                                      const double* positions_m, uint8_t* inside,
                                                      tactus_error* error);
@@ -276,11 +281,11 @@ TACTUS_CALL tactus_result tactus_frame_begins_inside(const tactus_frame* frame,
 typedef struct tactus_frame_state
 {
     size_t size;
-    uint64_t frames;     /* That were run. */
-    uint32_t pages_used; /* Of all models, of 8 KiB each. */
+    uint64_t frames;     /* Number of frames run. */
+    uint32_t pages_used; /* Pages of all models, 8 KiB each. */
     uint32_t pages_total;
-    uint32_t faces_used; /* Active ones. */
-    int32_t is_whole;    /* Not 0: all models are here and refined wholly (loads_whole). */
+    uint32_t faces_used; /* Active faces. */
+    int32_t is_whole;    /* Not 0: all models are fully resident and refined (loads_whole). */
 } tactus_frame_state;
 
 TACTUS_CALL tactus_result tactus_frame_state_of(const tactus_frame* frame,
