@@ -22,13 +22,13 @@ namespace py = pybind11;
 namespace
 {
 
-/// What the library refuses; Python's tactus.Error.
+/// A refusal of the library; tactus.Error in Python.
 struct TactusError : std::runtime_error
 {
     using std::runtime_error::runtime_error;
 };
 
-/// A call of tactus.h, whose line becomes the exception's.
+/// Calls a function of tactus.h; a fault's line becomes an exception.
 template <typename Call>
 void check(Call&& call)
 {
@@ -92,7 +92,7 @@ std::string shape_text(const py::array& array)
     return py::str(py::tuple(array.attr("shape")));
 }
 
-/// Floats or integers, as doubles in C order.
+/// Floats or integers as doubles in C order.
 Numbers numbers_of(const py::object& given, const char* name)
 {
     const py::array array = py::array::ensure(given);
@@ -182,7 +182,7 @@ tactus_object make_object(std::uint32_t model, const py::object& rotation,
     return object;
 }
 
-/// What a call to run() gives; N poses, T tools, J objects.
+/// Result of run(); N poses, T tools, J objects.
 struct Answers
 {
     py::array_t<double> force_n;
@@ -250,7 +250,8 @@ public:
     Answers run(const py::object& positions_m, const py::object& rotations, std::uint32_t rounds)
     {
         const Numbers positions = numbers_of(positions_m, "positions_m");
-        const bool is_flat = tools_ == 1 && positions.ndim() == 2; // The tools' axis is left out.
+        // The tools' axis may be omitted.
+        const bool is_flat = tools_ == 1 && positions.ndim() == 2;
         const py::ssize_t count = positions.ndim() > 0 ? positions.shape(0) : 0;
         std::vector<py::ssize_t> shape{count};
         if (!is_flat)
@@ -305,7 +306,7 @@ public:
         return answers;
     }
 
-    /// Warns of tools that begin inside; refuses what tactus_frame_run() would refuse as well.
+    /// Warns about tools that begin inside; has the refusals of tactus_frame_run().
     void warn_of_insides(const double* positions_m) const
     {
         std::vector<std::uint8_t> inside(tools_);
@@ -371,21 +372,22 @@ public:
     }
 
 private:
-    std::vector<std::shared_ptr<Model>> models_; ///< Outlive the frame, as does the memory.
+    /// Models, which outlive the frame, as does the memory.
+    std::vector<std::shared_ptr<Model>> models_;
     std::size_t tools_;
     std::size_t objects_;
     std::unique_ptr<std::byte, AlignedDelete> memory_;
     tactus_frame* frame_{nullptr};
-    bool is_new_{true}; ///< No frame was run.
+    bool is_new_{true}; ///< True before the first frame.
 };
 
-/// Of N points.
+/// Distances of N points.
 struct Distances
 {
     py::array_t<double> lower_m;
     py::array_t<double> upper_m;
     py::array_t<std::uint8_t> side;
-    py::array_t<double> nearest_m; ///< N x 3.
+    py::array_t<double> nearest_m; ///< Array of N x 3.
 };
 
 class StaticModel
