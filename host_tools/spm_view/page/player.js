@@ -2,17 +2,17 @@
 // Copyright the Tactus authors.
 
 const TICK_MS = 40;
-/// Moments of a minute that plots show after a leap.
+/// Number of moments of a minute that plots show after a jump.
 const MOMENTS = 120;
 
-/// Plays recordings: which frame is looked at, and how fast it goes on. Frames are asked for one at
-/// a time; a slow machine sees fewer of them.
+/// Plays recordings: the current frame and the speed. Frames are requested one at a time, so a slow
+/// machine shows fewer of them.
 export class Player {
-  /// `take(states, is_leap)` gets the states that end with the frame that is looked at.
+  /// `take(states, is_leap)` receives the states up to the current frame.
   constructor(film, take) {
     this.film = film;
     this.take = take;
-    this.place = 0; // The frame, and how far it is to the next one.
+    this.place = 0; // Frame number; its fraction is progress to the next one.
     this.shown = -1;
     this.speed = 1;
     this.plays = false;
@@ -36,7 +36,7 @@ export class Player {
       this.go_to(0);
     }
   }
-  /// Stops there. The plots begin anew.
+  /// Moves to a frame and restarts the plots.
   go_to(frame) {
     this.place = Math.min(Math.max(frame, 0), this.film.frames - 1);
     this.leap = true;

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 /* global Dygraph */
 
-/// Between two points of a line.
+/// Interval between two points of a line.
 const STEP_S = 0.1;
 
 const norm = (v) => Math.hypot(v[0], v[1], v[2]);
@@ -18,7 +18,7 @@ const times = (controller, names) =>
   names.map((name) => (controller.front && controller.front.times_us ?
     controller.front.times_us[name][0] : null));
 
-/// What each plot shows of a state with a controller; null: nothing there.
+/// Values that each plot shows of a state with a controller; null: no value.
 const PLOTS = [
   {
     title: "stages, µs (mean)", labels: ["T_L", "T_R", "T_B", "T_Q", "force"],
@@ -53,12 +53,12 @@ const PLOTS = [
   },
 ];
 
-// Its legend is HTML with styles in it, which the page's Content-Security-Policy refuses.
+// Dygraph's legend is HTML with inline styles, which the page's Content-Security-Policy refuses.
 Dygraph.PLUGINS = Dygraph.PLUGINS.filter((plugin) => plugin !== Dygraph.Plugins.Legend);
 
 const LINES_MAX = 5;
 
-/// What charts are drawn in, as the theme has it.
+/// Colours of charts in the current theme.
 function colours() {
   const style = getComputedStyle(document.documentElement);
   const value = (name) => style.getPropertyValue(name).trim();
@@ -69,7 +69,7 @@ function colours() {
   };
 }
 
-/// Each name in its colour, with the newest value.
+/// Legend: each name in its colour, with the newest value.
 function show_names(parent, labels, row) {
   parent.replaceChildren(...labels.map((label, i) => {
     const name = document.createElement("span");
@@ -114,7 +114,7 @@ export class Plots {
     return { plot, graph, names };
   }
 
-  /// `end_s` is now on the page's clock, or the moment that is looked at.
+  /// Draws the minute before `end_s`, the present time of the page's clock or the selected moment.
   show(entries, tool, end_s) {
     const shown = [];
     for (const entry of entries) {
@@ -133,7 +133,7 @@ export class Plots {
     }
   }
 
-  /// After the page's colours have changed.
+  /// Redraws after a change of the page's colours.
   take_colours() {
     for (const { graph } of this.graphs) {
       graph.updateOptions(colours());

@@ -4,11 +4,11 @@
 
 const RAMP = [[168, 178, 196], [96, 146, 208], [46, 168, 158], [244, 190, 66], [222, 88, 62]];
 
-/// A picture that takes longer makes those that follow coarser.
+/// Time of a picture beyond which the following ones are coarser.
 const SLOW_MS = 100;
 const LEAST_PIXEL_RATIO = 0.5;
 
-/// 0 .. 1 to red, green, blue of 0 .. 1.
+/// Colour scale: 0 .. 1 to red, green, blue of 0 .. 1.
 export function ramp(share) {
   const place = Math.min(Math.max(share, 0), 1) * (RAMP.length - 1);
   const left = Math.min(Math.floor(place), RAMP.length - 2);
@@ -16,7 +16,7 @@ export function ramp(share) {
     (from + (RAMP[left + 1][i] - from) * (place - left)) / 255);
 }
 
-/// The answer of /front (host_tools/spm_view/cut.hpp).
+/// Decodes the answer of /front (host_tools/spm_view/cut.hpp).
 export function read_cut(buffer) {
   const [vertices, faces] = new Uint32Array(buffer, 0, 2);
   let at = 8;
@@ -34,7 +34,7 @@ export function read_cut(buffer) {
   };
 }
 
-/// The answer of /boxes, /loaded or /wished (host_tools/spm_view/boxes.hpp): lines along edges.
+/// Decodes the answer of /boxes, /loaded or /wished (host_tools/spm_view/boxes.hpp) to edges.
 export function read_boxes(buffer) {
   const count = new Uint32Array(buffer, 0, 1)[0];
   const ends = new Float32Array(buffer, 4, 6 * count);
@@ -60,7 +60,7 @@ export function read_boxes(buffer) {
   return { geometry, count };
 }
 
-/// Sets of boxes on a model that are shown on demand: where they come from and in which colour.
+/// Sets of boxes on a model that are shown on demand, with their source and colour.
 const BOX_SETS = [
   { name: "boxes", colour: 0x3b78d8, wanted: (choice) => choice.level !== "",
     state: (cut) => cut.cut, more: (choice) => ({ level: choice.level }) },
@@ -70,11 +70,11 @@ const BOX_SETS = [
     state: (cut, front) => (cut.wished > 0 ? front.serial : "none"), more: () => ({}) },
 ];
 
-/// Where chunks are looked for: a tool is there, or is foretold to come there.
+/// Regions in which chunks are searched, around the present or the predicted place of a tool.
 const REGION_COLOURS = { present: 0xc94c4c, foretold: 0xa855c7 };
 const REGION_BALL = new THREE.WireframeGeometry(new THREE.IcosahedronBufferGeometry(1, 1));
 
-/// Of a face 0 (coarse) to 1 (fine), and the ends of the scale in words.
+/// Values of a face, 0 (coarse) to 1 (fine), and texts for the ends of the scale.
 function scale_of(cut, by) {
   if (by === "error") {
     let most = 0;
@@ -95,7 +95,7 @@ function scale_of(cut, by) {
   return { share: (i) => cut.levels[i] / most, least: "base", most: `level ${most}` };
 }
 
-/// Each face has its own three corners, so that it has its own colour.
+/// Geometry in which each face has its own three corners, and thus its own colour.
 function geometry_of(cut, by) {
   const positions = new Float32Array(9 * cut.faces);
   const colours = new Float32Array(9 * cut.faces);
@@ -119,7 +119,7 @@ function geometry_of(cut, by) {
 const vector = (v) => new THREE.Vector3(v[0], v[1], v[2]);
 const turn = (q) => new THREE.Quaternion(q[0], q[1], q[2], q[3]);
 
-/// In the words of hrtc's --tool; what can't be drawn is a ball of the tool's radius.
+/// Geometry of a shape in the form of hrtc's --tool; otherwise a sphere of the tool's radius.
 function tool_geometry(shape, radius_m) {
   const [kind, numbers] = (shape || "").split(":");
   const sizes = (numbers || "").split(",").map(Number);
@@ -190,7 +190,7 @@ class ToolMarks {
   }
 }
 
-/// Of a browser that can't draw: everything else goes on.
+/// Scene for a browser without WebGL: everything else works.
 export class NoView {
   show() {}
   recolour() {}
@@ -220,8 +220,8 @@ export class View {
     this.controls = new THREE.OrbitControls(this.camera, canvas);
     this.controls.addEventListener("change", () => this.draw());
     this.controls.addEventListener("start", () => { this.is_fitting = false; });
-    this.is_fitting = true; // To the page's size, until somebody looks elsewhere.
-    this.models = new Map(); // By hash: {cut, wanted, data, geometry, scale, fault}.
+    this.is_fitting = true; // Fits the view to the model until the user moves it.
+    this.models = new Map(); // Models by hash: {cut, wanted, data, geometry, scale, fault}.
     this.objects = new Map();
     this.tools = [];
     this.points = new THREE.Points(new THREE.BufferGeometry(), new THREE.PointsMaterial({
@@ -231,11 +231,11 @@ export class View {
     this.edges = true;
     this.is_fitted = false;
     this.is_drawing = false;
-    this.is_wanted = false; // A picture, after the one that is being drawn.
+    this.is_wanted = false; // A further picture is needed after the present one.
     this.rest_ms = 0;
     this.radius_m = 0.1;
-    this.regions = null; // How many of each kind are shown.
-    this.followed = null; // The number of a tool.
+    this.regions = null; // Number of regions shown, by kind.
+    this.followed = null; // Number of the followed tool.
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
   }
 
@@ -243,7 +243,7 @@ export class View {
   show(controller, choice) {
     const front = controller && controller.front;
     if (!front) {
-      this.models.forEach((model) => { model.fault = ""; }); // What was wrong has gone with it.
+      this.models.forEach((model) => { model.fault = ""; }); // Faults end with the controller.
     }
     const seen = new Set();
     for (const object of front ? front.objects : []) {
@@ -294,7 +294,7 @@ export class View {
     this.go_along();
   }
 
-  /// Fetches the model's faces where others are shown; one at a time.
+  /// Fetches the model's faces if those shown are outdated; one request at a time.
   want(controller, front, hash, cut) {
     const model = this.models.get(hash) || { cut: null, busy: false, fault: "" };
     this.models.set(hash, model);
@@ -308,7 +308,7 @@ export class View {
     fetch(`/front?${where}`)
       .then(async (answer) => {
         if (answer.status === 404) {
-          return; // Its controller has gone meanwhile, or the next front is here.
+          return; // The controller is gone, or a newer state has arrived.
         }
         if (!answer.ok) {
           throw new Error((await answer.text()).trim());
@@ -327,7 +327,7 @@ export class View {
       });
   }
 
-  /// Fetches the boxes that are wanted of the model; one set of a kind at a time.
+  /// Fetches the selected boxes of the model; one set of a kind at a time.
   want_boxes(controller, front, hash, cut, choice) {
     const model = this.models.get(hash);
     model.boxes = model.boxes || BOX_SETS.map(() => ({ key: null, busy: false, geometry: null }));
@@ -352,7 +352,7 @@ export class View {
             Object.assign(mine, { key, geometry, count });
           }
         })
-        .catch(() => {}) // The faces' own answer says what is wrong.
+        .catch(() => {}) // The answer for the faces reports the fault.
         .finally(() => {
           mine.busy = false;
           this.on_change();
@@ -420,7 +420,7 @@ export class View {
     mesh.scale.setScalar(object.scale);
   }
 
-  /// Balls on an object, as many as there are regions.
+  /// Spheres on an object, one for each region.
   place_regions(mesh, regions) {
     while (mesh.balls.children.length < regions.length) {
       mesh.balls.add(new THREE.LineSegments(REGION_BALL, new THREE.LineBasicMaterial({
@@ -445,7 +445,7 @@ export class View {
       untold: front.regions_left_out > 0 ? `${front.regions_left_out} less urgent not told` : "" };
   }
 
-  /// The first model's scale, faces of all, regions where they are shown, and what is wrong.
+  /// Text with the first model's scale, the faces of all, shown regions and faults.
   summary() {
     const models = [...this.models.values()];
     const shown = models.find((model) => model.scale);
@@ -499,7 +499,7 @@ export class View {
     this.is_fitted = true;
   }
 
-  /// Goes near to a tool and stays with it, until fit().
+  /// Moves near a tool and follows it until fit().
   follow(tool) {
     const marks = this.tools[tool];
     if (marks && marks.group.visible) {
@@ -519,7 +519,7 @@ export class View {
     }
   }
 
-  /// From the side on which the first tool is, and a little from above.
+  /// View from the side of the first tool, slightly from above.
   look(target, away_m) {
     const from = new THREE.Vector3(0.35, -0.5, 0.4);
     const marks = this.tools.find((each) => each.group.visible);
@@ -543,9 +543,9 @@ export class View {
     this.draw();
   }
 
-  /// Soon. Rests for twice as long as a picture takes, and coarser pixels where drawing is slow, so
-  /// that a machine without a graphics card still answers clicks. Nothing waits for the picture:
-  /// the page would stand still.
+  /// Draws soon. Pauses of twice a picture's time, and coarser pixels if drawing is slow, keep a
+  /// machine without a graphics card responsive. Nothing waits for the picture, since that would
+  /// block the page.
   draw() {
     this.is_wanted = true;
     if (!this.is_drawing) {
@@ -554,7 +554,7 @@ export class View {
     }
   }
 
-  /// The second frame of the browser from here on comes when this one has been shown.
+  /// Draws now. The browser's second frame from here begins after this picture was shown.
   draw_now() {
     const begin_ms = performance.now();
     this.is_wanted = false;

@@ -15,10 +15,10 @@ const plots = new Plots(by_id("plots"));
 const choice = { controller: "", object: "", tool: 0, shells: false, level: "",
   regions: false };
 let events = null;
-let frozen_s = null; // The moment that is looked at; null: now.
+let frozen_s = null; // Selected moment; null: now.
 let plot_again_s = 0;
 let connection = "connecting to spm_view";
-let player = null; // Of recordings; null: what is live is shown.
+let player = null; // Player of recordings; null: live data are shown.
 
 function make_view() {
   try {
@@ -53,7 +53,7 @@ function listen() {
   };
 }
 
-/// Options of a select, without touching one that is open and right.
+/// Sets the options of a select, unless they are unchanged.
 function offer(select, entries, chosen) {
   const wanted = JSON.stringify(entries);
   if (select.dataset.entries !== wanted) {
@@ -158,7 +158,7 @@ function show_when(time_s) {
   by_id("when").textContent = frozen_s === null ? "live" : `${back_s} s ago`;
 }
 
-/// The moment that is looked at.
+/// Selected moment.
 function shown_s() {
   return player ? player.time_s() : frozen_s === null ? now_s() : frozen_s;
 }
@@ -205,7 +205,7 @@ function look_at(time_s) {
   show();
 }
 
-/// What differs between two recordings, each with a way to it, and why one ends early.
+/// Differences between two recordings, each with a link, and the reason why one ends early.
 function show_notes(film) {
   const notes = by_id("film-notes");
   const lines = film.films.filter((each) => each.note !== "").map((each) =>
@@ -268,7 +268,7 @@ function play(state) {
   player.go_to(0);
 }
 
-/// What is live, or recordings: the first answer says which.
+/// Live data or recordings, as the first answer states.
 function begin() {
   fetch("/state").then((answer) => answer.json()).then((state) => {
     if (state.film) {
