@@ -444,8 +444,8 @@ PYBIND11_MODULE(tactus, module)
 {
     using namespace py::literals;
     module.doc() =
-        R"(Distances and forces of tools at triangle meshes, exact or with a proven bound.
-Units are SI; docs/python.md tells more.
+        R"(Distances and forces between tools and triangle meshes, exact or with proven bounds.
+Units are SI; see docs/python.md.
 
 >>> import tactus
 >>> model = tactus.Model("torus.spm")
@@ -476,19 +476,21 @@ True
     module.attr("OUTRUN") = TACTUS_OUTRUN;
     module.attr("HELD_BACK") = TACTUS_HELD_BACK;
 
-    py::class_<Model, std::shared_ptr<Model>>(module, "Model", R"(An .spm model; serves one Frame.
+    py::class_<Model, std::shared_ptr<Model>>(module, "Model",
+                                              R"(An .spm model, for one Frame at a time.
 
 >>> model = tactus.Model("torus.spm")
 >>> model.faces, model.is_closed, len(model.hash)
 (5000, True, 32)
 )")
-        .def(py::init<const std::string&>(), "path"_a, "Opens a file.")
+        .def(py::init<const std::string&>(), "path"_a,
+             "Opens an .spm file; raises Error if it is refused.")
         .def_static(
             "find",
             [](const std::string& name, std::uint32_t domain, double wait_s)
             { return std::make_shared<Model>(name, domain, wait_s); },
             "name"_a, "domain"_a = 0, "wait_s"_a = 10.0,
-            "Finds NAME or NAME@HASH among what is published over DDS.")
+            "Finds the model NAME or NAME@HASH on a DDS domain; waits at most wait_s seconds.")
         .def_property_readonly("faces", [](const Model& m) { return m.info().faces; })
         .def_property_readonly("vertices", [](const Model& m) { return m.info().vertices; })
         .def_property_readonly("diagonal_m", [](const Model& m) { return m.info().diagonal_m; })
@@ -500,12 +502,13 @@ True
     module.attr("UNSIGNED") = static_cast<int>(TACTUS_UNSIGNED);
     module.attr("OUTSIDE") = static_cast<int>(TACTUS_OUTSIDE);
     module.attr("INSIDE") = static_cast<int>(TACTUS_INSIDE);
-    py::class_<Distances>(module, "Distances", "Arrays of N points.")
+    py::class_<Distances>(module, "Distances",
+                          "Distances of N points: arrays of N, nearest_m of N x 3.")
         .def_readonly("lower_m", &Distances::lower_m)
         .def_readonly("upper_m", &Distances::upper_m)
         .def_readonly("side", &Distances::side)
         .def_readonly("nearest_m", &Distances::nearest_m);
-    py::class_<StaticModel>(module, "StaticModel", R"(All of a model, refined to its source mesh.
+    py::class_<StaticModel>(module, "StaticModel", R"(A whole model, refined to its source mesh.
 
 >>> answer = tactus.StaticModel("torus.spm").distances([[0.05, 0, 0], [0, 0, 0]])
 >>> [int(side) for side in answer.side] == [tactus.INSIDE, tactus.OUTSIDE]
@@ -513,10 +516,10 @@ True
 )")
         .def(py::init<const std::string&>(), "path"_a)
         .def("distances", &StaticModel::distances, "points_m"_a,
-             "From N x 3 points of the source's frame to its surface.");
+             "Distances from N x 3 points, in the source's frame, to the surface.");
 
-    py::class_<tactus_tool>(module, "Tool", R"(What touches: everything within a radius of its core.
-1e-6 to 1 m; one that passes through, which only measures, to 1000 m.
+    py::class_<tactus_tool>(module, "Tool", R"(A tool: all points within radius_m of its core.
+The radius is 1e-6 to 1 m, up to 1000 m for a query-only tool (passes_through).
 
 >>> ball = tactus.Tool(0.002, stiffness_n_per_m=800)
 >>> pen = tactus.Tool(0.001, shape="capsule", half_m=[0, 0, 0.04])
@@ -527,8 +530,8 @@ True
              "torque_max_nm"_a = py::none(), "speed_max_m_per_s"_a = py::none(),
              "smooth_m"_a = 0.0);
 
-    py::class_<tactus_object>(module, "Object", R"(Where a model stands in the world.
-A scale of 0.001 to 1000, within 10,000 m; friction of 0 to 3, the dynamic at most the static one.
+    py::class_<tactus_object>(module, "Object", R"(A model with a pose in the world.
+Scale 0.001 to 1000, within 10,000 m; friction 0 to 3, the dynamic one at most the static one.
 
 >>> cup = tactus.Object(translation_m=[0.1, 0, 0], static_friction=0.4, dynamic_friction=0.3)
 )")
@@ -536,7 +539,8 @@ A scale of 0.001 to 1000, within 10,000 m; friction of 0 to 3, the dynamic at mo
              "translation_m"_a = py::none(), "scale"_a = 1.0, "static_friction"_a = 0.0,
              "dynamic_friction"_a = 0.0);
 
-    py::class_<Answers>(module, "Answers", "Arrays of N poses, T tools, J objects.")
+    py::class_<Answers>(module, "Answers",
+                        "Answers of a run: arrays over N poses, T tools and J objects.")
         .def_readonly("force_n", &Answers::force_n)
         .def_readonly("torque_nm", &Answers::torque_nm)
         .def_readonly("proxy_m", &Answers::proxy_m)
@@ -546,7 +550,7 @@ A scale of 0.001 to 1000, within 10,000 m; friction of 0 to 3, the dynamic at mo
         .def_readonly("kind", &Answers::kind)
         .def_readonly("nearest_m", &Answers::nearest_m);
 
-    py::class_<Frame>(module, "Frame", R"(Tools at objects, in memory that never grows.
+    py::class_<Frame>(module, "Frame", R"(Tools and objects, in memory that never grows.
 
 >>> frame = tactus.Frame([tactus.Model("torus.spm")], [tactus.Tool(0.002)], [tactus.Object()],
 ...                      memory_mib=32, loads_whole=True)
@@ -562,15 +566,16 @@ A scale of 0.001 to 1000, within 10,000 m; friction of 0 to 3, the dynamic at mo
              "models"_a, "tools"_a, "objects"_a, py::kw_only(), "memory_mib"_a = 16.0,
              "period_s"_a = 1e-3, "loads_whole"_a = false, "object_speed_max_m_per_s"_a = 0.5)
         .def("run", &Frame::run, "positions_m"_a, "rotations"_a = py::none(), "rounds"_a = 0,
-             "Moves the tools through N poses, one frame each; with `rounds` as many, with loading "
-             "between, until the answers are exact, within tolerance or decided.")
-        .def("load", &Frame::load, "One round of loading.")
+             "Moves the tools through N poses, one frame each; with `rounds` up to that many, with "
+             "loading between, until the answers are exact, within tolerance or decided.")
+        .def("load", &Frame::load, "Runs one round of loading.")
         .def("place", &Frame::place, "object"_a, py::kw_only(), "rotation"_a = py::none(),
              "translation_m"_a = py::none(), "scale"_a = 1.0,
-             "With the next frame the object stands there.")
-        .def("feel", &Frame::feel, "object"_a, py::kw_only(), "stiffness_n_per_m"_a = 0.0,
-             "static_friction"_a = 0.0, "dynamic_friction"_a = 0.0, "damping_n_s_per_m"_a = 0.0,
-             "viscosity_n_s_per_m"_a = 0.0, "texture_height_m"_a = 0.0, "texture_length_m"_a = 0.0,
-             "From the next frame on the object feels so; what touches it goes there within 50 ms.")
+             "Sets the pose of an object from the next frame on.")
+        .def(
+            "feel", &Frame::feel, "object"_a, py::kw_only(), "stiffness_n_per_m"_a = 0.0,
+            "static_friction"_a = 0.0, "dynamic_friction"_a = 0.0, "damping_n_s_per_m"_a = 0.0,
+            "viscosity_n_s_per_m"_a = 0.0, "texture_height_m"_a = 0.0, "texture_length_m"_a = 0.0,
+            "Sets the material of an object from the next frame on; contacts blend to it in 50 ms.")
         .def("state", &Frame::state);
 }
