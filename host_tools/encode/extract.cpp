@@ -76,7 +76,7 @@ private:
 class Cut
 {
 public:
-    /// With a limit, no state with a larger bound stays active, now and after every require().
+    /// No state with a bound above the limit stays active, now and after every require().
     Cut(const DecodedModel& model, std::optional<double> limit_m)
         : model_(model)
         , is_split_(model.header().counts().records)

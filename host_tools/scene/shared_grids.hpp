@@ -40,9 +40,9 @@ public:
     /// Adds an object that shows the model, whose mesh this is. Linear in its vertices.
     void add(std::size_t model, const Pose& pose, const TriangleMesh& mesh);
 
-    /// For each model, the first of those that it meets, directly or through others; itself if it
-    /// meets none. Two models meet if at least two of their vertices coincide and their objects
-    /// have the same rotation and scale; otherwise no grid fits both.
+    /// First model that each model meets, directly or through others; itself if it meets none. Two
+    /// models meet if at least two of their vertices coincide and their objects have the same
+    /// rotation and scale; otherwise no grid fits both.
     [[nodiscard]] std::vector<std::size_t> first_of_each();
 
 private:

@@ -13,8 +13,7 @@
 namespace tactus
 {
 
-/// For each face, the face across the edge from corner i to corner i + 1; Collapse::kNoFace on a
-/// border.
+/// Face across the edge from corner i to corner i + 1 of each face; Collapse::kNoFace on a border.
 using FaceNeighbours = std::vector<std::array<std::uint32_t, 3>>;
 
 /// Finds the faces that share an edge. Refuses, naming the face or edge: no faces or too many,

@@ -37,7 +37,7 @@ bool has(const Face& face, std::uint32_t vertex)
     return face[corner_of(face, vertex)] == vertex;
 }
 
-/// For each first end, the list of second ends.
+/// List of second ends by first end.
 IndexLists second_ends(std::size_t numbers, std::span<const MeshEdge> pairs)
 {
     return {numbers, [pairs](const auto& add)

@@ -51,7 +51,7 @@ std::size_t corners_max(const ModelOptions& options)
                : SharedGrids::kCornersMax;
 }
 
-/// For each model, the first of those that it meets.
+/// First model that each model meets.
 Result<std::vector<std::size_t>, Refusal> find_groups(Scene& scene, const ScenePlan& plan,
                                                       const ModelOptions& options)
 {

@@ -18,7 +18,7 @@ namespace
 struct Words
 {
     const char* why;
-    const char* back; ///< "comes back ..."
+    const char* back; ///< Condition of the return, after "comes back".
 };
 
 /// Texts in the order of ForceOff's bits (docs/safety.md).

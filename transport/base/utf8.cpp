@@ -16,7 +16,7 @@ using Range = std::pair<std::string_view, std::string_view>;
 
 /// First and last characters of ranges without letters, all rare.
 constexpr std::array<Range, 20> kNoLetters{{
-    {"\u0080", "\u00A9"}, // Controls, blanks and signs of Latin-1, but for its three letters.
+    {"\u0080", "\u00A9"}, // Controls, blanks and signs of Latin-1, except for its three letters.
     {"\u00AB", "\u00B4"}, {"\u00B6", "\u00B9"},         {"\u00BB", "\u00BF"},
     {"\u034F", "\u034F"}, {"\u061C", "\u061C"},         {"\u115F", "\u1160"},
     {"\u1680", "\u1680"}, {"\u17B4", "\u17B5"},         {"\u180B", "\u180F"},

@@ -61,7 +61,7 @@ private:
     std::uint32_t id_{0};
     /// Default configuration, shared by the process; outlives participants.
     std::shared_ptr<Entity> configuration_;
-    std::unique_ptr<Participants> participants_; ///< In use as long as there are readers.
+    std::unique_ptr<Participants> participants_; ///< Used by all readers, which must end first.
     Entity participant_;
     /// Destroyed before the participant.
     std::unique_ptr<Disposal> disposal_{std::make_unique<Disposal>()};

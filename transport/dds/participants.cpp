@@ -329,7 +329,7 @@ bool Participants::is_called(const ParticipantId& who, const std::string& server
 
 std::string Participants::certificate_of(const ParticipantId& who) const
 {
-    constexpr std::uint8_t kSecured = 0x80; // Without security, a GUID begins with the vendor's 01.
+    constexpr std::uint8_t kSecured = 0x80; // A GUID without security begins with the vendor's 01.
     constexpr std::size_t kBytes = 6;
     if ((own_[0] & kSecured) == 0 || (who[0] & kSecured) == 0)
     {

@@ -81,7 +81,7 @@ public:
 
 private:
     using Clock = std::chrono::steady_clock;
-    enum class Objects : std::uint8_t // As in tactus_v5_Wanted.
+    enum class Objects : std::uint8_t // Values of tactus_v5_Wanted::objects.
     {
         not_wanted,
         waits,

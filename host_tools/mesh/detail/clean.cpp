@@ -80,7 +80,7 @@ Face sorted(Face face)
     return face;
 }
 
-/// For each face the first face with the same key.
+/// First face with the same key, by face.
 template <typename Key>
 std::vector<std::uint32_t> first_with_equal_key(const std::vector<Face>& faces, Key key)
 {

@@ -27,7 +27,7 @@ std::size_t drop_duplicate_faces(std::vector<Face>& faces);
 /// Drops vertices that no face uses and renumbers the rest.
 std::size_t drop_isolated_vertices(TriangleMesh& mesh);
 
-/// For each face, 1 if an earlier face has the same vertices in the opposite orientation, otherwise
+/// Flags by face: 1 if an earlier face has the same vertices in the opposite orientation, otherwise
 /// 0. Empty if there is no such face.
 [[nodiscard]] std::vector<std::uint8_t> mark_opposite_copies(const std::vector<Face>& faces);
 

@@ -139,7 +139,7 @@ private:
         {
             return cursor_.error("expected the numbers of vertices and faces (ASCII OFF)");
         }
-        if (cursor_.line() != line) // With one number a line, that of the edges is on the next.
+        if (cursor_.line() != line) // One number a line: that of the edges is on the next.
         {
             next();
         }

@@ -255,7 +255,7 @@ std::size_t stitch_once(TriangleMesh& mesh, double tolerance, std::size_t first_
     return mesh.faces.size() - before;
 }
 
-/// For each vertex, the first border vertex within the tolerance of it that keeps its position.
+/// First border vertex within the tolerance of each vertex that keeps its position.
 std::vector<std::uint32_t> first_near(const TriangleMesh& mesh, const std::vector<bool>& is_border,
                                       const VertexCells& cells, double tolerance)
 {
