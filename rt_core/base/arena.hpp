@@ -13,12 +13,12 @@
 namespace tactus
 {
 
-/// Hands out parts of one span of memory that was lent at start-up; nothing is given back singly.
-/// The memory outlives the arena and all that is taken from it; no destructor of a value runs.
+/// Hands out parts of one span of memory that was lent at start-up; parts are not returned singly.
+/// The memory outlives the arena and all parts taken from it; no destructor of a value runs.
 ///
-/// A measuring arena only counts: its spans have their size but no memory. A pool built on one
-/// tells how many bytes it needs and must not be used; constructors that fill their memory
-/// return first when `is_measuring()`.
+/// A measuring arena only counts: its spans have a size but no memory. A pool built on one reports
+/// how many bytes it needs and must not be used; constructors that fill their memory return first
+/// if `is_measuring()`.
 class Arena
 {
 public:
@@ -33,8 +33,8 @@ public:
     static Arena measuring() noexcept { return Arena{{}}; }
     [[nodiscard]] bool is_measuring() const noexcept { return memory_.data() == nullptr; }
 
-    /// `count` default-constructed values on a cache line of their own. A bug when the memory is
-    /// too small (asserted): sizes are decided by measuring beforehand.
+    /// `count` default-constructed values, starting on a cache line of their own. Too little memory
+    /// is a bug (asserted): sizes are measured beforehand.
     template <typename T>
     [[nodiscard]] std::span<T> take(std::size_t count) noexcept
     {
@@ -54,7 +54,7 @@ public:
         return {first, count};
     }
 
-    /// Bytes handed out, with what fills up their cache lines.
+    /// Bytes handed out, including the padding of their cache lines.
     [[nodiscard]] std::size_t used() const noexcept { return used_; }
     /// Bytes not handed out yet; none when measuring.
     [[nodiscard]] std::size_t left() const noexcept
@@ -62,7 +62,7 @@ public:
         return is_measuring() ? 0 : memory_.size() - used_;
     }
 
-    /// To whole cache lines.
+    /// Size rounded up to whole cache lines.
     [[nodiscard]] static constexpr std::size_t round_up(std::size_t bytes) noexcept
     {
         return (bytes + kAlignment - 1) / kAlignment * kAlignment;

@@ -9,15 +9,16 @@
 namespace tactus
 {
 
-/// Called with the failed condition's text and place, on the thread where it failed, the haptic one
-/// too. Must not return to the caller's bug silently: when it does return, the assertion traps.
+/// Handler of a failed assertion, called with the condition's text and place on the thread where it
+/// failed, which may be the haptic one. Must not return to the caller's bug silently: if it
+/// returns, the assertion traps.
 using AssertHandler = void (*)(const char* condition, const char* file, int line) noexcept;
 
-/// Replaces the handler for the whole process; returns the one before. Null is the default one,
-/// which only traps. Call it at start-up only.
+/// Replaces the handler of the whole process and returns the previous one. Null is the default
+/// handler, which only traps. Call it at start-up only.
 AssertHandler set_assert_handler(AssertHandler handler) noexcept;
 
-/// What TACTUS_ASSERT calls: the handler, then a trap. Any thread.
+/// Calls the handler, then traps; used by TACTUS_ASSERT. Any thread.
 [[noreturn]] void assertion_failed(const char* condition, const char* file, int line) noexcept;
 
 } // namespace tactus

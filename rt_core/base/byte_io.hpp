@@ -39,7 +39,7 @@ public:
         return value;
     }
 
-    /// The next `count` bytes themselves; empty and failed when there are fewer.
+    /// The next `count` bytes themselves; empty and failed if there are fewer.
     [[nodiscard]] std::span<const std::byte> read_bytes(std::size_t count) noexcept
     {
         if (bytes_.size() - at_ < count)

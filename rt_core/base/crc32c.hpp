@@ -13,7 +13,7 @@ namespace tactus
 namespace detail
 {
 
-/// Of a reflected polynomial.
+/// Table of a reflected polynomial.
 constexpr std::array<std::uint32_t, 256> make_crc32_table(std::uint32_t polynomial) noexcept
 {
     std::array<std::uint32_t, 256> table{};
@@ -34,8 +34,8 @@ inline constexpr std::array<std::uint32_t, 256> kCrc32Table = make_crc32_table(k
 
 } // namespace detail
 
-/// CRC-32 of the bytes, by a reflected polynomial: guards against noise, not against forgery.
-/// `before` is that of bytes in front of them.
+/// CRC-32 of the bytes with a reflected polynomial: guards against noise, not against forgery.
+/// `before` is the CRC of the bytes in front of them.
 template <std::uint32_t kPolynomial>
 [[nodiscard]] constexpr std::uint32_t crc32_by(std::span<const std::byte> bytes,
                                                std::uint32_t before = 0) noexcept

@@ -9,17 +9,17 @@
 namespace tactus
 {
 
-/// What a validator found first: nothing, or which thing breaks which promise.
+/// First finding of a validator: nothing, or a thing that breaks a promise.
 struct Flaw
 {
-    const char* thing{nullptr}; ///< "block", "face" ...; null when everything is sound.
-    std::uint32_t index{0};     ///< The number that such a thing is known by.
-    const char* what{nullptr};  ///< What is wrong with it: "is in use and free".
+    const char* thing{nullptr}; ///< "block", "face" ...; null if everything is sound.
+    std::uint32_t index{0};     ///< Number of that thing.
+    const char* what{nullptr};  ///< Description of the flaw: "is in use and free".
 
     [[nodiscard]] constexpr bool is_none() const noexcept { return thing == nullptr; }
 };
 
-/// "block 12 is in use and free", cut to 127 characters; empty when there is no flaw.
+/// "block 12 is in use and free", cut to 127 characters; empty if there is no flaw.
 using FlawText = std::array<char, 128>;
 
 [[nodiscard]] constexpr FlawText text_of(const Flaw& flaw) noexcept
@@ -52,7 +52,7 @@ using FlawText = std::array<char, 128>;
 class FlawFinder
 {
 public:
-    /// A promise about one thing; false when it is broken, so that a walk may leave the rest out.
+    /// Checks a promise about one thing; false if it is broken, so that a walk may skip the rest.
     constexpr bool expect(bool holds, const char* thing, std::uint32_t index,
                           const char* what) noexcept
     {

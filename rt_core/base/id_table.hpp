@@ -12,10 +12,10 @@
 namespace tactus
 {
 
-/// Fixed open-addressing table from a 32-bit id to a 32-bit value (a pool slot). With owners, each
-/// has ids of its own, and their numbers take the upper bits of the value.
+/// Fixed open-addressing table from a 32-bit id to a 32-bit value (a pool slot). Each owner has its
+/// own ids; the owner's number takes the upper bits of the value.
 ///
-/// Linear probing at a load of at most one half; erasing shifts later entries back, so there are no
+/// Linear probing at a load of at most one half. Erasing shifts later entries back, so there are no
 /// tombstones and a probe's length depends on the present content alone. 16 B per entry of
 /// capacity.
 template <std::uint32_t kOwnerBits>
@@ -54,7 +54,7 @@ public:
         }
     }
 
-    /// Adds an id that is absent; false when the table is full.
+    /// Adds an id that is absent; false if the table is full.
     [[nodiscard]] bool try_insert(std::uint32_t id, std::uint32_t value,
                                   std::uint32_t owner = 0) noexcept
     {

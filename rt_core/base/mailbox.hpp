@@ -12,26 +12,26 @@
 namespace tactus
 {
 
-/// The newest value of one writer, for any number of readers, without a lock (a seqlock): the
+/// The newest value of one writer, for any number of readers, without a lock (a seqlock). The
 /// writer never waits; a reader that meets a write tries again a few times, then gives up.
 ///
 /// The count is odd while a write is under way. Words are stored with release and loaded with
-/// acquire, so that a reader that saw a word of a write also sees, in its second look at the
-/// count, that this write began; a fence would do as well, but the thread sanitizer knows none.
+/// acquire: a reader that saw a word of a write also sees, when it loads the count again, that this
+/// write began. A fence would do as well, but the thread sanitizer does not support fences.
 ///
-/// `Atomic` and `tries` are others in tests/interleave only, which runs this code in every order
-/// that the memory model allows.
+/// Only tests/interleave sets `Atomic` and `tries`; it runs this code in every order that the
+/// memory model allows.
 template <typename T, template <typename> typename Atomic = std::atomic, int tries = 16>
 class Mailbox
 {
     static_assert(std::is_trivially_copyable_v<T>);
 
 public:
-    /// A write takes some 20 ns: only a writer that lost its processor in the middle of one makes
-    /// a reader run out of tries.
+    /// A write takes about 20 ns: a reader runs out of tries only if the writer lost its processor
+    /// in the middle of a write.
     static constexpr int kTries = tries;
 
-    /// The writer's thread.
+    /// The writer's thread only.
     void write(const T& value) noexcept
     {
         Words words{};
@@ -45,8 +45,8 @@ public:
         count_.store(count + 2, std::memory_order_release); // Pairs with try_read().
     }
 
-    /// Any thread. False, with `value` as it was, when nothing was written yet or when each try met
-    /// a write: keep what you have. Bounded: kTries copies.
+    /// Any thread. False, with `value` unchanged, if nothing was written yet or each try met a
+    /// write. At most kTries copies.
     [[nodiscard]] bool try_read(T& value) const noexcept
     {
         for (int i = 0; i < kTries; ++i)
@@ -57,7 +57,7 @@ public:
             {
                 words[word] = words_[word].load(std::memory_order_acquire); // See write().
             }
-            // Not before the words were loaded: their acquires see to it.
+            // The acquires of the words keep this load behind them.
             const bool is_whole = count_.load(std::memory_order_relaxed) == before;
             if (is_whole && before % 2 == 0)
             {

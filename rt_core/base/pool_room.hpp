@@ -10,15 +10,15 @@
 namespace tactus
 {
 
-/// What one owner has of a pool, in slots.
+/// Slots of a pool that one owner has.
 struct PoolShare
 {
-    std::uint32_t promised{0}; ///< Kept for it, whatever others need.
+    std::uint32_t promised{0}; ///< Slots reserved for this owner.
     std::uint32_t used{0};
 };
 
-/// Counts the slots of a pool with several owners. To each some are promised, which nobody else can
-/// take; the rest is for whoever needs it. An owner that is alone has all of them.
+/// Counts the slots of a pool with several owners. Each owner may have a promise, slots that no
+/// other owner can take; all others may take the rest. A single owner has all slots.
 class PoolRoom
 {
 public:
@@ -32,8 +32,8 @@ public:
         kept_ += share.promised;
         return share;
     }
-    /// Promises all of `slots` to an owner that has nothing so far. False, with nothing changed,
-    /// where fewer are neither taken nor promised.
+    /// Promises all of `slots` to an owner that has none so far. False, with nothing changed, if
+    /// fewer are neither taken nor promised.
     [[nodiscard]] bool try_promise(PoolShare& share, std::uint32_t slots) noexcept
     {
         TACTUS_ASSERT(share.promised == 0);
@@ -46,14 +46,14 @@ public:
         kept_ += slots;
         return true;
     }
-    /// The owner has nothing any more, and nothing is kept for it.
+    /// Ends the promise of an owner that has no slot in use.
     void end_promise(PoolShare& share) noexcept
     {
         TACTUS_ASSERT(share.used == 0);
         kept_ -= share.promised;
         share.promised = 0;
     }
-    /// How many more the owner may take.
+    /// Number of slots that the owner may still take.
     [[nodiscard]] std::uint32_t left_for(const PoolShare& share) const noexcept
     {
         const std::int64_t own = share.used < share.promised ? share.promised - share.used : 0;
@@ -64,7 +64,7 @@ public:
         TACTUS_ASSERT(left_for(share) > 0);
         take_unasked(share);
     }
-    /// The same for what can't be refused: there may be less than nothing left afterwards.
+    /// Takes a slot that can't be refused: fewer than none may be left afterwards.
     void take_unasked(PoolShare& share) noexcept
     {
         kept_ -= share.used < share.promised ? 1 : 0;
@@ -88,7 +88,7 @@ public:
 private:
     std::uint32_t capacity_;
     std::int64_t free_;
-    std::int64_t kept_{0}; ///< Of the free ones, what is promised and not taken.
+    std::int64_t kept_{0}; ///< Free slots that are promised and not taken.
 };
 
 } // namespace tactus

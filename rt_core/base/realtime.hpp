@@ -3,18 +3,18 @@
 #pragma once
 
 /// Marks a function that the haptic thread runs: it neither allocates nor locks, waits, throws,
-/// logs or calls the system, and calls only what is marked, too. It stands behind the parameters
-/// and noexcept, and is part of the function's type: a pointer to it must be marked as well.
+/// logs or calls the system, and calls only marked functions. The mark follows the parameters and
+/// noexcept and is part of the function's type: a pointer to it must be marked as well.
 ///
 ///     void refit(Work& work) noexcept TACTUS_NONBLOCKING;
 ///
-/// clang 20 and later hold it: -Wfunction-effects when compiling, and the realtime sanitizer when
-/// running (preset rtsan). Other compilers read nothing. Only what other sources call needs the
-/// mark: of functions whose body it sees, ours, the standard library's or Eigen's, clang finds out
-/// by itself. It can't for calls through a pointer: hand algorithms a lambda, not a function.
+/// clang 20 and later check the mark: -Wfunction-effects when compiling, the realtime sanitizer
+/// when running (preset rtsan). Other compilers ignore it. Only functions that other sources call
+/// need the mark: clang infers it for functions whose body it sees. It can't for calls through a
+/// pointer, so algorithms take lambdas, not functions.
 ///
-/// TACTUS_TRUSTED_BEGIN and _END stand around a function that calls what has no mark but keeps its
-/// promise, with the reason beside it. rt_core has one: libccd's answer on convex bodies.
+/// TACTUS_TRUSTED_BEGIN and _END enclose a function that calls unmarked code but keeps its promise;
+/// the reason stands beside it. rt_core has one: libccd's answer on convex bodies.
 // NOLINTBEGIN(cppcoreguidelines-macro-usage): attributes and pragmas, which functions can't be.
 #if defined(__has_cpp_attribute) && defined(__clang__)
 #if __has_cpp_attribute(clang::nonblocking)

@@ -11,7 +11,7 @@
 namespace tactus
 {
 
-/// A value, or the reason why set-up or input was refused. State is unchanged after a refusal.
+/// A value, or the reason why set-up or input was refused. A refusal leaves the state unchanged.
 /// `Value` and `Error` must be different types.
 template <typename Value, typename Error>
 class [[nodiscard]] Result
@@ -23,7 +23,7 @@ public:
     [[nodiscard]] bool has_value() const noexcept { return content_.index() == 0; }
     explicit operator bool() const noexcept { return has_value(); }
 
-    /// The value; a bug to ask for it after a refusal.
+    /// The value; calling it after a refusal is a bug (asserted).
     [[nodiscard]] Value& value() & noexcept
     {
         TACTUS_ASSERT(has_value());
@@ -40,7 +40,7 @@ public:
         return std::move(*std::get_if<0>(&content_));
     }
 
-    /// The reason; a bug to ask for it when there is a value.
+    /// The reason; calling it when there is a value is a bug (asserted).
     [[nodiscard]] const Error& error() const noexcept
     {
         TACTUS_ASSERT(!has_value());
@@ -51,7 +51,7 @@ private:
     std::variant<Value, Error> content_;
 };
 
-/// What a function returns that has nothing to say but "done".
+/// Value of a Result that only reports success.
 struct Done
 {
 };

@@ -7,7 +7,7 @@
 namespace tactus
 {
 
-/// Sorts few things; `before` tells any two apart. std::sort calls itself.
+/// Sorts a short list; `before` is a strict total order. std::sort is recursive.
 template <typename List, typename Before>
 void sort_without_recursion(List& list, const Before& before) noexcept
 {

@@ -17,12 +17,12 @@ namespace tactus
 ///
 /// Head and tail count up without wrapping to the capacity; slot = count modulo capacity, so all
 /// slots are usable and empty (equal) differs from full (capacity apart). Each side writes only its
-/// own counter: the producer publishes a filled slot with the release store of `tail_`, the
-/// consumer hands a read slot back with the release store of `head_`.
-/// The slots are lent at construction and must outlive the queue.
+/// own counter: the producer publishes a filled slot by the release store of `tail_`, the consumer
+/// returns a read slot by the release store of `head_`. The slots are lent at construction and must
+/// outlive the queue.
 ///
-/// `Atomic` and `Slot` are what tests/interleave puts its own types in place of, to run this code
-/// in every order that the memory model allows; nobody else names them.
+/// Only tests/interleave sets `Atomic` and `Slot`; it runs this code in every order that the memory
+/// model allows.
 template <typename T, template <typename> typename Atomic = std::atomic, typename Slot = T>
 class SpscQueue
 {
@@ -34,7 +34,7 @@ public:
         TACTUS_ASSERT(!slots.empty());
     }
 
-    /// Producer thread. False when the queue is full; nothing is changed then.
+    /// Producer thread. False, with nothing changed, if the queue is full.
     [[nodiscard]] bool try_push(const T& value) noexcept
     {
         const std::uint64_t tail = tail_.load(std::memory_order_relaxed); // Only we write it.
@@ -48,7 +48,7 @@ public:
         return true;
     }
 
-    /// Consumer thread. False when the queue is empty; `value` is unchanged then.
+    /// Consumer thread. False, with `value` unchanged, if the queue is empty.
     [[nodiscard]] bool try_pop(T& value) noexcept
     {
         const std::uint64_t head = head_.load(std::memory_order_relaxed); // Only we write it.
@@ -62,10 +62,10 @@ public:
         return true;
     }
 
-    /// Either thread: how many values wait; exact only on a quiet queue.
+    /// Either thread. Number of values in the queue; exact only while neither thread uses it.
     [[nodiscard]] std::size_t size() const noexcept
     {
-        // Acquire on both so that neither count is read from before the other's last hand-over.
+        // Both loads acquire, so neither count is older than the other's last hand-over.
         const std::uint64_t head = head_.load(std::memory_order_acquire);
         return static_cast<std::size_t>(tail_.load(std::memory_order_acquire) - head);
     }

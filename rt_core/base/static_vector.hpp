@@ -14,9 +14,9 @@
 namespace tactus
 {
 
-/// At most `Capacity` values in place. For small lists on the stack or inside records. Costs
-/// nothing to make: room that isn't used is not initialised. An index beyond the size is a bug, as
-/// is pop_back() of an empty one (both asserted).
+/// At most `Capacity` values in place, for short lists on the stack or inside records. Construction
+/// costs nothing: unused capacity is not initialised. An index beyond the size and pop_back() of an
+/// empty list are bugs (asserted).
 template <typename T, std::size_t Capacity>
 class StaticVector // NOLINT(cppcoreguidelines-special-member-functions): moving is copying.
 {
@@ -36,7 +36,7 @@ public:
     }
     ~StaticVector() = default;
 
-    /// Appends; returns false and changes nothing when full.
+    /// Appends; false, with nothing changed, if the list is full.
     [[nodiscard]] bool try_push_back(const T& value) noexcept
     {
         if (size_ == Capacity)
@@ -48,7 +48,7 @@ public:
         return true;
     }
 
-    /// Appends where the caller knows that there is room; a bug when there is none (asserted).
+    /// Appends; a full list is a bug (asserted).
     void push_back(const T& value) noexcept
     {
         const bool pushed = try_push_back(value);
