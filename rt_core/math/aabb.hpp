@@ -13,8 +13,8 @@
 namespace tactus
 {
 
-/// Axis-aligned box in single precision, rounded outward; frame and unit are those of who has it.
-/// The default box is empty: its union with any box is that box.
+/// Axis-aligned box in single precision, rounded outward; its owner defines frame and unit. The
+/// default box is empty: its union with any box is that box.
 struct Aabb
 {
     Vec3f low{kHuge, kHuge, kHuge};
@@ -43,8 +43,8 @@ struct Aabb
     }
 
     /// The box grown by `margin` >= 0 (asserted) on all sides, rounded outward. The sums are exact
-    /// in double as long as the smallest bit of one is less than 2^53 below the largest of the
-    /// other, which grid coordinates of 24 bits and error bounds up to 2^27 quanta keep.
+    /// in double as long as the smallest bit of one operand is less than 2^53 below the largest of
+    /// the other; grid coordinates of 24 bits and error bounds up to 2^27 quanta keep that.
     [[nodiscard]] constexpr Aabb inflated(float margin) const noexcept
     {
         TACTUS_ASSERT(margin >= 0.0F);

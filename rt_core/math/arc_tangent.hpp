@@ -11,14 +11,15 @@
 namespace tactus
 {
 
-/// In rad, of a number that is not negative (asserted); right to some 1e-16. By IEEE operations
-/// alone: libm's differ between platforms.
+/// Arc tangent in rad of a number that is not negative (asserted), correct to about 1e-16. It uses
+/// IEEE operations only: libm's results differ between platforms.
 [[nodiscard]] inline double arc_tangent(double t) noexcept
 {
     TACTUS_ASSERT(t >= 0.0);
     const bool is_steep = t > 1.0;
     double x = is_steep ? 1.0 / t : t;
-    constexpr int kHalvings = 3; // To at most pi / 32, where nine terms are enough.
+    constexpr int kHalvings = 3; // They reduce the angle to pi / 32 at most, where nine terms
+                                 // suffice.
     for (int i = 0; i < kHalvings; ++i)
     {
         x = x / (1.0 + std::sqrt(1.0 + x * x));

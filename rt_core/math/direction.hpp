@@ -8,13 +8,14 @@
 namespace tactus
 {
 
-/// Whether a vector points anywhere: not zero, as good as zero, infinite or undefined.
+/// True if a vector has a direction: it is neither zero, nearly zero, infinite nor undefined.
 [[nodiscard]] inline bool has_direction(const Vec3& way) noexcept
 {
     return way.allFinite() && largest_coordinate({&way, 1}) > 1e-300;
 }
 
-/// Of length 1 within a few roundings, however long the vector, which must have a direction.
+/// The vector scaled to length 1 within a few roundings, however long it is; it must have a
+/// direction.
 [[nodiscard]] inline Vec3 unit_of(const Vec3& way) noexcept
 {
     TACTUS_ASSERT(has_direction(way));

@@ -6,10 +6,10 @@ namespace tactus
 {
 
 /// The unevaluated sum of two doubles, `low` at most half a unit in the last place of `high`: about
-/// 106 bits. Sums and products err by less than 2^-102 of the operands' size (of a sum: of what is
-/// added, whatever cancels), as long as nothing overflows or falls below 1e-290.
+/// 106 bits. Sums and products err by less than 2^-102 of the operands' size (for a sum: of the
+/// addends' size, even if they cancel), as long as nothing overflows or falls below 1e-290.
 ///
-/// Without FMA, which plain x86-64 lacks: a sum costs about 11 operations, a product 25.
+/// Plain x86-64 has no FMA: a sum costs about 11 operations, a product 25.
 struct DoubleDouble
 {
     double high{0.0};

@@ -62,7 +62,7 @@ private:
     std::size_t size_{0};
 };
 
-/// Both run through in order of size, each rounding error becoming a term.
+/// The exact sum: both are merged in order of size, and each rounding error becomes a term.
 template <std::size_t N, std::size_t M>
 [[nodiscard]] Expansion<N + M> operator+(const Expansion<N>& a, const Expansion<M>& b) noexcept
 {

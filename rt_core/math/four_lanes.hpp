@@ -11,11 +11,11 @@
 namespace tactus
 {
 
-/// Lanes of 16 bytes, which every target of ours has: for small loops outside the kernels.
+/// Vectors of 16 bytes, which every supported target has, for small loops outside the kernels.
 using FourFloats = float __attribute__((vector_size(16)));
 using FourInts = std::int32_t __attribute__((vector_size(16)));
 
-/// One bit a lane, of lanes that are all ones or all zeros.
+/// One bit per lane; each lane is all ones or all zeros.
 [[nodiscard]] inline std::uint32_t bits_of(FourInts lanes) noexcept
 {
 #ifdef __SSE2__

@@ -8,7 +8,7 @@
 namespace tactus
 {
 
-/// A distance that is not known, a limit that does not limit.
+/// An unknown distance, or no limit.
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 } // namespace tactus

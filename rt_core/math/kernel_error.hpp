@@ -10,15 +10,16 @@ namespace tactus
 {
 
 /// Aspect of a triangle (longest edge squared / twice the area) beyond which its normal is computed
-/// in double-double and the error law grows no further. At 8 few triangles of a usual mesh pay.
+/// in double-double and the error law grows no further. At 8, few triangles of a usual mesh need
+/// that.
 inline constexpr double kLargestAspect = 8.0;
 
 /// The error law: a computed distance differs from the true one by at most this. `length` is the
-/// local length: the longest of the triangle's edges and the distances of its corners from the
-/// other shape's. Lower bounds are lowered and upper bounds raised by it.
+/// local length: the longest of the triangle's edges and of the distances between its corners and
+/// the other shape's. Lower bounds are lowered and upper bounds raised by it.
 ///
-/// `aspect` is that of the triangle where its plane was used in double precision; kernels that
-/// decide in double-double give 0.
+/// `aspect` is the triangle's aspect if its plane was used in double precision; kernels that decide
+/// in double-double pass 0.
 [[nodiscard]] constexpr double kernel_error(double aspect, double length) noexcept
 {
     TACTUS_ASSERT(length >= 0.0);

@@ -17,12 +17,13 @@ namespace
 /// differences, two products, one difference, two sums. The ninth stands for products of these
 /// errors.
 constexpr double kVolumeError = 9.0 * 0x1p-53;
-/// In double-double differences are exact, and a term has been rounded at most five times, 2^-102
-/// each; seen from a value that is no smaller than this share of the terms, that is under 2^-55.
+/// Differences are exact in double-double, and a term has been rounded at most five times, 2^-102
+/// each; relative to a value of at least this share of the terms, that is under 2^-55.
 constexpr double kLeastVolumeLeft = 0x1p-44;
-/// As above: two differences, one product, one difference.
+/// Likewise for an area: two differences, one product, one difference, and one for products of
+/// these.
 constexpr double kAreaError = 5.0 * 0x1p-53;
-/// Below this products may have lost bits.
+/// Products below this may have lost bits.
 constexpr double kLeastTrusted = 1e-280;
 
 int sign_of(double value) noexcept
@@ -46,20 +47,20 @@ Expansion<192> exact_volume(const Vec3& a, const Vec3& b, const Vec3& c, const V
            exact_minor(u.x, u.y, v.x, v.y) * w.z;
 }
 
-/// Of the cross product, each term as large as it can be.
+/// The cross product with the magnitudes of all terms added.
 Triple<double> cross_terms(const Triple<double>& u, const Triple<double>& v) noexcept
 {
     return {std::abs(u.y * v.z) + std::abs(u.z * v.y), std::abs(u.z * v.x) + std::abs(u.x * v.z),
             std::abs(u.x * v.y) + std::abs(u.y * v.x)};
 }
 
-/// Of the determinant.
+/// The determinant with the magnitudes of all terms added.
 double size_of_terms(const Triple<double>& terms, const Triple<double>& w) noexcept
 {
     return std::abs(w.x) * terms.x + std::abs(w.y) * terms.y + std::abs(w.z) * terms.z;
 }
 
-/// Sign of a determinant that was computed, where its rounding does not reach it.
+/// True if rounding can't have changed the sign of a computed determinant.
 bool is_sign_known(double value, double size) noexcept
 {
     return std::abs(value) > kVolumeError * size && size > kLeastTrusted;

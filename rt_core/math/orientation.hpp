@@ -16,7 +16,7 @@ namespace tactus
 
 using Vec2 = std::array<double, 2>;
 
-/// The other two coordinates, in an order that keeps areas' signs: of x those are y, z.
+/// The other two coordinates, in an order that keeps the sign of areas: y, z for x.
 [[nodiscard]] inline Vec2 seen_along(std::size_t axis, const Vec3& point) noexcept
 {
     TACTUS_ASSERT(axis < 3);
@@ -24,22 +24,22 @@ using Vec2 = std::array<double, 2>;
             point[static_cast<Eigen::Index>((axis + 2) % 3)]};
 }
 
-/// On which side of the plane through a, b, c the point d lies: 1 where (b - a) x (c - a) points
-/// to, -1 on the other side, 0 in the plane, and also where a, b, c are collinear.
+/// Side of the plane through a, b, c on which the point d lies: 1 where (b - a) x (c - a) points
+/// to, -1 on the other side, 0 in the plane, and also 0 if a, b, c are collinear.
 ///
-/// Exact when all coordinates are zero or between 1e-85 and 1e85 in magnitude: floating point with
-/// an error bound, and exact arithmetic where that leaves it open. About 8 ns, 0.2 to 0.5 us when
-/// exact arithmetic decides.
+/// Exact if all coordinates are zero or between 1e-85 and 1e85 in magnitude: floating point with an
+/// error bound, and exact arithmetic if that leaves the sign open. About 8 ns; 0.2 to 0.5 us with
+/// exact arithmetic.
 [[nodiscard]] int side_of_plane(const Vec3& a, const Vec3& b, const Vec3& c,
                                 const Vec3& d) noexcept TACTUS_NONBLOCKING;
 
 /// det[b - a, c - a, d - a] within three units in the last place, however much cancels, for the
-/// same coordinates: double-double, or exact arithmetic where less than 2^-44 of the terms is left.
+/// same coordinates: double-double, or exact arithmetic if less than 2^-44 of the terms is left.
 [[nodiscard]] double volume(const Vec3& a, const Vec3& b, const Vec3& c,
                             const Vec3& d) noexcept TACTUS_NONBLOCKING;
 
-/// side_of_plane() of one plane and many points, which share two thirds of the work. Refers to its
-/// three points. About 6 ns, and 3 ns a point.
+/// side_of_plane() for one plane and many points, which share two thirds of the work. Keeps
+/// references to its three points. About 6 ns, and 3 ns per point.
 class PlaneSides
 {
 public:
@@ -51,11 +51,12 @@ private:
     const Vec3& a_;
     const Vec3& b_;
     const Vec3& c_;
-    Triple<double> normal_{}; ///< (b - a) x (c - a), and
-    Triple<double> terms_{};  ///< the same of sizes, all added.
+    Triple<double> normal_{}; ///< (b - a) x (c - a).
+    Triple<double> terms_{};  ///< Sum of the terms' magnitudes in each coordinate of normal_.
 };
 
-/// volume() of one plane and many points, to the bit. Refers to its three points.
+/// volume() for one plane and many points, with the same bits. Keeps references to its three
+/// points.
 class PlaneVolumes
 {
 public:
@@ -71,14 +72,14 @@ private:
     Triple<double> terms_{};
 };
 
-/// On which side of each of a triangle's edges the line from a to b passes: side_of_plane() of a, b
+/// Side of each of a triangle's edges on which the line from a to b passes: side_of_plane() of a, b
 /// and the edge's two ends.
 [[nodiscard]] std::array<int, 3>
 sides_of_edges(const Vec3& a, const Vec3& b,
                const std::array<Vec3, 3>& triangle) noexcept TACTUS_NONBLOCKING;
 
-/// On which side of the line from a to b the point c lies: 1 on the left, -1 on the right, 0 on it,
-/// and also where a = b. Exact for the same coordinates.
+/// Side of the line from a to b on which the point c lies: 1 on the left, -1 on the right, 0 on it,
+/// and also 0 if a = b. Exact for the same coordinates.
 [[nodiscard]] int side_of_line(const Vec2& a, const Vec2& b,
                                const Vec2& c) noexcept TACTUS_NONBLOCKING;
 

@@ -14,10 +14,10 @@
 namespace tactus
 {
 
-/// More than roundings ever leave of the identity in R^T R.
+/// Bound above all deviations that roundings cause between R^T R and the identity.
 inline constexpr double kOrthonormalRounding = 1e-9;
 
-/// Whether each entry of R^T R is within the tolerance of the identity's. 30 instructions.
+/// True if each entry of R^T R is within the tolerance of the identity's. 30 instructions.
 [[nodiscard]] inline bool is_orthonormal(const Mat3& matrix, double tolerance) noexcept
 {
     for (int i = 0; i < 3; ++i)
@@ -25,7 +25,7 @@ inline constexpr double kOrthonormalRounding = 1e-9;
         for (int k = 0; k <= i; ++k)
         {
             const double off = matrix.col(i).dot(matrix.col(k)) - (i == k ? 1.0 : 0.0);
-            if (!(std::abs(off) <= tolerance)) // So that NaN is not.
+            if (!(std::abs(off) <= tolerance)) // NaN fails.
             {
                 return false;
             }
@@ -34,14 +34,14 @@ inline constexpr double kOrthonormalRounding = 1e-9;
     return true;
 }
 
-/// The same, and right-handed.
+/// True if the matrix is orthonormal as above and right-handed.
 [[nodiscard]] inline bool is_rotation(const Mat3& matrix, double tolerance) noexcept
 {
     return is_orthonormal(matrix, tolerance) && matrix.determinant() > 0.0;
 }
 
-/// Orthonormal to rounding; an axis that is so already keeps its bits. The first two columns are
-/// not zero (asserted of the first) nor parallel.
+/// The matrix made orthonormal to rounding; an axis that is so already keeps its bits. The first
+/// two columns must not be zero (asserted for the first) nor parallel.
 [[nodiscard]] inline Mat3 orthonormalised(const Mat3& matrix) noexcept
 {
     TACTUS_ASSERT(matrix.col(0).squaredNorm() > 0.0);
@@ -54,17 +54,17 @@ inline constexpr double kOrthonormalRounding = 1e-9;
     return result;
 }
 
-/// A rotation as records of devices and hosts have it: x, y, z, w.
+/// A rotation in the records of devices and hosts: x, y, z, w.
 using Quaternion = std::array<double, 4>;
 
-/// Whether its length is within the tolerance of 1; not when it is no number.
+/// True if the length is within the tolerance of 1; false for NaN.
 [[nodiscard]] inline bool is_unit(const Quaternion& q, double tolerance) noexcept
 {
     const double square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-    return std::abs(std::sqrt(square) - 1.0) <= tolerance; // So that NaN is not.
+    return std::abs(std::sqrt(square) - 1.0) <= tolerance; // NaN fails.
 }
 
-/// Its length is divided out; it is not zero, which nothing checks.
+/// The rotation of a quaternion of any length but zero, which is not checked.
 [[nodiscard]] inline Mat3 to_rotation(const Quaternion& quaternion) noexcept
 {
     const auto [x, y, z, w] = quaternion;
@@ -76,7 +76,7 @@ using Quaternion = std::array<double, 4>;
     return rotation;
 }
 
-/// Of a rotation that is orthonormal to rounding (asserted); its sign is either.
+/// The quaternion, of either sign, of a rotation that is orthonormal to rounding (asserted).
 [[nodiscard]] inline Quaternion to_quaternion(const Mat3& rotation) noexcept
 {
     TACTUS_ASSERT(is_orthonormal(rotation, kOrthonormalRounding));
@@ -100,9 +100,10 @@ using Quaternion = std::array<double, 4>;
     return way * (angle / sine);
 }
 
-/// Round the axis of `turn`, in rad and in the frame that `rotation` leads to, by twice the arc
-/// tangent of half its length (Cayley): its length for a small one, never more. By IEEE operations
-/// alone. The rotation is orthonormal to rounding (asserted).
+/// `rotation` followed by a rotation about the axis of `turn`, in rad and in the frame that
+/// `rotation` leads to. The angle is twice the arc tangent of half the length of `turn` (Cayley):
+/// its length if small, never more. IEEE operations only. `rotation` must be orthonormal to
+/// rounding (asserted).
 [[nodiscard]] inline Mat3 turned_by(const Vec3& turn, const Mat3& rotation) noexcept
 {
     TACTUS_ASSERT(is_orthonormal(rotation, kOrthonormalRounding));
@@ -118,10 +119,11 @@ using Quaternion = std::array<double, 4>;
     return orthonormalised(result);
 }
 
-/// Likewise by its length, to rounding for lengths up to 0.1 (8e-11 there, by the 7th power).
+/// The same with the length of `turn` as the angle, up to an error of 8e-11 at a length of 0.1 that
+/// falls with the 7th power.
 [[nodiscard]] inline Mat3 turned_exactly_by(const Vec3& turn, const Mat3& rotation) noexcept
 {
-    // Twice the tangent of half the angle, which turned_by() takes: t + t^3/12 + t^5/120.
+    // turned_by() takes twice the tangent of half the angle: t + t^3/12 + t^5/120.
     const double square = turn.squaredNorm();
     return turned_by(turn * (1.0 + square / 12.0 + square * square / 120.0), rotation);
 }

@@ -38,20 +38,20 @@ namespace tactus
     return -round_up_to_float(-value);
 }
 
-/// A length of some roundings, multiplied by this, is at least the true one.
+/// Factor that makes a length with a few roundings at least the true one.
 inline constexpr double kRoundedUp = 1.0 + 1e-14;
 
-/// The root of a sum of three squares, multiplied by one of these, is at most / at least the true
-/// one: it has five roundings of 2^-53, the square root halves those of the sum.
+/// Factors that make the root of a sum of three squares at most / at least the true one: it has
+/// five roundings of 2^-53, and the square root halves those of the sum.
 inline constexpr double kRootRoundedDown = 1.0 - 1e-15;
 inline constexpr double kRootRoundedUp = 1.0 + 1e-15;
 
-/// A length that only has to be no less than the true one, such as a filter's or a motion that a
-/// certificate loses, multiplied by this: generous, since nothing is decided by it.
+/// Generous factor for a length that only must not be less than the true one, such as a filter's or
+/// a motion that is taken off a certificate; no decision depends on it.
 inline constexpr double kWidened = 1.0 + 1e-12;
 
-/// A face's normal, with coordinates near 1, whose squared length is not above this has lost bits,
-/// and the face's edges are as near as it is wide.
+/// Squared length of a face normal, from coordinates near 1, up to which it has lost bits; the face
+/// is then so thin that its edges represent it.
 inline constexpr double kLeastTrustedNormalSq = 1e-240;
 
 } // namespace tactus

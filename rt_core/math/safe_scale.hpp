@@ -13,19 +13,19 @@
 namespace tactus
 {
 
-/// The power of two that brings a positive number near 1. Multiplying by it changes no bit of a
-/// coordinate that isn't 1e-280 times smaller.
+/// The power of two that brings a positive number near 1. Multiplication by it changes no bit of a
+/// coordinate unless that is 1e-280 times smaller.
 [[nodiscard]] inline double scale_to_one(double largest) noexcept
 {
     const std::uint64_t exponent = std::bit_cast<std::uint64_t>(largest) >> 52U;
-    // So far from the ends that its inverse is an ordinary double, too.
+    // The clamp keeps the inverse an ordinary double, too.
     const std::uint64_t inverse =
         std::clamp<std::uint64_t>(2046 - std::min<std::uint64_t>(exponent, 2045), 1, 2045);
     return std::bit_cast<double>(inverse << 52U);
 }
 
-/// 1 when the largest coordinate is 0 or between 2^-60 and 2^60, so that products of four or six of
-/// them neither overflow nor vanish; else scale_to_one.
+/// 1 if the largest coordinate is 0 or between 2^-60 and 2^60, so that products of four or six of
+/// them neither overflow nor vanish; otherwise scale_to_one.
 [[nodiscard]] inline double safe_scale(double largest) noexcept
 {
     const bool is_safe = largest == 0.0 || (largest >= 0x1p-60 && largest <= 0x1p60);

@@ -9,8 +9,9 @@
 namespace tactus
 {
 
-/// Where a frame lies in another one: there = translation + scale x rotation x here. Metres; the
-/// rotation is orthonormal to rounding and right-handed, the scale above 0; nothing here checks it.
+/// Pose of a frame, here, in another one, there, with a scale: there = translation + scale x
+/// rotation x here. Metres; the rotation is orthonormal to rounding and right-handed, the scale
+/// above 0; nothing of that is checked.
 struct Similarity
 {
     Mat3 rotation{Mat3::Identity()};
@@ -21,7 +22,7 @@ struct Similarity
     {
         return translation_m + scale * (rotation * here_m);
     }
-    /// The way back.
+    /// Inverse of to_there().
     [[nodiscard]] Vec3 to_here(const Vec3& there_m) const noexcept
     {
         const Vec3 relative = there_m - translation_m;
@@ -29,8 +30,8 @@ struct Similarity
     }
 };
 
-/// Where the frame `here` lies in `other`, both in a third one. The other's scale is above 0
-/// (asserted).
+/// Pose of the frame `here` in the frame `other`, both given in a third one. The other's scale must
+/// be above 0 (asserted).
 [[nodiscard]] inline Similarity in_frame(const Similarity& other, const Similarity& here) noexcept
 {
     TACTUS_ASSERT(other.scale > 0.0);

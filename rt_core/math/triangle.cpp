@@ -45,13 +45,13 @@ SegmentFoot foot_on_segment(const Vec3& from, const Vec3& edge, double length_sq
         return {from, 0.0};
     }
     const double parameter = std::clamp(-from.dot(edge) / length_sq, 0.0, 1.0);
-    // From the nearer end, so that the far end's rounding does not enter.
+    // Measured from the nearer end, so that the far end's rounding does not enter.
     const Vec3 foot = parameter <= 0.5 ? Vec3(from + parameter * edge)
                                        : Vec3((from + edge) - (1.0 - parameter) * edge);
     return {foot, parameter};
 }
 
-/// Whether the origin lies over the triangle, seen along the normal: all three edges say so.
+/// True if the origin lies over the triangle along the normal: all three edge tests agree.
 bool is_over(const SeenTriangle& seen, const Vec3& normal) noexcept
 {
     for (std::size_t i = 0; i < 3; ++i)
@@ -98,7 +98,8 @@ void find_in_interior(const SeenTriangle& seen, const Vec3& normal, ClosestPoint
     }
 }
 
-/// Of lengths between 2^-130 and 2^130; `local_sq` is the largest of edges and corners.
+/// Nearest point for lengths between 2^-130 and 2^130; `local_sq` is the largest of edges and
+/// corners.
 ClosestPoint find_closest(const Triangle& triangle, const SeenTriangle& seen,
                           double local_sq) noexcept
 {
@@ -130,7 +131,7 @@ double local_sq(const SeenTriangle& seen) noexcept
     return std::max(largest_of(seen.corner_sq), largest_of(seen.edge_sq));
 }
 
-/// Of coordinates so large or small that their products would not be doubles.
+/// The same for coordinates so large or small that their products would not be doubles.
 [[gnu::noinline]] ClosestPoint find_closest_scaled(const Vec3& query,
                                                    const Triangle& triangle) noexcept
 {

@@ -61,7 +61,7 @@ template <typename Real>
     return {Real{v.x()}, Real{v.y()}, Real{v.z()}};
 }
 
-/// a - b: rounded once, or exactly.
+/// a - b, rounded once if Real is double, exact if it is double-double.
 template <typename Real>
 [[nodiscard]] Triple<Real> difference(const Vec3& a, const Vec3& b) noexcept
 {

@@ -7,7 +7,7 @@
 namespace tactus
 {
 
-/// Ranges of finite numbers: infinity and NaN are in none.
+/// True for finite numbers in the range; false for infinity and NaN.
 [[nodiscard]] inline bool is_positive(double value) noexcept
 {
     return std::isfinite(value) && value > 0.0;

@@ -16,11 +16,11 @@ namespace tactus
 #error "Tactus needs EIGEN_DONT_VECTORIZE: Eigen's explicit FMA would change bits between builds."
 #endif
 
-/// Decisions are made in double precision. Made without values they hold any.
+/// Double precision, in which decisions are made. The default constructor leaves values undefined.
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 
-/// Stored coordinates are single precision and, for mesh vertices, exact.
+/// Single precision, in which coordinates are stored; exact for mesh vertices.
 using Vec3f = std::array<float, 3>;
 
 [[nodiscard]] inline Vec3 to_vec3(const Vec3f& v) noexcept
@@ -28,7 +28,7 @@ using Vec3f = std::array<float, 3>;
     return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
 }
 
-/// Coordinate by coordinate. Eigen's own are not marked as what may be called in real time.
+/// Coordinate-wise minimum and maximum. Eigen's own are not marked TACTUS_NONBLOCKING.
 [[nodiscard]] inline Vec3 least_of(const Vec3& a, const Vec3& b) noexcept
 {
     return {std::min(a.x(), b.x()), std::min(a.y(), b.y()), std::min(a.z(), b.z())};
