@@ -19,7 +19,7 @@
 namespace tactus
 {
 
-/// One active face: 20 B, besides 16 B in the index list.
+/// One active face: 20 B, plus 16 B in the index list.
 struct ActiveFace
 {
     FaceId id{};
@@ -27,7 +27,7 @@ struct ActiveFace
     FaceState state;
 };
 
-/// The active faces of several models, each found by its owner and id. 36 B a face.
+/// The active faces of several models, each found by its owner and id. 36 B per face.
 ///
 /// Haptic thread only.
 class FacePool
@@ -43,7 +43,7 @@ public:
         }
     }
 
-    /// Keeps as many faces for a new owner, or what is not kept for others.
+    /// Reserves `faces` for a new owner, or as many as are neither taken nor reserved.
     [[nodiscard]] PoolShare promise(std::uint32_t faces) noexcept { return room_.promise(faces); }
     /// See PoolRoom::try_promise() and end_promise().
     [[nodiscard]] bool try_promise(PoolShare& share, std::uint32_t faces) noexcept
@@ -51,13 +51,13 @@ public:
         return room_.try_promise(share, faces);
     }
     void end_promise(PoolShare& share) noexcept { room_.end_promise(share); }
-    /// How many more an owner may take.
+    /// Number of faces that an owner may still add.
     [[nodiscard]] std::uint32_t left_for(const PoolShare& share) const noexcept
     {
         return room_.left_for(share);
     }
 
-    /// Of a face that the owner has not, with room for it.
+    /// Adds a face that the owner does not have; there must be room for it.
     [[nodiscard]] PrimId take(PoolShare& share, std::uint32_t owner,
                               const ActiveFace& face) noexcept
     {
@@ -82,7 +82,7 @@ public:
         face.corners[0] = VertexId{first_free_};
         first_free_ = prim.value;
     }
-    /// None when the owner has no such face.
+    /// Slot of the owner's face; none if the owner has no such face.
     [[nodiscard]] PrimId find(FaceId face, std::uint32_t owner) const noexcept
     {
         return {index_list_.find(face.value, owner)};

@@ -16,7 +16,7 @@ public:
     [[nodiscard]] Flaw find_flaw() noexcept
     {
         check_free_slots();
-        // Records first: what faces refer to is looked up in them.
+        // Records come first: the checks of faces read them.
         for (std::uint32_t slot = 0; slot < forest_.pages_->capacity(); ++slot)
         {
             check_page(slot);
@@ -134,7 +134,8 @@ private:
         check_tree(prim, error);
     }
 
-    /// The tree says whose a face is that it has placed, the index list that of others.
+    /// True if another model owns the face: the tree knows the owner of a placed face, the index
+    /// list that of others.
     [[nodiscard]] bool is_of_others(PrimId prim,
                                     const VertexForest::ActiveFace& face) const noexcept
     {
@@ -144,7 +145,7 @@ private:
                                        : !tree.is_block_in_use(leaf / kBlockFaces);
     }
 
-    /// The state's record is refined and gave the face that state.
+    /// Checks that the state's record is refined and gave the face that state.
     bool check_state(const VertexForest::ActiveFace& face) noexcept
     {
         const std::uint32_t id = face.id.value;
@@ -170,8 +171,8 @@ private:
                       "lacks the vertex of the record that changed it last");
     }
 
-    /// Each is of the base mesh or of a refined record, and that is no finer than the one that
-    /// changed the face last.
+    /// Checks that each corner is of the base mesh or of a refined record, which is no finer than
+    /// the record that changed the face last.
     bool check_corners(const VertexForest::ActiveFace& face) noexcept
     {
         const std::uint32_t finest =
@@ -180,7 +181,7 @@ private:
                                    { return check_corner(face.id.value, corner, finest); });
     }
 
-    /// False when its record can't be asked anything more.
+    /// False if the corner's record can't be checked further.
     bool check_corner(std::uint32_t face, VertexId corner, std::uint32_t finest) noexcept
     {
         if (forest_.counts_.is_base(corner))
@@ -225,7 +226,7 @@ private:
     FlawFinder finder_;
     std::uint32_t refined_{0};
     std::uint32_t active_{0};
-    std::uint32_t expected_{forest_.counts_.base_faces}; ///< Faces that should be active.
+    std::uint32_t expected_{forest_.counts_.base_faces}; ///< Number of faces that should be active.
     std::uint64_t hash_{0};
 };
 

@@ -9,17 +9,17 @@
 namespace tactus
 {
 
-/// Holds a forest against what it promises; its page table must be sound already.
+/// Checks the invariants of a forest; its page table must be sound already.
 ///
 ///     faces     each active one is found by its id, in a state that a refined record gave it (or
 ///               its base state), and that record's vertex is among its corners
-///     records   what a refined one depends on is refined, and less deep; the faces that it brought
-///               are active, and no others
+///     records   the dependencies of a refined one are refined, and less deep; the faces that it
+///               brought are active, and no others
 ///     tree      has each face with the forest's id, error and corners
 ///     slots     free ones of the pool are in one list
 ///     hash      is that of the active faces
 ///
-/// One look at each face and refined record, with a look-up for each corner and fan face.
+/// Each face and refined record is visited once, with a look-up for each corner and fan face.
 [[nodiscard]] Flaw find_flaw(const VertexForest& forest) noexcept TACTUS_NONBLOCKING;
 
 } // namespace tactus

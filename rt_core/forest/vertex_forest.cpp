@@ -113,7 +113,7 @@ std::uint32_t VertexForest::leave(std::uint32_t most) noexcept
     return left;
 }
 
-/// Odd multipliers spread the ids over the word; the finalizer is SplitMix64's.
+/// Hash of a face: odd multipliers spread the ids over the word; the finalizer is SplitMix64's.
 std::uint64_t VertexForest::hash_of(const ActiveFace& face, ErrorCode error) noexcept
 {
     const std::uint64_t name = (std::uint64_t{face.id.value} << 8U) | error;
@@ -251,7 +251,7 @@ ErrorCode VertexForest::error_before(const VsplitRecord& record) const noexcept
     return largest;
 }
 
-/// As the face's state says it, wherever the face is.
+/// Error code stored with the face's state, whether the face is of the base mesh or of a record.
 ErrorCode VertexForest::error_in(FaceId face, FaceState state) const noexcept
 {
     return state.is_base() ? slots_.base.faces[face.value].error
@@ -269,7 +269,7 @@ std::array<Vec3f, 3> VertexForest::corners_of(PrimId prim) const noexcept
     return {corner_position(prim, 0), corner_position(prim, 1), corner_position(prim, 2)};
 }
 
-/// The tree has it at hand for a placed face; else it is in the records.
+/// Position of a corner: from the tree for a placed face, otherwise from the records.
 Vec3f VertexForest::corner_position(PrimId prim, std::uint32_t place) const noexcept
 {
     const std::uint32_t leaf = tree_->leaf_of(prim);
@@ -306,7 +306,8 @@ ChangedFace VertexForest::describe(PrimId prim) const noexcept
     return change;
 }
 
-/// Finds the fan faces in the states the record expects and the chain w0 .. wk round its parent.
+/// Finds the fan faces in the states that the record expects, and the chain w0 .. wk round its
+/// parent.
 bool VertexForest::find_fan(const VsplitRecord& record, Fan& fan) const noexcept
 {
     for (std::uint32_t i = 0; i < record.fan_size; ++i)

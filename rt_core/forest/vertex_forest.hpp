@@ -16,13 +16,13 @@
 namespace tactus
 {
 
-/// The vertex forest of one model: which of its faces are active now, and the two operations that
-/// change that. A split or a merge is a table write over one star; there is no adjacency structure.
-/// Each change goes straight to the AB-Tree, whose boxes are right again after its refit().
+/// The vertex forest of one model: its active faces, and the two operations that change them. A
+/// split or a merge is a table write over one star; there is no adjacency structure. Each change
+/// goes straight to the AB-Tree, whose boxes are right again after its refit().
 ///
-/// The cut it holds is dependency-closed: a record is split only when each fan face is in the state
-/// that the record expects, and merged only when each star face is in the state that the
-/// record gave it. Both refuse, with nothing changed, when that does not hold.
+/// The cut is dependency-closed: a record is split only if each fan face is in the state that the
+/// record expects, and merged only if each star face is in the state that the record gave it.
+/// Otherwise both refuse, with nothing changed.
 ///
 /// Haptic thread only. Cost: one look-up in the index list and one small write to the tree for each
 /// face of the star.
@@ -31,7 +31,7 @@ class VertexForest
 public:
     using ActiveFace = tactus::ActiveFace;
 
-    /// The star of a record that was just split, laid out as a block is: lane i is the face at
+    /// The star of a record that was just split, in the layout of a block: lane i is the face at
     /// place i of the star, row 0 is v, row 1 is u, and w0 .. wk follow.
     struct StarGeometry
     {
@@ -42,33 +42,34 @@ public:
     enum class SplitOutcome : std::uint8_t
     {
         done,
-        full,         ///< No room for the appearing faces.
-        inconsistent, ///< The record contradicts the faces it names: a fault of the model.
+        full,         ///< No room for the faces that appear.
+        inconsistent, ///< The record contradicts the faces that it names: a fault of the model.
     };
 
-    /// The base mesh must be in `slots.base` already and enters the tree, which is empty and the
-    /// same owner's, and whose pool has as many prims as `faces` has faces. `least` of these are
-    /// kept for the forest; the base mesh has room. Nothing enters on a `measuring` arena, nor
-    /// where `slots` have no base mesh: that comes by begin().
+    /// Enters the base mesh in `slots.base` into the tree, which must be empty, have the same owner
+    /// and a pool with as many prims as `faces` has faces. At least `least` faces are reserved for
+    /// the forest; the base mesh must fit. Nothing enters on a `measuring` arena, nor if `slots`
+    /// have no base mesh: begin() gives it later.
     VertexForest(const Arena& arena, FacePool& faces, ModelId owner, std::uint32_t least,
                  const ModelCounts& counts, PageSlots slots, PageTable& pages,
                  AbTree& tree) noexcept;
 
-    /// Keeps faces in the pool for a forest that has none and had none kept. False, with nothing
-    /// changed, where the pool has no room.
+    /// Reserves faces in the pool for a forest that has none, neither active nor reserved. False,
+    /// with nothing changed, if the pool has no room.
     [[nodiscard]] bool try_promise(std::uint32_t faces) noexcept TACTUS_NONBLOCKING
     {
         return pool_->try_promise(share_, faces);
     }
-    /// The forest has no face: nothing is kept for it any more.
+    /// Ends the reservation of a forest without faces.
     void end_promise() noexcept TACTUS_NONBLOCKING { pool_->end_promise(share_); }
-    /// The base mesh of a forest without faces: enter() brings it into the tree.
+    /// Sets the base mesh of a forest without faces; enter() brings it into the tree.
     void begin(const BaseMesh& base) noexcept TACTUS_NONBLOCKING;
-    /// Up to `most` more of its faces; returns how many. Room for all is kept.
+    /// Enters up to `most` more faces of the base mesh and returns how many. Room for all is
+    /// reserved.
     [[nodiscard]] std::uint32_t enter(std::uint32_t most) noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] bool has_entered() const noexcept { return entered_ == counts_.base_faces; }
-    /// The way back, whatever is refined: takes up to `most` faces out and returns how many. Before
-    /// the last one nothing may be split or merged; after it the pages may go.
+    /// Removes up to `most` faces, refined or not, and returns how many. Before the last one
+    /// nothing may be split or merged; after it the pages may be removed.
     [[nodiscard]] std::uint32_t leave(std::uint32_t most) noexcept TACTUS_NONBLOCKING;
 
     /// Undoes the record's collapse. The record is linked and not refined, and every record it
@@ -78,14 +79,14 @@ public:
         StarGeometry star;
         return split(id, pages_->resident(id), star);
     }
-    /// The same for a record at hand; `star` is written when it is done.
+    /// The same for a record at hand; writes `star` if the split is done.
     [[nodiscard]] SplitOutcome split(RecordId id, const VsplitRecord& record,
                                      StarGeometry& star) noexcept TACTUS_NONBLOCKING;
 
-    /// Redoes the record's collapse; false when a star face has been refined further.
+    /// Redoes the record's collapse; false if a star face has been refined further.
     [[nodiscard]] bool try_merge(RecordId id) noexcept TACTUS_NONBLOCKING;
 
-    /// The first record that must be split before this one; none when there is none.
+    /// The first record that must be split before this one; none if all are split.
     [[nodiscard]] RecordId
     missing_dependency(const VsplitRecord& record) const noexcept TACTUS_NONBLOCKING;
 
@@ -98,7 +99,7 @@ public:
     /// kNextExact, kNextPending, or the id of the record that splits the face next.
     [[nodiscard]] std::uint32_t next_of(PrimId prim) const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] ErrorCode error_of(PrimId prim) const noexcept TACTUS_NONBLOCKING;
-    /// The largest error of the faces that a merge of the record would leave.
+    /// The largest error of the faces that would be left after a merge of the record.
     [[nodiscard]] ErrorCode
     error_before(const VsplitRecord& record) const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] Vec3f position_of(VertexId vertex) const noexcept TACTUS_NONBLOCKING;
@@ -109,7 +110,7 @@ public:
 
     [[nodiscard]] std::uint32_t active_faces() const noexcept { return share_.used; }
     [[nodiscard]] std::uint32_t active_faces_max() const noexcept { return active_max_; }
-    /// Of the pool.
+    /// Capacity of the pool, in faces.
     [[nodiscard]] std::uint32_t capacity() const noexcept { return pool_->capacity(); }
     /// Active faces of all models of the pool.
     [[nodiscard]] std::uint32_t active_in_pool() const noexcept { return pool_->used(); }
@@ -125,7 +126,7 @@ private:
     struct FanFace
     {
         PrimId prim{};
-        std::uint32_t place{0}; ///< Of the corner that changes.
+        std::uint32_t place{0}; ///< Place of the corner that changes.
     };
     struct Fan
     {
@@ -134,7 +135,7 @@ private:
         VertexId last{};  ///< wk
     };
 
-    /// What a face adds to the state hash.
+    /// Contribution of a face to the state hash.
     [[nodiscard]] static std::uint64_t hash_of(const ActiveFace& face,
                                                ErrorCode error) noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] bool find_fan(const VsplitRecord& record, Fan& fan) const noexcept;
@@ -155,10 +156,10 @@ private:
     PageTable* pages_;
     AbTree* tree_;
     FacePool* pool_;
-    std::span<ActiveFace> faces_; ///< All of the pool's.
+    std::span<ActiveFace> faces_; ///< Faces of the whole pool.
     std::uint32_t owner_;
     PoolShare share_;
-    std::uint32_t entered_{0}; ///< Faces of the base mesh that are in, or were split.
+    std::uint32_t entered_{0}; ///< Faces of the base mesh that entered or were split.
     std::uint32_t refined_count_{0};
     std::uint32_t active_max_{0};
     std::uint64_t hash_{0};
