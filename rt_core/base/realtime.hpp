@@ -14,7 +14,7 @@
 /// pointer, so algorithms take lambdas, not functions.
 ///
 /// TACTUS_TRUSTED_BEGIN and _END enclose a function that calls unmarked code but keeps its promise;
-/// the reason stands beside it. rt_core has one: libccd's answer on convex bodies.
+/// the reason is beside it. rt_core has one: libccd's answer on convex bodies.
 // NOLINTBEGIN(cppcoreguidelines-macro-usage): attributes and pragmas, which functions can't be.
 #if defined(__has_cpp_attribute) && defined(__clang__)
 #if __has_cpp_attribute(clang::nonblocking)

@@ -20,8 +20,8 @@ constexpr double kVolumeError = 9.0 * 0x1p-53;
 /// Differences are exact in double-double, and a term has been rounded at most five times, 2^-102
 /// each; relative to a value of at least this share of the terms, that is under 2^-55.
 constexpr double kLeastVolumeLeft = 0x1p-44;
-/// Likewise for an area: two differences, one product, one difference, and one for products of
-/// these.
+/// The bound for an area: two differences, one product, one difference, and one for products of
+/// these errors.
 constexpr double kAreaError = 5.0 * 0x1p-53;
 /// Products below this may have lost bits.
 constexpr double kLeastTrusted = 1e-280;

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/Geometry> // cross(); without it a link error tells.
+#include <Eigen/Geometry> // cross(), whose absence shows only as a link error.
 
 #include <algorithm>
 #include <array>

@@ -14,12 +14,12 @@
 namespace tactus
 {
 
-/// An active face's slot in the pool of all models: dense, reused, and the name under which the
-/// AB-Tree keeps the face. Valid only until the next frame; FaceId is the lasting name.
+/// Slot of an active face in the pool of all models: dense and reused. The AB-Tree knows the face
+/// by it. Valid only until the next frame; FaceId is the lasting name.
 using PrimId = StrongId<struct PrimTag>;
 
-/// One face that splits or merges of this frame have changed, as it is now. What the forest hands
-/// to the tree; several changes of one face in a frame become one.
+/// A face that splits or merges of this frame have changed, in its present state; the forest passes
+/// it to the tree. Several changes of one face in a frame become one.
 struct ChangedFace
 {
     PrimId prim{};

@@ -15,44 +15,45 @@
 namespace tactus
 {
 
-/// A face within a tool's radius of its core, or of one of its faces. Lengths and frame are those
-/// of who has it.
+/// A face within a tool's radius of its core, or of one of its faces. The owner of the record
+/// defines lengths and frame.
 struct Contact
 {
     FaceId face{};
-    TriangleFeature feature{TriangleFeature::interior}; ///< Of the face: where it is nearest.
-    double distance_m{0.0};                             ///< From the core.
-    Vec3 on_tool_m{0.0, 0.0, 0.0};                      ///< Of the core.
+    TriangleFeature feature{TriangleFeature::interior}; ///< Nearest feature of the face.
+    double distance_m{0.0};                             ///< Distance from the core.
+    Vec3 on_tool_m{0.0, 0.0, 0.0};                      ///< Nearest point of the core.
     Vec3 on_surface_m{0.0, 0.0, 0.0};
-    /// Unit length, from the surface to the core; where they meet, the face's own. Zero where that
-    /// has no area.
+    /// Unit length, from the surface to the core; where they meet, the face's own normal. Zero if
+    /// that face has no area.
     Vec3 normal{0.0, 0.0, 0.0};
-    FaceId tool_face{}; ///< Of a tool that is a mesh.
+    FaceId tool_face{}; ///< The tool's face, if the tool is a mesh.
 };
 
-/// Nearest first, lower face ids first among equals, then lower ones of the tool's.
+/// Nearest first; among equals lower ids of the object's faces first, then lower ids of the tool's.
 using ContactSet = StaticVector<Contact, kMaxContacts>;
 
-/// Some faces of one another's kind: each lies behind a plane, and the core before it by at least
-/// `distance_m`. Their planes' normals are within `spread` of this one.
+/// A group of faces that look alike: each lies behind a plane, with the core in front of it at
+/// `distance_m` or more. Their planes' normals are within `spread` of `normal`.
 struct ContactSlab
 {
     Vec3 normal{0.0, 0.0, 0.0}; ///< Unit length, from the surface to the core.
     double distance_m{0.0};
     double spread{0.0}; ///< Length of the difference of two unit vectors.
 };
-/// Slabs of one pair, 40 B each. Enough for six sides in steps of 50 degrees; of more kinds of
-/// faces some share a slab, whose spread grows.
+/// Slabs of one pair, 40 B each: enough for six sides in steps of 50 degrees. If there are more
+/// kinds of faces, some share a slab, whose spread grows.
 inline constexpr std::size_t kMaxSlabs = 16;
 
-/// Directions in which the farthest contacts are kept: along axes, between two and between three.
+/// Directions in which the farthest contacts are kept: along axes, and between two or three of
+/// them.
 inline constexpr std::size_t kContactDirections = 26;
 
-/// The farthest contact in each direction, so that a body that lies on hundreds of faces is held at
-/// the ends of what it lies on. Far is also what would touch after a turn of a tenth: a contact
-/// counts as nearer to the middle by ten times its distance from the core. Beyond the
-/// contacts of a tool that is a mesh one pair of faces is measured in each direction: that which
-/// might count as the farthest.
+/// The farthest contact in each direction, so that a rigid tool that lies on hundreds of faces is
+/// held at the ends of its support. Contacts that would touch after a rotation by a tenth count as
+/// well: a contact counts as nearer to the middle by ten times its distance from the core. If the
+/// tool is a mesh, one more pair of faces is measured in each direction: the one that might count
+/// as the farthest.
 struct ContactEnds
 {
     std::array<Contact, kContactDirections> contacts{};
@@ -60,18 +61,18 @@ struct ContactEnds
     bool is_empty{true};
 };
 
-/// Where a tool with a force and a torque may come to touch an object, for the force stage. 10 KiB.
+/// Possible contacts of a tool with force and torque, for the force stage. 10 KiB.
 struct TouchReport
 {
-    ContactSet nearest;       ///< Of each face the nearest point.
-    ContactSet corners;       ///< Of a convex core, over a face.
-    ContactEnds ends;         ///< Of those and of all there was no room for.
+    ContactSet nearest;       ///< The nearest point of each face.
+    ContactSet corners;       ///< Corners of a convex core, over a face.
+    ContactEnds ends;         ///< Ends of those and of all that did not fit.
     bool is_truncated{false}; ///< There were more.
-    /// Of all faces nearer than `covered_m`, as far as they are exact.
+    /// Slabs of all faces nearer than `covered_m`, if they are exact.
     StaticVector<ContactSlab, kMaxSlabs> slabs;
     double covered_m{0.0};
 
-    /// As new, without touching what no contact is in.
+    /// Resets the report without writing unused contacts.
     void clear() noexcept
     {
         nearest.clear();
@@ -83,27 +84,28 @@ struct TouchReport
     }
 };
 
-/// On which side of a closed surface a point is.
+/// Side of a closed surface on which a point lies.
 enum class Side : std::uint8_t
 {
-    unsigned_distance, ///< The mesh is open, the answer not exact, or the point on the surface.
-    outside,           ///< Where the normals point to.
+    unsigned_distance, ///< Mesh open, answer not exact, or point on the surface.
+    outside,           ///< The side that the normals point to.
     inside,
 };
 
-/// What a tool that wants contacts gets of a pair; of a PairOutput in the world, metres. 3 KiB.
+/// Contacts of one pair, for a tool that asks for them. In a PairOutput: world frame, metres. 3
+/// KiB.
 struct ContactReport
 {
     ContactSet contacts;
     bool is_complete{false}; ///< No contact was left out, and none may exist unseen.
-    /// Faces of which libccd said the opposite of what is proven; only convex bodies ask it.
+    /// Faces for which libccd's answer contradicts the proof; only convex bodies use libccd.
     std::uint32_t overruled{0};
-    /// Of the surface at the nearest point: a face's own, of an edge the mean of its faces', of a
-    /// vertex weighted by their angles. Unit length; zero when it is not known.
+    /// Normal of the surface at the nearest point: a face's own, the mean of an edge's faces, or
+    /// that of a vertex's faces weighted by their angles. Unit length; zero if unknown.
     Vec3 normal{0.0, 0.0, 0.0};
     Side side{Side::unsigned_distance};
 
-    /// As new, without touching what no contact is in.
+    /// Resets the report without writing unused contacts.
     void clear() noexcept
     {
         contacts.clear();

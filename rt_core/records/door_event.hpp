@@ -15,32 +15,33 @@ namespace tactus
 enum class DoorEventKind : std::uint8_t
 {
     arrival,     ///< A filled slot, handed over.
-    link_update, ///< More records of a page that was handed over before are linked now.
-    base_back,   ///< A base mesh doesn't come: the cells that were lent for it are given back.
+    link_update, ///< More records of a page handed over before are linked.
+    /// A base mesh does not arrive: the cells lent for it are returned.
+    base_back,
 };
 
-/// What the transport thread tells the haptic thread about one slot, in order. Together these are
-/// all that a frame learns from outside besides its arguments, so a recording keeps them.
+/// Message of the transport thread to the haptic thread about one slot, in order. These are all
+/// that a frame receives from outside besides its arguments, so a recording keeps them.
 struct DoorEvent
 {
     ContentKey key;
-    std::uint32_t slot{0}; ///< Of a base mesh: the first of its cells.
-    /// For an arrival: slots that the transport thread had taken back in all when it linked the
-    /// page (modulo 2^32). Linking depends on it, so a replay waits for the same number.
+    std::uint32_t slot{0}; ///< First cell, if the slot is a base mesh's.
+    /// For an arrival: the number of slots that the transport thread had taken back in all when it
+    /// linked the page (modulo 2^32). Linking depends on it, so a replay waits for the same number.
     std::uint32_t freed_taken{0};
     static_assert(kRecordsPerChunk <= 64);
-    std::uint64_t linked{0}; ///< One bit a record of the chunk; none for an index page.
+    std::uint64_t linked{0}; ///< One bit per record of the chunk; 0 for an index page.
     DoorEventKind kind{DoorEventKind::arrival};
-    std::uint8_t owner{0}; ///< The model that the piece is of.
+    std::uint8_t owner{0}; ///< Model that the piece belongs to.
 };
 
 static_assert(sizeof(DoorEvent) == 32 && std::is_trivially_copyable_v<DoorEvent>);
 
-/// What a frame took from the door.
+/// Events that a frame took from the door.
 struct DoorTake
 {
-    std::span<const DoorEvent> events; ///< In the order in which they were taken.
-    std::uint32_t wish_room{0};        ///< How many wishes the door had room for.
+    std::span<const DoorEvent> events; ///< Events in the order in which they were taken.
+    std::uint32_t wish_room{0};        ///< Number of requests that the door had room for.
 };
 
 } // namespace tactus

@@ -18,48 +18,49 @@
 namespace tactus
 {
 
-/// One tool as its device reports it at the start of a frame. World frame, SI.
+/// State of one tool that its device reports at the start of a frame. World frame, SI.
 ///
-/// A coordinate that isn't below kGoalRange_m, a matrix that is no rotation to kRotationTolerance
-/// or a time before the last one's is FrameFault::tool_invalid, and the last sample stays. One of
-/// the same time isn't new: for longer than kSampleHold_s that is FrameFault::tool_stuck.
+/// A coordinate not below kGoalRange_m, a matrix that is no rotation to kRotationTolerance, or a
+/// time before the last one's is FrameFault::tool_invalid, and the last sample stays. A sample with
+/// the same time is not new: for longer than kSampleHold_s that is FrameFault::tool_stuck.
 struct ToolState
 {
-    Vec3 position_m{0.0, 0.0, 0.0};   ///< Centre of the tool as the hand holds it (the goal).
-    std::int64_t sample_time_ns{0};   ///< Monotonic time of the sample; 0: the device has none.
-    std::uint32_t elapsed_periods{1}; ///< Whole periods since the last frame; more after a stall.
-                                      ///< 0 counts as 1.
+    Vec3 position_m{0.0, 0.0, 0.0};   ///< Centre of the tool at the device pose (the goal).
+    std::int64_t sample_time_ns{0};   ///< Monotonic time of the sample; 0: the device reports none.
+    std::uint32_t elapsed_periods{1}; ///< Whole periods since the last frame; above 1 after a
+                                      ///< stall. 0 counts as 1.
     bool valid{true};                 ///< False: no sample; the frame keeps the last one.
-    Mat3 rotation{Mat3::Identity()};  ///< Of the tool's frame.
+    Mat3 rotation{Mat3::Identity()};  ///< Rotation of the tool's frame.
 };
 
-/// A tool's shape and what its device allows; fixed when the frame is made. Finite and not
-/// negative, which a frame doesn't check; up to 1e6 m, and 1e9 of the rest, may be recorded.
+/// A tool's shape and its device's limits; fixed when the frame is made. Values must be finite and
+/// not negative, which a frame does not check; recordings hold lengths up to 1e6 m and other values
+/// up to 1e9.
 struct ToolSpec
 {
-    double radius_m{0.0};            ///< The tool is everything within it of `core`.
-    double stiffness_n_per_m{500.0}; ///< Of the virtual wall.
-    double force_max_n{8.0};         ///< The force's norm is clamped to it.
-    double speed_max_m_per_s{1.0};   ///< Faster goals are followed at this speed in contact.
+    double radius_m{0.0};            ///< The tool is all within this distance of `core`.
+    double stiffness_n_per_m{500.0}; ///< Stiffness of the virtual wall.
+    double force_max_n{8.0};         ///< Limit of the force's norm.
+    double speed_max_m_per_s{1.0};   ///< Speed limit of the proxy in contact.
     ToolCore core{PointCore{}};      ///< A point makes a sphere.
-    bool wants_contacts{false};      ///< Contacts, normals and sides, some microseconds a pair.
-    double torque_max_nm{0.5};       ///< The torque's norm is clamped to it. A sphere has none.
-    /// Follows the hand through surfaces, without a force: a tool that measures.
+    bool wants_contacts{false};      ///< Report contacts, normals and sides; microseconds per pair.
+    double torque_max_nm{0.5};       ///< Limit of the torque's norm; a sphere has none.
+    /// Query-only tool: it follows the device through surfaces, without a force.
     bool passes_through{false};
-    /// Of the spring that turns the tool; 0: as the stiffness and the tool's own size make it.
+    /// Stiffness of the rotational spring; 0: derived from the stiffness and the tool's size.
     double angular_stiffness_nm_per_rad{0.0};
-    /// A point or ball feels facets that lie within this of where it touches as one smooth surface,
-    /// by normals that go over (force/smooth_normals.hpp); 0: it feels each. The surface that is
-    /// felt is within an eighth of it of the mesh. kSmoothWidthMin_m .. kSmoothWidthMax_m.
+    /// Force shading of a point or sphere: facets within this distance of its contact are felt as
+    /// one smooth surface, by interpolated normals (force/smooth_normals.hpp). The felt surface is
+    /// within an eighth of it of the mesh. kSmoothWidthMin_m .. kSmoothWidthMax_m; 0: off.
     double smooth_m{0.0};
-    /// Its pairs answer exactly however far they are, once the surface that may be the nearest is
-    /// here and refined. Frames do that bit by bit, behind all that a force needs and as far as the
-    /// pools have room; until then the bracket narrows. Some microseconds a pair and frame. Not of
-    /// a tool that is a mesh: it changes nothing.
+    /// Report exact distances at any range, as soon as all of the surface that may be nearest is
+    /// resident and refined. Frames refine it gradually, after all that forces need and as far as
+    /// the pools have room; until then the bounds narrow. Some microseconds per pair and frame. No
+    /// effect if the tool is a mesh.
     bool wants_distance{false};
-    /// Of a mesh: all pairs of faces that meet (MeshReport), some 30 us where 100 do. A tool that
-    /// wants contacts gets kEnoughMeetingFaces in any case; of others the first that is found is
-    /// told.
+    /// Report all pairs of faces that meet (MeshReport), if the tool is a mesh; about 30 us for 100
+    /// pairs. Otherwise a tool that wants contacts gets kEnoughMeetingFaces, others the first pair
+    /// found.
     bool wants_pairs{false};
 };
 
@@ -68,42 +69,43 @@ struct ToolSpec
     return std::holds_alternative<MeshCore>(tool.core);
 }
 
-/// What one frame may do at most. Inputs of the frame, chosen outside and recorded, so a replay is
-/// exact. Counts are the frame's, whatever is in the scene; `nodes` and `triangles` are those of
-/// one traversal, of which a frame does kFrameWalks to refine and as many to answer; `planes` are
-/// those of one proxy, and kFrameWalks times as many in all.
+/// Limits of one frame's work. They are inputs, chosen outside and recorded, so a replay is exact.
+/// Counts hold for the frame with all of its scene; `nodes` and `triangles` are those of one
+/// traversal, of which a frame does kFrameWalks to refine and as many to answer; `planes` are those
+/// of one proxy, with kFrameWalks times as many in all.
 struct Budgets
 {
-    std::uint32_t splits{64};       ///< K; of more kMaxSplitsPerFrame are used.
-    std::uint32_t merges{64};       ///< K; of more kMaxMergesPerFrame are used.
-    std::uint32_t scanned{512};     ///< S, refined records looked at for merging.
+    std::uint32_t splits{64};       ///< K; at most kMaxSplitsPerFrame are used.
+    std::uint32_t merges{64};       ///< K; at most kMaxMergesPerFrame are used.
+    std::uint32_t scanned{512};     ///< S, refined records checked for merging.
     std::uint32_t nodes{2'048};     ///< N, tree nodes and blocks visited.
     std::uint32_t triangles{8'192}; ///< P, triangles tested.
     std::uint32_t pages{8};         ///< A, arrivals adopted.
-    std::uint32_t requests{32};     ///< Q, wishes sent.
-    std::uint32_t regions{8}; ///< G, index pages searched for chunks that ranked regions need.
-    /// F, what the proxy of a ball looks at to find its way, some 1,300 instructions each: a plane
-    /// before a triangle in double, eight in single precision, or a search among up to eight. What
-    /// was begun is ended, and what touches where it stops is looked at whatever is left. Tools of
-    /// other shapes need none: kMaxHalfSpaces bounds each of their steps.
+    std::uint32_t requests{32};     ///< Q, requests sent.
+    /// G, index pages searched for chunks that ranked regions need.
+    std::uint32_t regions{8};
+    /// F, checks that the proxy of a sphere may do to find its path, about 1,300 instructions each:
+    /// a plane against a triangle in double precision, eight in single precision, or a search among
+    /// up to eight. A check that has begun is finished, and contacts where the proxy stops are
+    /// checked in any case. Tools of other shapes need none: kMaxHalfSpaces bounds each of their
+    /// steps.
     std::uint32_t planes{1'024};
-    /// W, all of the frame in instructions (WorkCost): what bounds the frame whatever is in it. The
-    /// most urgent pairs are served first; what is cut short says so. At least WorkBudget::kLeast
-    /// are used.
+    /// W, the whole frame in instructions (WorkCost), a bound on any frame. The most urgent pairs
+    /// are served first; a stage that is cut short reports it. At least WorkBudget::kLeast are
+    /// used.
     std::uint32_t work{WorkBudget::kUnlimited};
 
-    /// With a tool that is a hull a frame may do so many times what others may, with a mesh so
-    /// many.
+    /// Factor by which a frame with a hull as a tool may do more work; below, with a mesh.
     static constexpr std::uint32_t kHullWork = 2;
     static constexpr std::uint32_t kMeshWork = 8;
-    /// `times` an instruction for each nanosecond that a frame may take, but what it needs in any
-    /// case.
+    /// Work of `times` instructions per nanosecond that a frame may take, but at least what a frame
+    /// needs.
     [[nodiscard]] static constexpr std::uint32_t work_of(std::int64_t frame_ns,
                                                          std::uint32_t times) noexcept
     {
         return std::max(static_cast<std::uint32_t>(frame_ns) * times, least_work(times));
     }
-    /// What a frame needs to get on: more with large searches.
+    /// Least work with which a frame makes progress: larger with large searches.
     [[nodiscard]] static constexpr std::uint32_t least_work(std::uint32_t times) noexcept
     {
         return times == 1 ? WorkBudget::kLeast : WorkBudget::kLeast * times * 3 / 2;
@@ -112,16 +114,15 @@ struct Budgets
     bool operator==(const Budgets&) const = default;
 };
 
-/// All that a frame gets, beside what its models' doors bring: the same inputs give the same bits.
-/// The spans are read during Frame::run() only.
+/// All inputs of a frame, besides the events of its models' doors: the same inputs give the same
+/// bits. The spans are read during Frame::run() only.
 struct FrameInput
 {
-    std::span<const ToolState> tools;     ///< One for each tool of the set-up (asserted); of one
-                                          ///< that is gone it is not looked at.
-    std::span<const SceneChange> changes; ///< In their order, before anything else; at most
-                                          ///< kMaxSceneChanges are made.
+    std::span<const ToolState> tools;     ///< One for each tool of the set-up (asserted); ignored
+                                          ///< for a removed tool.
+    std::span<const SceneChange> changes; ///< Applied first, in order; at most kMaxSceneChanges.
     Budgets budgets;
-    std::int64_t now_ns{0}; ///< On the clock of ObjectPose::arrival_ns.
+    std::int64_t now_ns{0}; ///< Time on the clock of ObjectPose::arrival_ns.
 };
 
 /// The frame's stages, in order; times are named after them.
@@ -134,7 +135,7 @@ enum class Stage : std::uint8_t
     force,
 };
 inline constexpr std::uint32_t kStages = 5;
-/// In the order of Stage.
+/// Names of the stages, in the order of Stage.
 inline constexpr std::array<const char*, kStages> kStageNames{"load", "refine", "refit", "query",
                                                               "force"};
 static_assert(static_cast<std::uint32_t>(Stage::force) + 1 == kStages);

@@ -18,49 +18,52 @@
 namespace tactus
 {
 
-/// What one tool got. World frame, SI.
+/// Results of one tool. World frame, SI.
 ///
-/// Force and torque are those of the proxy's spring, whatever is wrong: SafeState fades them for
-/// what faults_of() says.
+/// Force and torque are those of the proxy's spring even with faults: SafeState fades them for the
+/// faults of faults_of().
 struct ToolOutput
 {
     Vec3 force_n{0.0, 0.0, 0.0};
-    Vec3 proxy_m{0.0, 0.0, 0.0};           ///< Centre of the tool as the surface lets it be.
+    Vec3 proxy_m{0.0, 0.0, 0.0};           ///< Centre of the tool that the surface allows.
     Vec3 torque_nm{0.0, 0.0, 0.0};         ///< About the device's position. Zero for a sphere.
-    Mat3 proxy_rotation{Mat3::Identity()}; ///< Of the tool's frame; a sphere's is the hand's.
-    double stiffness_n_per_m{0.0}; ///< Of the spring that makes the force; 0 without contact.
-    /// How far the proxy is behind: its way to the goal, along the surface where it touches; 0
-    /// where it has come to rest.
+    Mat3 proxy_rotation{Mat3::Identity()}; ///< Rotation of the tool's frame; for a sphere the
+                                           ///< device's.
+    /// Stiffness of the spring that produces the force; 0 without contact.
+    double stiffness_n_per_m{0.0};
+    /// Distance by which the proxy is behind: its path to the goal, along the surface in contact; 0
+    /// at rest.
     double lag_m{0.0};
     bool in_contact{false};
-    bool frozen{false};   ///< The proxy waits for data, held where it is.
-    bool squeezed{false}; ///< Objects leave the tool no room.
-    /// The proxy went as far as the surface is known, for want of data, and would have gone
-    /// farther.
+    bool frozen{false};   ///< The proxy waits for data and is halted.
+    bool squeezed{false}; ///< Objects leave the tool no room (over-constrained).
+    /// Data-limited: the proxy reached the end of the known surface before its goal.
     bool held_back{false};
-    /// The proxy is still on its way: it came to the end of what is known, or of a frame's steps.
+    /// The proxy is still moving: it reached the end of the known surface or of a frame's steps.
     bool under_way{false};
-    bool cut_short{false};   ///< On its way: what it may look at in a frame was used up.
-    bool crowded{false};     ///< More touches it than limits allow: force and torque may lack some.
-    bool lost_object{false}; ///< In touch, and an object near it went or jumped in this frame.
-    bool is_gone{false};     ///< SceneChangeKind::tool_goes: everything else is as it was made.
-    /// The longest way that the frame believes any point within the tool's reach to have gone with
-    /// an object since the last frame, and the largest angle by which one of them has turned. >= 0.
+    bool cut_short{false}; ///< The proxy is still moving: the frame's checks were used up.
+    /// Capacity exceeded: more contacts than limits allow; force and torque may lack some.
+    bool crowded{false};
+    bool lost_object{false}; ///< An object near the touching tool was removed or jumped.
+    /// The tool was removed (SceneChangeKind::tool_goes); all other values are defaults.
+    bool is_gone{false};
+    /// Largest displacement, since the last frame, of a point of an object within the tool's reach
+    /// as the frame believes it, and the largest rotation angle of one of these objects. >= 0.
     double object_way_m{0.0};
     double object_turn_rad{0.0};
-    /// How far, and about which rotation vector, objects took the proxy along in this frame. What
-    /// the force does along that way is work of those who move the objects, and not of the wall.
+    /// Displacement and rotation vector by which objects carried the proxy in this frame. Work of
+    /// the force along it is done by those who move the objects, not by the wall.
     Vec3 carried_m{0.0, 0.0, 0.0};
     Vec3 carried_rad{0.0, 0.0, 0.0};
-    /// Proven distance of its core from every object that no PairOutput names, at the proxy at the
-    /// start of the frame; infinite where there is none.
+    /// Proven distance of the tool's core from every object without a PairOutput, for the proxy at
+    /// the start of the frame; infinite if there is no such object.
     double clear_m{kInfinity};
-    FrameFault sample_fault{FrameFault::none}; ///< What is wrong with the device (SampleWatch).
+    FrameFault sample_fault{FrameFault::none}; ///< Fault of the device's samples (SampleWatch).
 
     [[nodiscard]] bool operator==(const ToolOutput&) const = default;
 };
 
-/// What a frame says of a tool with this output.
+/// Faults that a frame reports for a tool with this output.
 [[nodiscard]] constexpr FrameFault frame_faults(const ToolOutput& output) noexcept
 {
     return output.sample_fault | (output.frozen ? FrameFault::proxy_frozen : FrameFault::none) |
@@ -70,8 +73,8 @@ struct ToolOutput
            (output.lost_object ? FrameFault::object_lost : FrameFault::none);
 }
 
-/// Why a tool's force must fade; none while nothing is wrong. A proxy that waits for data without a
-/// force has nothing to fade; one that has no room will have a force, as soon as it touches.
+/// Faults for which a tool's force must fade. A proxy that waits for data without a force has
+/// nothing to fade; an over-constrained one will have a force as soon as it touches.
 [[nodiscard]] constexpr FrameFault faults_of(const ToolOutput& output) noexcept
 {
     const bool is_held = output.frozen && output.in_contact;
@@ -80,70 +83,70 @@ struct ToolOutput
            (output.squeezed ? FrameFault::proxy_squeezed : FrameFault::none);
 }
 
-/// What one pair of tool and object got. World frame, metres: the model's distances times the
+/// Results of one pair of tool and object. World frame, metres: the model's distances times the
 /// scale.
 struct PairOutput
 {
     std::uint32_t tool{0};
     std::uint32_t object{0};
     AnswerKind kind{AnswerKind::bracket};
-    /// Where the tool was asked about: its place at the start of the frame, or at the start of the
-    /// frame's last step that had work left for this pair. Pairs of one tool may differ.
+    /// Place of the tool that the answers are for: at the start of the frame, or of its last step
+    /// that had work left for this pair. Pairs of one tool may differ.
     Vec3 tool_m{0.0, 0.0, 0.0};
     Mat3 tool_rotation{Mat3::Identity()}; ///< The tool's rotation there.
-    /// The point of the tool's core, there, that is nearest to the surface, or the core's centre
-    /// where that is not known.
+    /// Point of the tool's core, there, nearest to the surface, or the core's centre if unknown.
     Vec3 point_m{0.0, 0.0, 0.0};
-    double lower_m{0.0}; ///< From the core, >= 0; the tool's radius is not taken off.
-    double upper_m{0.0}; ///< Likewise; infinite where nothing is known yet.
-    /// All original faces within it of the core are active and exact, or stood for by faces of an
-    /// error of at most tolerated_m.
+    double lower_m{0.0}; ///< Distance from the core, >= 0, without the tool's radius.
+    double upper_m{0.0}; ///< Distance from the core; infinite if nothing is known yet.
+    /// All original faces within this distance of the core are active and exact, or represented by
+    /// faces with an error of at most tolerated_m.
     double certified_radius_m{0.0};
-    double tolerated_m{0.0};             ///< 0 where all faces in reach are exact.
-    FaceId nearest_face{};               ///< None when there is none of the surface in reach.
-    Vec3 nearest_point_m{0.0, 0.0, 0.0}; ///< On that face; without one of no meaning.
-    bool skipped{false};                 ///< Answered from the last distance and the motion since.
-    TriangleFeature nearest_feature{TriangleFeature::interior}; ///< Of the nearest face.
-    bool is_shed{false}; ///< Nothing is loaded or refined for it: more urgent pairs had no room.
-    /// False: one came round the other, and there is no force until they are proven apart.
+    double tolerated_m{0.0};             ///< 0 if all faces in reach are exact.
+    FaceId nearest_face{};               ///< None if no surface is in reach.
+    Vec3 nearest_point_m{0.0, 0.0, 0.0}; ///< Point of nearest_face; undefined without one.
+    bool skipped{false};                 ///< Derived from the last distance and the motion since.
+    TriangleFeature nearest_feature{TriangleFeature::interior}; ///< Feature of nearest_face.
+    /// The pair is neither loaded nor refined: more urgent pairs took the capacity.
+    bool is_shed{false};
+    /// False: one passed round the other, and there is no force until they are proven apart.
     bool is_joined{true};
-    double damping_n_s_per_m{0.0};          ///< Of the object's material, as it is felt now.
-    const ContactReport* contacts{nullptr}; ///< Null unless the tool wants them.
+    double damping_n_s_per_m{0.0};          ///< Damping of the object's material, as felt now.
+    const ContactReport* contacts{nullptr}; ///< Null unless the tool asks for contacts.
     const MeshReport* mesh{nullptr};        ///< Null unless the tool is a mesh.
 };
 
 /// The scene after a frame.
 struct SceneOutput
 {
-    std::uint32_t objects{0};       ///< That are there.
-    std::uint32_t pairs{0};         ///< Awake: those that have a PairOutput.
-    std::uint32_t crowded_tools{0}; ///< That are not proven clear as far as they ask.
-    /// Of those, and of tools before a model that isn't resident: with a hand that is farther.
+    std::uint32_t objects{0};       ///< Objects in the scene.
+    std::uint32_t pairs{0};         ///< Awake pairs: those with a PairOutput.
+    std::uint32_t crowded_tools{0}; ///< Tools not proven clear as far as they ask.
+    /// Crowded tools, and tools at a model that is not resident, whose device pose is farther away.
     std::uint32_t walled_tools{0};
-    std::uint32_t walks{0}; ///< Over all objects: at most kBroadWalks.
-    /// Changes that were not made, in the order of ChangeRefusal.
+    std::uint32_t walks{0}; ///< Walks over all objects: at most kBroadWalks.
+    /// Changes that were refused, in the order of ChangeRefusal.
     std::array<std::uint32_t, kChangeRefusals> refused{};
 };
 
-/// Use of one pool now, in slots.
+/// Present use of one pool, in slots.
 struct PoolUse
 {
     std::uint32_t used{0};
-    std::uint32_t used_max{0}; ///< Since the start; of index pages what is used now.
-    std::uint32_t capacity{0}; ///< What the model brought: it may use more.
+    std::uint32_t used_max{0}; ///< Maximum since the start; for index pages the present use.
+    std::uint32_t capacity{0}; ///< Reserved for the model, which may use more.
 };
 
-/// Where a model is in its life. Those with which a frame starts as a whole stay `resident`.
+/// Life cycle of a model. Models that a frame starts with completely stay `resident`.
 enum class ModelStage : std::uint8_t
 {
-    known,    ///< Its header is here. No tool is near, or the pools have no room for it.
-    wanted,   ///< A tool is near: its base mesh was asked for.
-    arriving, ///< It is here and enters the tree.
-    resident, ///< Its surface answers.
-    leaving,  ///< No tool is near: it is taken out of the pools.
+    known,    ///< The header is there. No tool is near, or the pools have no room.
+    wanted,   ///< A tool is near: the base mesh was requested.
+    arriving, ///< The base mesh is there and enters the tree.
+    resident, ///< The surface answers queries.
+    leaving,  ///< No tool is near: the model is removed from the pools.
 };
 inline constexpr std::uint32_t kModelStages = 5;
-/// In the order of ModelStage.
+/// Names of the stages, in the order of ModelStage.
 inline constexpr std::array<const char*, kModelStages> kModelStageNames{
     "known", "wanted", "arriving", "resident", "leaving"};
 
@@ -156,18 +159,18 @@ struct ModelOutput
     PoolUse blocks;
     PoolUse nodes;
     std::uint32_t refined_records{0};
-    std::uint64_t state_hash{0}; ///< Names the active faces: the same cut has the same.
+    std::uint64_t state_hash{0}; ///< Names the active faces: equal cuts have equal hashes.
     bool is_static{false};       ///< Refined fully: nothing is left to load, refine or refit.
     ModelStage stage{ModelStage::resident};
 };
 
-/// What a frame returns: spans into the frame's own memory, valid until the next run.
+/// Results of a frame: spans into the frame's own memory, valid until the next run.
 struct FrameOutput
 {
-    std::span<const ToolOutput> tools;   ///< In set-up order.
-    std::span<const PairOutput> pairs;   ///< Of what is near: tool by tool, in each the objects by
-                                         ///< their numbers; the nearest one always.
-    std::span<const ModelOutput> models; ///< In set-up order.
+    std::span<const ToolOutput> tools;   ///< Set-up order.
+    std::span<const PairOutput> pairs;   ///< Objects near each tool, always including the nearest:
+                                         ///< tool by tool, objects in order of their numbers.
+    std::span<const ModelOutput> models; ///< Set-up order.
     WorkCounters work;
     FrameFault faults{FrameFault::none};
     DoorTake door; ///< An input of the frame, kept for recordings.

@@ -6,32 +6,35 @@
 namespace tactus
 {
 
-/// How a frame may differ from the one that ships, so that what it saves can be measured. The first
-/// ten are shortcuts: without them exact answers are the same and cost more. For tools that are
-/// no meshes. Recordings are of frames without any difference.
+/// Differences from the shipped frame, so that the saving of each shortcut can be measured. The
+/// first ten are shortcuts: without them exact answers are the same and cost more. Not for tools
+/// that are meshes. Recordings are of frames without any difference.
 struct FrameVariant
 {
-    /// Only objects near a tool are looked at: see BroadPhase. Without, the nearest kMaxNear are.
+    /// Checks only objects near a tool: see BroadPhase. Off: the nearest kMaxNear.
     bool finds_neighbours{true};
     /// A tool at rest among objects and faces at rest keeps its last answers and its last force.
     bool lets_tools_rest{true};
-    /// Where all tools rest and all models are here as a whole, all of the frame is the last one.
+    /// If all tools rest and all models are resident as a whole, the whole frame repeats the last
+    /// one.
     bool lets_frames_rest{true};
-    /// A pair that its last distance and the motion since prove out of reach is not looked at.
+    /// A pair proven out of reach by its last distance and the motion since is not queried.
     bool lets_pairs_rest{true};
-    bool starts_warm{true};        ///< A query starts where the last one ended.
-    bool keeps_certificates{true}; ///< What is certified is not looked at until motion uses it up.
+    bool starts_warm{true}; ///< A query starts where the last one ended.
+    /// A certified region is not checked until motion uses up its certificate.
+    bool keeps_certificates{true};
     bool refits_changed_only{true};
-    /// Of a model whose boxes no ball meets nothing is asked for.
+    /// Requests nothing of a model whose boxes no sphere meets.
     bool asks_near_models_only{true};
-    /// Index pages that were searched for balls a little wider are left alone for some frames.
+    /// Skips index pages for some frames after a search for slightly wider spheres.
     bool keeps_searches{true};
-    bool asks_ahead{true}; ///< Chunks are asked for where a tool will be, not only where it is.
-    /// Above 0 every coarse face within so many times the reach is split, whatever its error;
-    /// answers are what the faces' errors prove all the same.
+    /// Requests chunks where a tool will be, not only where it is.
+    bool asks_ahead{true};
+    /// Above 0, every coarse face within this many times the reach is split, even if its error is
+    /// small; answers still follow from the faces' errors.
     double fixed_radius{0.0};
-    /// Above 0 coarse faces count as the surface whose error is at most this, whatever
-    /// FrameSetup::force_tolerance_n and the pools say. Model frame.
+    /// Above 0, coarse faces count as the surface if their error is at most this; replaces the
+    /// tolerance that FrameSetup::force_tolerance_n and the pools give. Model frame.
     double tolerance_m{0.0};
 };
 

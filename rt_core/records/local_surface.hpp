@@ -20,19 +20,19 @@ namespace tactus
 /// A triangle of the surface near a tool, in the model's frame. 40 B.
 struct LocalTriangle
 {
-    PrimId prim{}; ///< Until the next frame; AbTree::face_of() knows its lasting name.
+    PrimId prim{}; ///< Valid until the next frame; AbTree::face_of() gives the lasting id.
     std::array<Vec3f, 3> corners_m{};
 };
 
-/// What an answer is called (docs/accuracy.md).
+/// Kinds of answers (docs/accuracy.md).
 enum class AnswerKind : std::uint8_t
 {
-    exact,   ///< L and U come from exact faces and differ by the kernel's error law only.
-    decided, ///< L is above the tool's reach: there is no contact, proven without refining.
-    bracket, ///< L < U and the question is open.
-    stale,   ///< Of an older revision or pose than allowed; L and U hold for that one only.
-    /// As exact, where coarse faces whose error is within the tolerance count as the surface: their
-    /// error is taken off L, and U comes from exact faces and from corners.
+    exact,   ///< L and U come from exact faces and differ only by the kernel's error law.
+    decided, ///< Separated: L is above the tool's reach, so no contact, proven without refining.
+    bracket, ///< Bounded: L < U, and the question is open.
+    stale,   ///< Older than allowed, by revision or pose; L and U hold for that pose only.
+    /// Like exact, but coarse faces with an error within the tolerance count as the surface: their
+    /// error is subtracted from L, and U comes from exact faces and from corners.
     within_tolerance,
 };
 
@@ -41,36 +41,37 @@ struct DistanceAnswer
 {
     AnswerKind kind{AnswerKind::bracket};
     double lower_m{0.0};       ///< L: no original surface is nearer.
-    double upper_m{kInfinity}; ///< U: some is within this.
-    /// All original faces within this distance of the core are active and exact, or stood for by
-    /// faces within the tolerance; negative when not even those that touch it are.
+    double upper_m{kInfinity}; ///< U: some surface is within this.
+    /// All original faces within this distance of the core are active and exact, or represented by
+    /// faces within the tolerance; negative if not even the touching faces are.
     double certified_radius_m{-1.0};
-    /// The largest error of a face that was looked at and counts as the surface.
+    /// The largest error of a face that was checked and counts as the surface.
     double tolerated_m{0.0};
-    FaceId nearest_face{}; ///< The nearest of the surface; none when there is none in reach.
-    Vec3 tool_point_m{0.0, 0.0, 0.0};    ///< Of the core: the nearest one to the surface.
-    Vec3 nearest_point_m{0.0, 0.0, 0.0}; ///< Of the surface.
+    FaceId nearest_face{};               ///< Nearest face; none if none is in reach.
+    Vec3 tool_point_m{0.0, 0.0, 0.0};    ///< Nearest point of the core.
+    Vec3 nearest_point_m{0.0, 0.0, 0.0}; ///< Nearest point of the surface.
     TriangleFeature nearest_feature{TriangleFeature::interior};
 };
 
-/// Whether the nearest place of the surface is known.
+/// True if the nearest place of the surface is known.
 [[nodiscard]] constexpr bool is_known(AnswerKind kind) noexcept
 {
     return kind == AnswerKind::exact || kind == AnswerKind::within_tolerance;
 }
 
-/// Everything the force stage needs of one pair: the triangles of the surface, exact or within the
-/// tolerance, that are within the certified distance of the tool's core. In order of the traversal;
-/// the force does not depend on it.
+/// Data of one pair for the force stage: the triangles of the surface, exact or within the
+/// tolerance, that are within the certified distance of the tool's core. In traversal order, which
+/// does not affect the force.
 struct LocalSurface
 {
-    Vec3 center_m{0.0, 0.0, 0.0}; ///< Of the core, in the model's frame.
+    Vec3 center_m{0.0, 0.0, 0.0}; ///< Centre of the core, in the model's frame.
     DistanceAnswer answer;
-    std::span<LocalTriangle> triangles; ///< Room; the first `count` are of the surface.
-    std::span<double> distances_m;      ///< As much; lower bounds, from the core.
+    std::span<LocalTriangle> triangles; ///< Capacity; the first `count` belong to the surface.
+    std::span<double> distances_m;      ///< Same size: lower bounds on the distance from the core.
     std::uint32_t count{0};
-    bool truncated{false}; ///< More triangles were in reach; the certified radius says how far.
-    /// Room or budget ended the search: from nearer, more may be known.
+    /// More triangles were in reach; the certified radius gives the covered distance.
+    bool truncated{false};
+    /// Capacity or budget ended the search: a query from nearer may find more.
     bool is_cut{false};
 };
 static_assert(sizeof(LocalTriangle) == 40);

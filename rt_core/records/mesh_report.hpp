@@ -16,34 +16,34 @@ namespace tactus
 /// Two exact faces that share a point.
 struct MeetingFaces
 {
-    FaceId tool_face{}; ///< Of the tool's model.
-    FaceId face{};      ///< Of the object's.
+    FaceId tool_face{}; ///< Face of the tool's model.
+    FaceId face{};      ///< Face of the object's model.
 
     // NOLINTNEXTLINE(modernize-use-nullptr): the check takes the comparison's zero for a pointer.
     constexpr auto operator<=>(const MeetingFaces&) const noexcept = default;
 };
 
-/// Whether any two faces of tool and object share a point.
+/// Result of the test whether any two faces of tool and object share a point.
 enum class Intersection : std::uint8_t
 {
-    open,   ///< What is not exact may meet.
-    none,   ///< Proven.
-    proven, ///< Some do.
+    open,   ///< Faces that are not exact may meet.
+    none,   ///< Proven that none meet.
+    proven, ///< Some faces meet.
 };
 
-/// What a tool that is a mesh gets of a pair.
+/// Results of a pair whose tool is a mesh.
 struct MeshReport
 {
     Intersection intersection{Intersection::open};
-    /// Of exact faces, lowest ids first: by the tool's and then by the object's.
+    /// Exact faces; lowest ids first, the tool's before the object's.
     StaticVector<MeetingFaces, kMaxMeetingFaces> meeting;
-    /// More met: those with the lowest ids are kept; of kEnoughMeetingFaces those found first.
+    /// More met: those with the lowest ids are kept; with kEnoughMeetingFaces those found first.
     bool is_truncated{false};
-    bool is_complete{false}; ///< None was left out, and none may exist unseen.
-    /// The tool's face at the nearest point, where the object's is known.
+    bool is_complete{false}; ///< No pair was left out, and none may exist unseen.
+    /// The tool's face at the nearest point, if the object's is known.
     FaceId nearest_tool_face{};
 
-    /// As new, without touching what no pair is in.
+    /// Resets the report without writing unused pairs.
     void clear() noexcept
     {
         intersection = Intersection::open;

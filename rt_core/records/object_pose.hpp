@@ -15,28 +15,28 @@
 namespace tactus
 {
 
-/// Where an object stands: how the frame of its source mesh lies in the world. The default is where
-/// the source stood. Inside the frame, from model_pose() on, it is that of the model's frame. A
+/// Pose of an object: the frame of its source mesh in the world. The default is the source mesh's
+/// own pose. Inside the frame, from model_pose() on, it is the pose of the model's frame. A
 /// SceneChange beyond kPoseReachMax_m, kPoseScaleMin to kPoseScaleMax or kRotationTolerance is
 /// ChangeRefusal::bad_pose.
 struct ObjectPose : Similarity
 {
-    std::int64_t stamp_ns{0}; ///< The sender's; a frame doesn't look at it.
-    /// On the clock of FrameInput::now_ns. A pose that is older than FrameSetup::pose_age_max_ns
-    /// makes answers stale; 0: it never grows old.
+    std::int64_t stamp_ns{0}; ///< The sender's time; frames ignore it.
+    /// Arrival on the clock of FrameInput::now_ns. A pose older than FrameSetup::pose_age_max_ns
+    /// makes answers stale; 0: the pose does not age.
     std::int64_t arrival_ns{0};
-    std::uint32_t revision{0}; ///< Of the model that the pose was made for; another is stale.
+    std::uint32_t revision{0}; ///< Model revision of the pose; another one is stale.
 };
 
-/// Which model an object shows, and how it feels.
+/// Model and material of an object.
 struct ObjectSpec
 {
     ModelId model{};
     Material material{};
 };
 
-/// The same for the frame of the model, whose origin the source mesh has at `origin_m`
-/// (ModelHeader::origin_m).
+/// The pose of the model's frame, whose origin lies at `origin_m` (ModelHeader::origin_m) in the
+/// frame of the source mesh.
 [[nodiscard]] inline ObjectPose model_pose(const ObjectPose& source_pose,
                                            const Vec3& origin_m) noexcept
 {
@@ -55,8 +55,8 @@ struct ObjectSpec
     return pose.to_there(model_m);
 }
 
-/// How far distances from a core of this radius round a place of the world may be off by its way
-/// into the model's frame and back: see kPoseRounding.
+/// Bound on the error of distances from a core of this radius round a place of the world that the
+/// conversion into the model's frame and back causes: see kPoseRounding.
 [[nodiscard]] inline double pose_rounding_m(const ObjectPose& pose, const Vec3& world_m,
                                             double radius_m) noexcept
 {
@@ -65,7 +65,7 @@ struct ObjectSpec
            ((world_m - pose.translation_m).norm() + world_m.norm() + 2.0 * radius_m);
 }
 
-/// How old a pose is at `now_ns`; one that came since the frame began is not from the future.
+/// Age of a pose at `now_ns`; 0 if it arrived after the frame began.
 [[nodiscard]] inline std::int64_t age_ns(const ObjectPose& pose, std::int64_t now_ns) noexcept
 {
     return pose.arrival_ns == 0 || pose.arrival_ns > now_ns ? 0 : now_ns - pose.arrival_ns;

@@ -13,29 +13,29 @@
 namespace tactus
 {
 
-/// A tool and an object that touch, or may within BelievedSpeed::kPatience_s. World frame.
+/// A tool and an object that touch, or may touch within BelievedSpeed::kPatience_s. World frame.
 struct ObjectTouch
 {
     std::uint32_t object{0};
     std::uint32_t tool{0};
-    /// A ball that holds the tool and all of the object that it may meet in a frame.
+    /// Sphere that holds the tool and all of the object that it may meet in a frame.
     Vec3 place_m{0.0, 0.0, 0.0};
     double radius_m{0.0};
-    bool is_in_reach{true}; ///< The object may be at the tool in this frame.
+    bool is_in_reach{true}; ///< The object may reach the tool in this frame.
 };
 using ObjectTouches = StaticVector<ObjectTouch, kMaxPairs>;
 
-/// What a tool may go in a frame, and the skin of one without a radius.
+/// Largest displacement of a tool in a frame, and the skin of a tool without a radius.
 inline constexpr double kTouchSlack_m = 5e-3;
 
-/// Whether the surface may be at the tool, which has this radius, at the end of the frame: pairs
+/// True if the surface may reach the tool, which has this radius, by the end of the frame; pairs
 /// are measured at its beginning.
 [[nodiscard]] inline bool is_in_reach(const PairOutput& pair, double radius_m) noexcept
 {
     return pair.lower_m <= radius_m + kTouchSlack_m;
 }
 
-/// Whether the pair's tool, of which the output is, may touch the object.
+/// True if the pair's tool, with this output, may touch the object.
 [[nodiscard]] inline bool may_touch(const PairOutput& pair, const ToolOutput& tool,
                                     double radius_m) noexcept
 {

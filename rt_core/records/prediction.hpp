@@ -13,22 +13,22 @@
 namespace tactus
 {
 
-/// How the place where a tool will touch is predicted: the paper's four ways, and the choice among
-/// them. Recordings store the number, so a new way goes in front of `automatic` only with a new
-/// version of that format (platform/recording/setup_coding.cpp).
+/// Methods that predict where a tool will touch: the paper's four, and the choice among them.
+/// Recordings store the number, so adding one before `automatic` needs a new version of that format
+/// (platform/recording/setup_coding.cpp).
 enum class Prediction : std::uint8_t
 {
-    local_neighbours, ///< It stays; as far round it as the present speed leads may be touched.
+    local_neighbours, ///< Fixed place; the present speed sets the radius that may be touched.
     linear,           ///< Straight on at the present velocity.
-    quadratic,        ///< At the present velocity and acceleration.
-    distance_query,   ///< Straight on, but not through the surface that the last query found.
-    automatic,        ///< Whichever of these erred least recently.
+    quadratic,        ///< Present velocity and acceleration.
+    distance_query,   ///< Straight on, but not through the surface of the last query.
+    automatic,        ///< The one of these with the least recent error.
 };
-/// Those that predict by themselves.
+/// Number of methods that predict.
 inline constexpr std::size_t kPredictions = 4;
 static_assert(static_cast<std::size_t>(Prediction::automatic) == kPredictions);
 
-/// As options and reports call them, in order.
+/// Names in options and reports, in order.
 inline constexpr std::array<std::string_view, kPredictions + 1> kPredictionNames{
     "local", "linear", "quadratic", "distance", "auto"};
 [[nodiscard]] constexpr std::string_view prediction_name(Prediction prediction) noexcept

@@ -13,21 +13,21 @@
 namespace tactus
 {
 
-/// A ball of a model that a tool may touch: now, or after `lead_ns` at its present velocity.
-/// Model frame, metres.
+/// A sphere of a model that a tool may touch now, or after `lead_ns` at its present velocity. Model
+/// frame, metres.
 struct RankedRegion
 {
     ModelId model{};
     Vec3 center_m{0.0, 0.0, 0.0};
     double radius_m{0.0};
     std::int64_t lead_ns{0};
-    UrgencyClass of{UrgencyClass::touching}; ///< Of its pair.
+    UrgencyClass of{UrgencyClass::touching}; ///< Class of its pair.
 };
 
 /// The regions of one frame, most urgent first.
 struct RegionRanking : StaticVector<RankedRegion, kMaxRankedRegions>
 {
-    bool lacks_present{false}; ///< A ball where a tool is now had no room.
+    bool lacks_present{false}; ///< A sphere where a tool is now did not fit.
 };
 
 } // namespace tactus

@@ -12,7 +12,7 @@
 namespace tactus
 {
 
-/// What happens to an object or a tool.
+/// Kinds of changes of objects and tools.
 enum class SceneChangeKind : std::uint8_t
 {
     object_comes,
@@ -20,11 +20,12 @@ enum class SceneChangeKind : std::uint8_t
     object_goes,
     tool_comes,
     tool_goes,
-    object_feels, ///< Otherwise from now on; what touches it feels that come within a while.
+    /// New material; tools that touch the object feel it blended in.
+    object_feels,
 };
 inline constexpr std::size_t kSceneChangeKinds = 6;
 
-/// Whether such a change says where an object stands, or how it feels.
+/// True if a change of this kind has a pose; below, a material.
 [[nodiscard]] constexpr bool has_pose(SceneChangeKind kind) noexcept
 {
     return kind == SceneChangeKind::object_comes || kind == SceneChangeKind::object_moves;
@@ -34,32 +35,36 @@ inline constexpr std::size_t kSceneChangeKinds = 6;
     return kind == SceneChangeKind::object_comes || kind == SceneChangeKind::object_feels;
 }
 
-/// One thing that changes in a scene, an input of a frame. Whoever makes the changes numbers the
-/// objects: below the capacity, and with a generation that is higher each time that another object
-/// takes a number. A change that names another generation than the object's is too old.
+/// One change of the scene, an input of a frame. The caller numbers the objects: below the
+/// capacity, and with a higher generation each time that another object takes a number. A change
+/// with another generation than the object's is too old.
 struct SceneChange
 {
     SceneChangeKind kind{SceneChangeKind::object_moves};
-    std::uint32_t number{0};     ///< Of the object, or of the tool in set-up order.
-    std::uint32_t generation{0}; ///< Of the object.
-    ObjectSpec object;           ///< When it comes; when it feels, its material alone.
-    ObjectPose pose;             ///< When it comes or moves: of the source mesh.
+    std::uint32_t number{0};     ///< Number of the object, or of the tool in set-up order.
+    std::uint32_t generation{0}; ///< Generation of the object.
+    ObjectSpec object;           ///< Added object; only the material if that changes.
+    ObjectPose pose;             ///< Pose of an added or moved object's source mesh.
 };
 
-/// Why a change was not made; the scene is as it was before.
+/// Reasons why a change was refused; the scene is unchanged.
 enum class ChangeRefusal : std::uint8_t
 {
-    too_many,       ///< The frame has taken kMaxSceneChanges. Send later ones with later frames.
-    number_too_big, ///< No such place. Raise `--objects` or `--tools`.
-    already_here,   ///< Another object has the number, or the tool is there.
-    not_here,       ///< There is no object of that number, or the tool is gone.
-    old_generation, ///< The object that was meant is gone; or it comes with a number used before.
-    unknown_model,  ///< The object shows a model that isn't there, or that is a tool.
-    bad_material,   ///< Out of the ranges of Material.
-    bad_pose,       ///< No rotation to kRotationTolerance, or beyond kPoseReachMax_m or a scale's.
+    /// The frame has taken kMaxSceneChanges. Send further ones with later frames.
+    too_many,
+    number_too_big, ///< No such number. Raise `--objects` or `--tools`.
+    already_here,   ///< Another object has the number, or the tool is present.
+    not_here,       ///< No object has that number, or the tool was removed.
+              /// The object meant was removed, or the added one has a used number and generation.
+    old_generation,
+    unknown_model, ///< The object's model is unknown or a tool.
+    bad_material,  ///< Material out of range.
+                  /// No rotation to kRotationTolerance, or beyond kPoseReachMax_m or a limit of the
+                  /// scale.
+    bad_pose,
 };
 inline constexpr std::size_t kChangeRefusals = 8;
-/// In the order of ChangeRefusal.
+/// Names of the reasons, in the order of ChangeRefusal.
 inline constexpr std::array<const char*, kChangeRefusals> kChangeRefusalNames{
     "too_many",       "number_too_big", "already_here", "not_here",
     "old_generation", "unknown_model",  "bad_material", "bad_pose"};

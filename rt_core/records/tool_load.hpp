@@ -9,15 +9,15 @@ namespace tactus
 
 inline constexpr double kGravity_m_per_s2 = 9.80665;
 
-/// A thing of mass that hangs on a device. A value: any thread.
+/// Payload of a device. A value: any thread.
 struct ToolLoad
 {
-    double mass_kg{0.0};             ///< 0: there is none.
-    Vec3 centre_m{0.0, 0.0, 0.0};    ///< Of mass, in the tool's frame.
+    double mass_kg{0.0};             ///< 0: none.
+    Vec3 centre_m{0.0, 0.0, 0.0};    ///< Centre of mass, in the tool's frame.
     Vec3 down_world{0.0, 0.0, -1.0}; ///< Unit vector.
 
     [[nodiscard]] double weight_n() const noexcept { return mass_kg * kGravity_m_per_s2; }
-    /// About the device's position, where the centre is level with it.
+    /// Torque about the device's position with the centre of mass level with it.
     [[nodiscard]] double torque_max_nm() const noexcept { return weight_n() * centre_m.norm(); }
 };
 

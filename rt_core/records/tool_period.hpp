@@ -12,43 +12,45 @@
 namespace tactus
 {
 
-/// What a loop knows of a period that neither frame nor device tells.
+/// Data of a period that neither frame nor device reports.
 struct PeriodContext
 {
     double elapsed_s{0.0}; ///< True time since the last frame, >= 0.
     ForceOff causes{ForceOff::none};
-    /// The largest surface damping of what the tool touches, in N s/m: it lowers the stiffness cap.
+    /// Largest surface damping of the touched objects, in N s/m: it lowers the stiffness limit.
     /// Finite, >= 0.
     double surface_damping_n_s_per_m{0.0};
-    double force_left{1.0}; ///< Of the last force at the device, 0 to 1: less than all after a
-                            ///< brake or the device's own watchdog.
+    double force_left{1.0}; ///< Share of the last force at the device, 0 to 1: below 1 after a
+                            ///< brake or the device's watchdog.
 };
 
-/// What a period knows of one tool beside its force: what the stages of a ForcePipeline go by.
-/// World frame, SI.
+/// Data of one tool in a period besides its force, used by the stages of a ForcePipeline. World
+/// frame, SI.
 struct ToolPeriod
 {
-    Vec3 hand_m{0.0, 0.0, 0.0}; ///< Of the device's sample; used only while it has no fault.
+    Vec3 hand_m{0.0, 0.0, 0.0}; ///< Position of the device's sample; used only without a fault.
     Mat3 hand_rotation{Mat3::Identity()};
-    Vec3 turned_rad{0.0, 0.0, 0.0}; ///< By the hand about the world's axes, summed up.
+    Vec3 turned_rad{0.0, 0.0, 0.0}; ///< Rotation of the device about the world's axes, summed up.
     Vec3 velocity_m_per_s{0.0, 0.0, 0.0};
-    bool has_velocity{false}; ///< False: from the positions.
+    bool has_velocity{false}; ///< False: derived from the positions.
     Vec3 turning_rad_per_s{0.0, 0.0, 0.0};
-    bool has_turning{false};               ///< False: from turned_rad.
-    std::int64_t sample_time_ns{0};        ///< 0: the device has none, every sample is new.
-    double elapsed_s{0.0};                 ///< Since the last frame, the true one after a stall.
+    bool has_turning{false};               ///< False: derived from turned_rad.
+    std::int64_t sample_time_ns{0};        ///< 0: the device reports none, every sample is new.
+    double elapsed_s{0.0};                 ///< Time since the last frame; the true one after a
+                                           ///< stall.
     std::uint32_t elapsed_periods{1};      ///< The same in whole periods.
-    double stretch_m{0.0};                 ///< Between the frame's proxy and the hand's tool.
+    double stretch_m{0.0};                 ///< Distance between the frame's proxy and the tool at
+                                           ///< the device.
     double twist_rad{0.0};                 ///< The angle between them, 0 .. pi.
     bool is_touching{false};               ///< ToolOutput::in_contact.
-    double object_way_m{0.0};              ///< ToolOutput's, believed.
-    double object_turn_rad{0.0};           ///< ToolOutput's.
-    Vec3 carried_m{0.0, 0.0, 0.0};         ///< ToolOutput's: the proxy's way with objects.
-    Vec3 carried_rad{0.0, 0.0, 0.0};       ///< ToolOutput's.
-    double surface_damping_n_s_per_m{0.0}; ///< PeriodContext's.
-    FrameFault faults{FrameFault::none};   ///< The frame's of this tool: faults_of().
-    ForceOff causes{ForceOff::none};       ///< What the caller knows of by itself.
-    double force_left{1.0};                ///< PeriodContext's.
+    double object_way_m{0.0};              ///< ToolOutput::object_way_m.
+    double object_turn_rad{0.0};           ///< Same field of ToolOutput.
+    Vec3 carried_m{0.0, 0.0, 0.0};         ///< Same field of ToolOutput.
+    Vec3 carried_rad{0.0, 0.0, 0.0};       ///< Same field of ToolOutput.
+    double surface_damping_n_s_per_m{0.0}; ///< Same field of PeriodContext.
+    FrameFault faults{FrameFault::none};   ///< Faults of this tool in the frame: faults_of().
+    ForceOff causes{ForceOff::none};       ///< Causes known to the caller alone.
+    double force_left{1.0};                ///< Same field of PeriodContext.
 };
 
 } // namespace tactus

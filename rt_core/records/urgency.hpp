@@ -10,32 +10,32 @@
 namespace tactus
 {
 
-/// How soon a tool may touch an object. What a frame can't do for all pairs of tools and objects it
-/// does in this order.
+/// Time until a tool may touch an object, in classes. A frame serves pairs of tools and objects in
+/// this order if it can't serve all.
 enum class UrgencyClass : std::uint8_t
 {
-    touching, ///< In touch, or within kTouching_s, or not known to be apart yet.
-    soon,     ///< Within kSoon_s.
-    later,    ///< The rest, and tools that pass through and will be there soon.
-    last,     ///< Tools that pass through, later.
+    touching, ///< Contact, possible within kTouching_s or not disproved yet.
+    soon,     ///< Contact possible within kSoon_s.
+    later,    ///< All others, and query-only tools that arrive soon.
+    last,     ///< Query-only tools that arrive later.
 };
 inline constexpr std::uint32_t kUrgencyClasses = 4;
 static_assert(static_cast<std::uint32_t>(UrgencyClass::last) + 1 == kUrgencyClasses);
 
 struct Urgency
 {
-    /// A contact takes ten frames of splits, and a load or two.
+    /// A contact takes ten frames of splits and one or two loads.
     static constexpr double kSoon_s = 0.05;
     static constexpr double kTouching_s = 0.001;
-    /// A hand that rests may move at this speed the next moment.
+    /// A device at rest may reach this speed at any moment.
     static constexpr double kLeastSpeed_m_per_s = 0.02;
 
     UrgencyClass of{UrgencyClass::touching};
-    bool passes_through{false}; ///< Comes behind others of its class, too.
-    double contact_s{0.0};      ///< Until the tool may touch the object.
+    bool passes_through{false}; ///< Query-only tool: behind other pairs of its class, too.
+    double contact_s{0.0};      ///< Time until the tool may touch the object.
 
-    /// Of a tool that surfaces proven to be `gap_m` away can't hold back before; its hand comes at
-    /// `speed_m_per_s`. One that passes through has no force to lose: it comes a class later.
+    /// Urgency of a tool that is proven to be free for `gap_m` and whose device approaches at
+    /// `speed_m_per_s`. A query-only tool has no force to lose and is one class later.
     [[nodiscard]] static Urgency at(double gap_m, double speed_m_per_s,
                                     bool passes_through) noexcept
     {

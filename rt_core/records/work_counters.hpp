@@ -12,25 +12,29 @@
 namespace tactus
 {
 
-/// A shortcut that finds work needless; FrameVariant turns each off.
+/// Shortcuts that avoid work; FrameVariant turns each off.
 enum class Skip : std::uint8_t
 {
-    objects,  ///< Of a scene: proven to be far from a tool, by no more than a comparison.
-    models,   ///< Not asked for: no ball comes near any of their boxes.
-    searches, ///< Index pages were searched for these balls lately.
-    pairs,    ///< At rest: proven out of reach.
-    regions,  ///< Balls whose certificate still holds: no face is looked at.
-    starts,   ///< Queries that began where the last one ended.
-    boxes,    ///< Of the tree, not refitted: nothing changed in them.
-    tools,    ///< At rest, like all near them: their answers and forces are the last ones.
-    frames,   ///< The same of all tools, with models that are here as a whole.
+    /// Objects of a scene proven to be far from a tool by one comparison.
+    objects,
+    models,   ///< No sphere is near any box of the model: no request.
+    searches, ///< Index pages were searched for these spheres recently.
+    pairs,    ///< Pairs at rest: proven out of reach.
+              /// Regions whose certificate still holds: no face is checked.
+    regions,
+    starts, ///< Queries that began where the last one ended.
+    boxes,  ///< Tree boxes not refitted: nothing changed in them.
+            /// Tools at rest among objects at rest: answers and forces are the last ones.
+    tools,
+    /// All tools at rest, with models that are resident as a whole.
+    frames,
 };
 inline constexpr std::size_t kSkips = 9;
-/// In the order of Skip.
+/// Names of the shortcuts, in the order of Skip.
 inline constexpr std::array<const char*, kSkips> kSkipNames{
     "objects", "models", "searches", "pairs", "regions", "starts", "boxes", "tools", "frames"};
 
-/// How often a frame took each shortcut.
+/// Number of times that a frame took each shortcut.
 class SkipCounters
 {
 public:
@@ -52,7 +56,7 @@ private:
     std::array<std::uint32_t, kSkips> times_{};
 };
 
-/// What a frame did, in the units of its budgets: counts. Sums over models and pairs.
+/// Work of a frame, counted in the units of its budgets: sums over models and pairs.
 struct WorkCounters
 {
     std::uint32_t splits{0};
@@ -68,9 +72,9 @@ struct WorkCounters
     std::uint32_t blocks_refitted{0};
     std::uint32_t evictions{0};
     std::uint32_t cache_hits{0};   ///< Wanted chunks found resident.
-    std::uint32_t cache_misses{0}; ///< Wanted chunks absent and asked for.
+    std::uint32_t cache_misses{0}; ///< Wanted chunks absent and requested.
     SkipCounters skipped;
-    WorkBudget budget; ///< What all of this costs, and what it may.
+    WorkBudget budget; ///< Total cost, and its limit.
 
     WorkCounters& operator+=(const WorkCounters& other) noexcept
     {
@@ -94,34 +98,37 @@ struct WorkCounters
     }
 };
 
-/// What a frame had to give up. Each flag names the limit to raise.
+/// Degradations of a frame. Each flag names the limit to raise.
 enum class FrameFault : std::uint32_t
 {
     none = 0,
     split_budget_spent = 1U << 0U, ///< Faces in reach stay coarse. Raise `splits` or `work`.
     forest_full = 1U << 1U,        ///< A split was refused. Give more `--pool-mib`.
     tree_full = 1U << 2U,          ///< No block or node for a face. Give more `--pool-mib`.
-    chunk_late = 1U << 3U,         ///< A needed record isn't here. Look further ahead.
+    chunk_late = 1U << 3U,         ///< A needed record isn't resident. Look further ahead.
     cache_full = 1U << 4U,         ///< All pages are in use. Give more `--cache-mib`.
     node_budget_spent = 1U << 5U,  ///< A walk was cut short. Raise `work`, `nodes`, `triangles`.
     surface_truncated = 1U << 6U,  ///< More triangles in reach than kMaxLocalTriangles.
     model_inconsistent = 1U << 7U, ///< A record contradicts the mesh: rebuild the model.
     tool_invalid = 1U << 8U,       ///< A device sample was not usable.
     proxy_frozen = 1U << 9U,       ///< Its surface is not certified; SafeState fades a force.
-    tool_stuck = 1U << 10U,        ///< A device's time stands still; SafeState fades the force.
-    tool_jumped = 1U << 11U,       ///< A goal faster than any hand; no force until it is back.
-    proxy_squeezed = 1U << 12U,    ///< Objects leave a proxy no room, or one came over it.
-    refine_heap_full = 1U << 13U,  ///< More coarse faces in reach than kRefineHeap; they wait.
-    held_records_full = 1U << 14U, ///< A record of an open closure isn't held: kMaxHeldRecords.
-    ranking_full = 1U << 15U,      ///< What a tool is at isn't asked for: kMaxRankedRegions.
-    tool_crowded = 1U << 16U,      ///< Not all that holds a tool fits: kMaxContacts and others.
-    pair_shed = 1U << 17U,         ///< A pair waits: its room went to a touch. More `--pool-mib`.
-    scene_crowded = 1U << 18U,     ///< A tool waits: too much is near it. See kMaxPairs.
-    object_lost = 1U << 19U,       ///< What a tool touched went or jumped; SafeState fades a force.
-    plane_budget_spent = 1U << 20U, ///< A proxy stopped on its way. Raise `planes` or `work`.
+    tool_stuck = 1U << 10U,        ///< The device's time does not advance; SafeState fades the
+                                   ///< force.
+    /// Goal faster than any user's motion; no force until it returns.
+    tool_jumped = 1U << 11U,
+    proxy_squeezed = 1U << 12U,    ///< Over-constrained, or run over by an object.
+    refine_heap_full = 1U << 13U,  ///< More coarse faces in reach than kRefineHeap.
+    held_records_full = 1U << 14U, ///< More records of open closures than kMaxHeldRecords.
+    ranking_full = 1U << 15U,      ///< More regions at tools than kMaxRankedRegions.
+    tool_crowded = 1U << 16U,      ///< Contacts of a tool did not fit: kMaxContacts and others.
+    pair_shed = 1U << 17U,         ///< Pair deferred for a more urgent one. More `--pool-mib`.
+    scene_crowded = 1U << 18U,     ///< Tool deferred: too many objects near it. See kMaxPairs.
+    /// A touched object was removed or jumped; SafeState fades a force.
+    object_lost = 1U << 19U,
+    plane_budget_spent = 1U << 20U, ///< Proxy stopped early. Raise `planes` or `work`.
 };
 inline constexpr std::size_t kFrameFaults = 21;
-/// In the order of FrameFault's bits.
+/// Names of the flags, in the order of FrameFault's bits.
 inline constexpr std::array<const char*, kFrameFaults> kFrameFaultNames{
     "split_budget_spent", "forest_full",       "tree_full",         "chunk_late",
     "cache_full",         "node_budget_spent", "surface_truncated", "model_inconsistent",
