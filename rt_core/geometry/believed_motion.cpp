@@ -20,8 +20,8 @@ Similarity between(const Similarity& from, const Similarity& to, double share) n
     return place;
 }
 
-/// A point goes as the centre does and about it, there by its distance times what the scale grows
-/// and the chord of the angle. The latter is the norm of the rotations' difference over sqrt(2).
+/// A point moves by the centre's displacement plus its distance times the growth of the scale and
+/// the chord of the angle. The chord is the norm of the rotations' difference over sqrt(2).
 double way_in_ball_m(const Similarity& from, const Similarity& to, const Vec3& center_m,
                      double radius_m) noexcept
 {

@@ -10,23 +10,23 @@
 namespace tactus
 {
 
-/// Part of the way from one place to another; the rotation by the short way round, at a speed that
-/// is even to a twentieth up to 45 degrees.
+/// Pose between two others at `share` of the motion; the rotation takes the short way round, at a
+/// speed that is even to a twentieth up to 45 degrees.
 [[nodiscard]] Similarity between(const Similarity& from, const Similarity& to,
                                  double share) noexcept TACTUS_NONBLOCKING;
 
-/// How far an object that goes from one place to another moves any of its points in a ball of the
-/// world, at most.
+/// Largest displacement of an object's points within a sphere of the world when the object moves
+/// from one pose to another.
 [[nodiscard]] double way_in_ball_m(const Similarity& from, const Similarity& to,
                                    const Vec3& center_m,
                                    double radius_m) noexcept TACTUS_NONBLOCKING;
 
-/// How fast an object that a tool may touch is believed to move at most: a force
-/// can't change faster by that than by stiffness x speed.
+/// Speed limit of objects that a tool may touch: their motion changes a force no faster than
+/// stiffness x speed.
 struct BelievedSpeed
 {
-    /// An object that is behind by more than it may go in this time outruns its belief: the force
-    /// of what it may touch has to go. What may touch within this time is limited, too.
+    /// An object that lags by more than the limit allows in this time has outrun it: forces of
+    /// tools that it may touch must fade. Objects that may touch within this time are limited, too.
     static constexpr double kPatience_s = 0.02;
 
     double speed_max_m_per_s{kInfinity}; ///< Above 0.
@@ -35,12 +35,13 @@ struct BelievedSpeed
     {
         return speed_max_m_per_s * since_s;
     }
-    /// How far tool and object may come towards each other before they may touch unforeseen.
+    /// Distance by which tool and object may approach each other within kPatience_s.
     [[nodiscard]] double soon_m(double tool_speed_m_per_s) const noexcept
     {
         return kPatience_s * (tool_speed_m_per_s + speed_max_m_per_s);
     }
-    /// Of a way that its points in reach would go within `since_s`.
+    /// True if points in reach would exceed the limit with a displacement of `way_m` within
+    /// `since_s`.
     [[nodiscard]] bool is_too_fast(double way_m, double since_s) const noexcept
     {
         return way_m > most_m(since_s);
@@ -49,16 +50,17 @@ struct BelievedSpeed
     {
         return way_m > most_m(since_s + kPatience_s);
     }
-    /// Where it is carried in that time: as far towards `to` as its points in reach may go, whose
-    /// way to a place is `way_to_m(place)`. That of a turn is not even: what it makes of a share of
-    /// the way is looked at, too.
+    /// Limited pose: as far from `from` towards `to` as the object's points in reach may move
+    /// within `since_s`; `way_to_m(place)` is their displacement to a pose. A rotation's
+    /// displacement is not proportional to the share of the motion, so it is checked after each
+    /// step.
     template <typename WayTo>
     [[nodiscard]] Similarity held(const Similarity& from, const Similarity& to, double since_s,
                                   const WayTo& way_to_m) const noexcept
     {
         constexpr int kRounds = 16;
         constexpr double kRounded = 1.0 + 1e-9;
-        constexpr double kLess = 0.95; // Of a way that isn't even, so that there is an end.
+        constexpr double kLess = 0.95; // Ends the loop for motions that are not proportional.
         Similarity place = to;
         double share = 1.0;
         for (int round = 0; round < kRounds; ++round)

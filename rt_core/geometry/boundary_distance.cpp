@@ -19,25 +19,25 @@ namespace tactus
 namespace
 {
 
-/// Far enough apart, in local lengths: a wrong place by kFilterMargin changes the distance by the
-/// square of that only.
+/// Distance, in local lengths, beyond which a place that is wrong by kFilterMargin changes the
+/// distance by its square only.
 constexpr double kFarApart = 1e-6;
 
 enum class Kind : std::uint8_t
 {
-    corner_face, ///< Corner i of the first over the second.
-    face_corner, ///< The first under corner j of the second.
+    corner_face, ///< Corner i of the first, face of the second.
+    face_corner, ///< Face of the first, corner j of the second.
     edges,       ///< Edge i of the first, edge j of the second.
 };
 
-/// A pair of features and how far apart double finds them.
+/// A pair of features and its distance in double.
 struct Candidate
 {
     Kind kind;
     std::uint32_t i;
     std::uint32_t j;
-    /// Its bit: edges that meet in the nearest corner find the same pair. None where double can't
-    /// tell which, or another place would change the distance.
+    /// Bit of the pair: edges that meet in the nearest corner find the same pair. None if double
+    /// can't tell the pair, or another place would change the distance.
     std::uint64_t pair;
     double distance;
 };
@@ -99,7 +99,7 @@ private:
         }
     }
 
-    /// No upper bound: the corner may still be beside the face.
+    /// Adds a corner, without an upper bound: it may still be beside the face.
     void add_corner(const Candidate& candidate) noexcept
     {
         if (candidate.distance < kInfinity)
@@ -178,7 +178,7 @@ private:
                        feature_of_edge(j, to_double(at.second_parameter)));
     }
 
-    /// Ties go to the first candidate.
+    /// Keeps the nearer one; ties go to the first candidate.
     void keep_if_nearer(const Triple<DoubleDouble>& from, const Triple<DoubleDouble>& gap,
                         TriangleFeature feature_of_first, TriangleFeature feature) noexcept
     {
@@ -200,7 +200,7 @@ private:
     double length_;
     double upper_{kInfinity};
     StaticVector<Candidate, 15> candidates_;
-    std::uint64_t decided_{0}; ///< Pairs.
+    std::uint64_t decided_{0}; ///< Pairs already decided.
     DoubleDouble best_sq_{kInfinity};
     ClosestPoints best_{.distance = kInfinity};
 };

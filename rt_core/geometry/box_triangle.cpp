@@ -19,7 +19,8 @@ namespace tactus
 namespace
 {
 
-/// Edges as near as this, in local lengths, share a point with the box: what double-double leaves.
+/// Distance, in local lengths, at which an edge shares a point with the box: double-double's
+/// rounding.
 constexpr double kTouching = 1e-25;
 
 Vec3 farthest_corner(const Box& box, const Vec3& direction) noexcept
@@ -40,7 +41,7 @@ bool has_corner_inside(const Box& box, const Triangle& triangle) noexcept
            is_inside(box, triangle[2]);
 }
 
-/// The middle of what is in the box, if anything is. Rounded.
+/// Middle of the segment's part in the box, if there is one. Rounded.
 double middle_inside(const Box& box, const Segment& segment) noexcept
 {
     double low = 0.0;
@@ -73,8 +74,8 @@ bool is_beyond_a_side(const Box& box, const Triangle& triangle) noexcept
     return false;
 }
 
-/// Seen along an axis, the box is a rectangle and the triangle a triangle, and a line through one
-/// of the triangle's edges may have one on either side.
+/// True if a line through one of the triangle's edges separates box and triangle, seen along an
+/// axis, as a rectangle and a triangle.
 bool has_edge_between_along(std::size_t axis, const Box& box, const Triangle& triangle) noexcept
 {
     const Vec2 half = seen_along(axis, box.half);
@@ -114,14 +115,14 @@ double local_length(const Box& box, const Triangle& triangle) noexcept
     return std::sqrt(longest_sq);
 }
 
-/// From the box to a point that is not inside, each coordinate rounded once.
+/// Vector from the box to a point that is not inside, each coordinate rounded once.
 Vec3 gap_to(const Box& box, const Vec3& point) noexcept
 {
     return {excess(point.x(), box.half.x()), excess(point.y(), box.half.y()),
             excess(point.z(), box.half.z())};
 }
 
-/// Of edges of the triangle and the box, and of a corner of the box and the face.
+/// Distances of the triangle's edges from the box, and of a corner of the box from the face.
 class BoxDistance
 {
 public:
@@ -172,7 +173,7 @@ private:
         return {triangle_[i], triangle_[(i + 1) % 3]};
     }
 
-    /// The box's centre is the origin.
+    /// Corner of the box along `normal`; the box's centre is the origin.
     [[nodiscard]] Vec3 corner_towards(const Vec3& normal) const noexcept
     {
         return farthest_corner(box_, normal.dot(triangle_[0]) < 0.0 ? Vec3(-normal) : normal);
@@ -185,8 +186,8 @@ private:
         return best_;
     }
 
-    /// The triangle's corner that is nearest to the box, where that is proven: both others are
-    /// farther along the way from the box to it, by more than is rounded.
+    /// The triangle's corner nearest to the box, if proven: both others are farther along the
+    /// vector from the box to it, by more than rounding.
     [[nodiscard]] std::optional<std::size_t> find_nearest_corner() const noexcept
     {
         constexpr double kLeastSq = 1e-200;
@@ -220,9 +221,9 @@ private:
             static_cast<TriangleFeature>(i));
     }
 
-    /// Of a triangle that meets the box without a corner in it. Where an edge meets the box; if
-    /// none does, the face cuts through the box, and so through the diagonal to the corner on its
-    /// side.
+    /// Shared point of the box and a triangle without a corner in it: a point of an edge that meets
+    /// the box. If none does, the face cuts through the box, and so through the diagonal to the
+    /// corner on its side.
     [[nodiscard]] ClosestPoints find_shared_point() noexcept
     {
         for (std::size_t i = 0; i < 3; ++i)
@@ -254,7 +255,7 @@ private:
                           TriangleFeature::interior);
     }
 
-    /// In double.
+    /// Distances of the edges in double.
     void see_edges() noexcept
     {
         for (std::size_t i = 0; i < 3; ++i)
@@ -283,7 +284,7 @@ private:
                        at.gap, feature_of_edge(i, to_double(at.parameter)));
     }
 
-    /// Ties go to the first candidate.
+    /// Keeps the nearer one; ties go to the first candidate.
     void keep_if_nearer(const Triple<DoubleDouble>& on_triangle, const Triple<DoubleDouble>& gap,
                         TriangleFeature feature) noexcept
     {

@@ -13,8 +13,8 @@
 namespace tactus
 {
 
-// Nearest points of two features: each in double, where it filters, and in double-double, where it
-// decides (exact to about 1e-30 of the lengths, but for what its comment says).
+// Nearest points of two features: each in double, which filters, and in double-double, which
+// decides (exact to about 1e-30 of the lengths, with the exceptions in its comment).
 
 template <typename Real>
 [[nodiscard]] Real clamp_to_unit(const Real& value) noexcept
@@ -22,21 +22,23 @@ template <typename Real>
     return !(value > Real{0.0}) ? Real{0.0} : (value > Real{1.0} ? Real{1.0} : value);
 }
 
-/// Points from + parameter (to - from) on two segments, and the way from the first to the second.
+/// Points from + parameter (to - from) on two segments, and the vector from the first to the
+/// second.
 template <typename Real>
 struct SegmentsApproach
 {
     Real first_parameter;
     Real second_parameter;
     Triple<Real> gap;
-    bool is_parallel; ///< Within 1e-6: double may be wrong about which features are nearest.
+    /// Parallel within 1e-6: double may be wrong about which features are nearest.
+    bool is_parallel;
 };
 
-/// Where two lines come nearest is solved with their cross product n: s = -((p - q) x v) . n / n.n.
-/// Unlike the Gram determinant |u|^2 |v|^2 - (u.v)^2 that is no difference of nearly equal numbers.
-/// With roundings of r (2^-53 or 2^-104), lines at a distance h and at an angle a, the place is off
-/// by r in lengths and h r / a along the lines, so across by at most min(h r / a, a) <= sqrt(h r),
-/// which makes the distance wrong by h r / 2h: by a few roundings at any angle.
+/// The place where two lines are nearest is solved with their cross product n: s = -((p - q) x v) .
+/// n / n.n. Unlike the Gram determinant |u|^2 |v|^2 - (u.v)^2 that is no difference of nearly equal
+/// numbers. With roundings of r (2^-53 or 2^-104), lines at a distance h and at an angle a, the
+/// place is off by r in lengths and h r / a along the lines, so across by at most min(h r / a, a)
+/// <= sqrt(h r), which makes the distance wrong by h r / 2h: by a few roundings at any angle.
 template <typename Real>
 [[nodiscard]] SegmentsApproach<Real> approach_segments(const Segment& first,
                                                        const Segment& second) noexcept
@@ -52,12 +54,12 @@ template <typename Real>
     const Real uv = dot(u, v);
     Real s = nn > zero ? clamp_to_unit(-(dot(cross(w, v), n) / nn)) : zero;
     const Real t = vv > zero ? clamp_to_unit((dot(w, v) + s * uv) / vv) : zero;
-    // Again, as t may have been clamped, or s be of no meaning: the feet of feet only come nearer.
+    // Second pass, since t may have been clamped or s undefined: feet of feet are only nearer.
     s = uu > zero ? clamp_to_unit((t * uv - dot(w, u)) / uu) : zero;
     return {s, t, t * v - w - s * u, !(nn > Real{1e-12} * (uu * vv))};
 }
 
-/// The way from a point to its foot on a triangle's plane, if that is inside the triangle.
+/// The vector from a point to its foot on a triangle's plane, if that is inside the triangle.
 template <typename Real>
 [[nodiscard]] std::optional<Triple<Real>> approach_face(const Vec3& point,
                                                         const Triangle& triangle) noexcept
@@ -81,7 +83,7 @@ template <typename Real>
     return (dot(difference<Real>(triangle[0], point), normal) / normal_sq) * normal;
 }
 
-/// A place on a segment and the way to it from the nearest point of a box.
+/// A place on a segment and the vector to it from the nearest point of a box.
 template <typename Real>
 struct BoxApproach
 {
@@ -89,7 +91,7 @@ struct BoxApproach
     Triple<Real> gap;
 };
 
-/// How far `x` is beyond [-half, half], with its sign.
+/// Signed distance of `x` beyond [-half, half].
 template <typename Real>
 [[nodiscard]] Real excess(const Real& x, const Real& half) noexcept
 {
@@ -97,8 +99,8 @@ template <typename Real>
 }
 
 /// Along the segment the squared distance is convex, and quadratic between the places where a
-/// coordinate enters or leaves the box. Its slope tells on which side of each of these up to six
-/// places the least one is; between the last two it is solved.
+/// coordinate enters or leaves the box. The slope shows on which side of each of these up to six
+/// places the minimum is; between the last two it is solved.
 template <typename Real>
 class SegmentAndBox
 {
@@ -115,8 +117,8 @@ public:
         return place_at(nearest_parameter());
     }
 
-    /// The same where `near` is said to be the place: that is solved for and proven, which takes a
-    /// third of the work, or else found as if nothing were said.
+    /// The same with a guess of the place: a third of the work if the guess is proven, otherwise
+    /// the guess is ignored.
     [[nodiscard]] BoxApproach<Real> approach_near(double near) const noexcept
     {
         const std::optional<Real> parameter = solve_near(Real{near});
@@ -125,7 +127,7 @@ public:
 
 private:
     using Coordinates = std::array<Real, 3>;
-    /// Of each coordinate whether it is before the box (-1), in it or beyond it (1).
+    /// Side of each coordinate: before the box (-1), in it or beyond it (1).
     using Sides = std::array<int, 3>;
 
     static Coordinates as_array(const Triple<Real>& v) noexcept { return {v.x, v.y, v.z}; }
@@ -175,14 +177,15 @@ private:
         return solve_between(low, high);
     }
 
-    /// Where the same coordinates stay outside of the box.
+    /// The minimum, if the same coordinates stay outside of the box.
     [[nodiscard]] Real solve_between(const Real& low, const Real& high) const noexcept
     {
         const Real at = solve(sides_at(Real{0.5} * (low + high))).value_or(low);
         return at < low ? low : (at > high ? high : at);
     }
 
-    /// None where the slope there is not proven to be zero, or at an end to lead out of it.
+    /// None if the slope there is not proven to be zero, or, at an end, to point out of the
+    /// segment.
     [[nodiscard]] std::optional<Real> solve_near(const Real& near) const noexcept
     {
         const Real zero{0.0};
@@ -200,7 +203,7 @@ private:
         return at && *at > zero && *at < one && sides_at(*at) == sides ? at : std::nullopt;
     }
 
-    /// Where the slope would be zero if the coordinates were on these sides everywhere.
+    /// Parameter of zero slope if the coordinates were on these sides everywhere.
     [[nodiscard]] std::optional<Real> solve(const Sides& sides) const noexcept
     {
         Real towards{0.0};

@@ -11,27 +11,27 @@
 namespace tactus
 {
 
-/// Two points, one on each of a shape and a triangle, than which none are nearer.
+/// Nearest points of a shape and a triangle, one on each.
 struct ClosestPoints
 {
     Vec3 on_shape{0.0, 0.0, 0.0};
     Vec3 on_triangle{0.0, 0.0, 0.0};
-    /// From the first to the second, free of the rounding that large coordinates bring: its
-    /// direction is good where the points themselves round to one.
+    /// Vector from the first to the second, free of the rounding of large coordinates: its
+    /// direction is good even if the points themselves round to one.
     Vec3 gap{0.0, 0.0, 0.0};
-    /// Zero where they meet; of round shapes less, down to minus the radius.
+    /// Zero where they meet; negative for round shapes, down to minus the radius.
     double distance{0.0};
     /// Bound on |computed - true| of the distance: kernel_error.
     double distance_error{0.0};
-    /// Whether they share a point: decided exactly but for round shapes, which compare `distance`.
+    /// True if they share a point: exact except for round shapes, which compare `distance`.
     bool meet{false};
-    /// Where on the triangle.
+    /// Feature of the triangle.
     TriangleFeature feature{TriangleFeature::interior};
-    /// Where on the shape, if it is a triangle or a segment (corner_0, corner_1 or edge_0).
+    /// Feature of the shape, if it is a triangle or a segment (corner_0, corner_1 or edge_0).
     TriangleFeature shape_feature{TriangleFeature::interior};
 };
 
-/// The answer of shapes that meet in a point.
+/// Result for shapes that meet in a point.
 [[nodiscard]] inline ClosestPoints meeting_at(const Vec3& point, TriangleFeature shape_feature,
                                               TriangleFeature feature) noexcept
 {
@@ -44,8 +44,8 @@ struct ClosestPoints
     return result;
 }
 
-/// `solve`(points), the points being multiplied by a power of two where products of their
-/// coordinates would not be doubles, and the answer divided by it.
+/// Result of `solve`(points). If products of coordinates would not be doubles, the points are
+/// multiplied by a power of two and the result is divided by it.
 template <std::size_t N, typename Solve>
 [[nodiscard]] ClosestPoints solve_in_range(const std::array<Vec3, N>& points, Solve solve) noexcept
 {

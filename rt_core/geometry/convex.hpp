@@ -15,44 +15,44 @@
 namespace tactus
 {
 
-/// What a support point may be off, in radii: how far outside of the body it lies, and how much
-/// less far it reaches than the farthest. Nine roundings: enough to turn a direction into the
-/// body's frame and the point back.
+/// Error of a support point, in radii: its distance outside of the body, and its shortfall against
+/// the farthest point. Nine roundings, enough to rotate a direction into the body's frame and the
+/// point back.
 inline constexpr double kSupportError = 1e-15;
 
-/// A convex and closed body, known by its farthest points. Lengths have any one unit: metres where
-/// it is a tool's core.
+/// A convex and closed body, defined by its farthest points. Lengths have any one unit; metres if
+/// the body is a tool's core.
 struct ConvexBody
 {
-    /// A point of the body than which none is farther in a direction, relative to `center`: so
-    /// where the body is rounds nothing. The direction's length is 1 within a few roundings. Equal
-    /// directions are to give equal points.
+    /// A farthest point of the body in a direction, relative to `center`, so that the body's
+    /// position causes no rounding. The direction's length is 1 within a few roundings. Equal
+    /// directions must give equal points.
     using Support = Vec3 (*)(const void* context,
                              const Vec3& direction) noexcept TACTUS_NONBLOCKING;
 
-    Support support{nullptr};     ///< Not null; on the haptic thread where the body is a tool's.
-    const void* context{nullptr}; ///< Handed to `support`; outlives the body.
-    Vec3 center{0.0, 0.0, 0.0};   ///< Of the body, and well inside where it has an inside.
-    double radius{0.0};           ///< Of a ball round the centre that holds the body.
+    Support support{nullptr};     ///< Not null; called on the haptic thread for a tool's body.
+    const void* context{nullptr}; ///< Passed to `support`; outlives the body.
+    Vec3 center{0.0, 0.0, 0.0};   ///< Centre of the body, well inside if it has an inside.
+    double radius{0.0};           ///< Radius of a sphere round the centre that holds the body.
 };
 
 enum class HullError : std::uint8_t
 {
     no_vertex,
     too_many_vertices, ///< More than kMaxHullVertices.
-    vertex_not_finite, ///< Or beyond kCoordinateRange.
+    vertex_not_finite, ///< Not finite, or beyond kCoordinateRange.
 };
 
 /// The convex hull of vertices, which may be a point, a segment or a polygon; vertices inside of it
-/// are allowed. The vertices stay the caller's and are to outlive the hull.
+/// are allowed. The vertices remain the caller's and must outlive the hull.
 class Hull
 {
 public:
     [[nodiscard]] static Result<Hull, HullError>
     create(std::span<const Vec3> vertices) noexcept TACTUS_NONBLOCKING;
 
-    /// Points at this hull, which is to stay where it is. Of vertices that are as far the first is
-    /// the farthest.
+    /// A view of this hull, which must not move. Among equally far vertices the first is the
+    /// farthest.
     [[nodiscard]] ConvexBody body() const noexcept { return {&support, this, center_, radius_}; }
 
     [[nodiscard]] std::span<const Vec3> vertices() const noexcept { return vertices_; }

@@ -10,8 +10,9 @@
 namespace tactus
 {
 
-// A closed triangle meets another exactly if an edge of one meets the other, also when one is a
-// segment or a point. So all comes down to a segment p q and a triangle, and that to dimensions:
+// A closed triangle meets another exactly if an edge of one meets the other, even if one of them is
+// a segment or a point. This reduces everything to a segment p q and a triangle, and that to fewer
+// dimensions:
 //
 //   p, q not both in the plane   the line p q pierces it once; inside or not: three volumes
 //   both in the plane            seen along an axis that keeps the triangle's area: in the plane,
@@ -34,7 +35,7 @@ bool are_all_on_one_side(const std::array<int, 3>& sides) noexcept
     return sides[0] != 0 && sides[0] == sides[1] && sides[0] == sides[2];
 }
 
-/// Neither positive and negative ones.
+/// True if there are not both positive and negative sides.
 bool do_not_differ(const std::array<int, 3>& sides) noexcept
 {
     const auto [least, most] = std::minmax({sides[0], sides[1], sides[2]});
@@ -64,7 +65,7 @@ bool do_boxes_overlap(std::span<const Vec3> first, std::span<const Vec3> second)
     return true;
 }
 
-/// Sides of the ends of two segments, each seen from the other.
+/// Sides of the ends of two segments, each with respect to the other.
 struct SegmentSides
 {
     std::array<int, 2> of_second;
@@ -122,7 +123,7 @@ bool meets_an_edge(const Segment& segment, const Triangle& triangle,
            segments_meet(segment, Segment{triangle[2], triangle[0]});
 }
 
-/// Seen along an axis that keeps its area.
+/// True if the point is in the triangle, seen along an axis that keeps the triangle's area.
 bool is_inside_along(std::size_t axis, const Vec3& point, const Triangle& triangle) noexcept
 {
     const Vec2 p = seen_along(axis, point);
@@ -149,7 +150,7 @@ bool meet_in_plane(const Segment& segment, const Triangle& triangle) noexcept
                          [](const Segment& a, const Segment& b) { return do_segments_meet(a, b); });
 }
 
-/// `from` and `to`: on which sides of the triangle's plane the ends lie.
+/// `from` and `to`: sides of the triangle's plane on which the ends lie.
 bool meets_from_sides(const Segment& segment, int from, int to, const Triangle& triangle) noexcept
 {
     if (from * to > 0)
@@ -160,7 +161,7 @@ bool meets_from_sides(const Segment& segment, int from, int to, const Triangle& 
                                 : do_not_differ(sides_of_edges(segment.from, segment.to, triangle));
 }
 
-/// `sides`: of the triangle's corners, seen from the other's plane.
+/// `sides`: sides of the other's plane on which the triangle's corners lie.
 bool does_an_edge_meet(const Triangle& triangle, const std::array<int, 3>& sides,
                        const Triangle& other) noexcept
 {
@@ -175,7 +176,7 @@ bool does_an_edge_meet(const Triangle& triangle, const std::array<int, 3>& sides
     return false;
 }
 
-/// Of a point in the triangle, by the edges that it lies on.
+/// Feature of a point in the triangle, by the edges that it lies on.
 TriangleFeature feature_of_zeros(const std::array<int, 3>& sides) noexcept
 {
     for (std::size_t i = 0; i < 3; ++i)
@@ -191,7 +192,7 @@ TriangleFeature feature_of_zeros(const std::array<int, 3>& sides) noexcept
     return TriangleFeature::interior;
 }
 
-/// `from` and `to`: on which sides of the triangle's plane the ends lie.
+/// `from` and `to`: sides of the triangle's plane on which the ends lie.
 std::optional<Piercing> find_piercing_from_sides(const Segment& segment, int from, int to,
                                                  const Triangle& triangle) noexcept
 {
@@ -207,7 +208,7 @@ std::optional<Piercing> find_piercing_from_sides(const Segment& segment, int fro
     const PlaneVolumes plane(triangle[0], triangle[1], triangle[2]);
     const double from_volume = plane.volume(segment.from);
     const double to_volume = plane.volume(segment.to);
-    // Out of range both may vanish.
+    // Both may vanish for coordinates out of range.
     const double share = from_volume == to_volume ? 0.0 : from_volume / (from_volume - to_volume);
     return Piercing{share, feature_of_zeros(sides)};
 }

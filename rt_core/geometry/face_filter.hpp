@@ -14,14 +14,15 @@
 namespace tactus
 {
 
-/// What double rounds in one comparison of a filter, in local lengths; several times the most seen.
+/// Rounding of one comparison of a filter in double, in local lengths; several times the largest
+/// seen.
 inline constexpr double kFilterMargin = 64.0 * 0x1p-53;
 
-/// How high points are over a triangle, in double: what may be over it is said to be.
+/// Heights of points over a triangle, in double. Points that may be over it count as over it.
 class FaceFilter
 {
 public:
-    /// Of points up to `length` away from the corners.
+    /// Filter for points up to `length` away from the corners.
     FaceFilter(const Triangle& triangle, double length) noexcept : corner_(triangle)
     {
         TACTUS_ASSERT(length >= 0.0);
@@ -43,10 +44,10 @@ public:
         }
     }
 
-    /// Zero of a triangle so thin that its edges stand for it.
+    /// Zero if the triangle is so thin that its edges represent it.
     [[nodiscard]] const Vec3& unit_normal() const noexcept { return unit_normal_; }
 
-    /// Within kFilterMargin; infinite where the point is not over the triangle.
+    /// Height within kFilterMargin; infinite if the point is not over the triangle.
     [[nodiscard]] double height_of(const Vec3& point) const noexcept
     {
         for (std::size_t i = 0; i < 3; ++i)
@@ -61,8 +62,8 @@ public:
 
 private:
     Triangle corner_;
-    std::array<Vec3, 3> outward_{}; ///< In the plane, across the edges; of their lengths.
-    std::array<double, 3> slack_{}; ///< How much rounding there may be in outward x way.
+    std::array<Vec3, 3> outward_{}; ///< Edge x unit normal: in the plane, as long as the edges.
+    std::array<double, 3> slack_{}; ///< Rounding of products with `outward_`.
     Vec3 unit_normal_{0.0, 0.0, 0.0};
     bool has_plane_{false};
 };

@@ -18,14 +18,14 @@ namespace tactus
 namespace
 {
 
-// What a tetrahedron holds is near enough, so a simplex never grows beyond one.
+// A tetrahedron that holds the origin is near enough, so a simplex never grows beyond one.
 static_assert(kGjkRounding > 2.0 * kSimplexTouching);
 
 /// Farthest points of both along one direction; the simplex is made of their differences.
 struct SupportPair
 {
     Vec3 on_body;
-    std::uint32_t corner; ///< Of the triangle.
+    std::uint32_t corner; ///< Corner of the triangle.
 
     friend bool operator==(const SupportPair& a, const SupportPair& b) noexcept
     {
@@ -38,7 +38,7 @@ Triangle seen_from(const Vec3& center, const Triangle& triangle) noexcept
     return {triangle[0] - center, triangle[1] - center, triangle[2] - center};
 }
 
-/// One question, relative to the body's centre and multiplied by a power of two so that products of
+/// One query, relative to the body's centre and multiplied by a power of two so that products of
 /// coordinates are doubles.
 class Gjk
 {
@@ -83,7 +83,7 @@ private:
         distance_ = gap_.norm();
     }
 
-    /// Until the bounds are near enough or `Real` rounds what is left.
+    /// Iterates until the bounds are near enough or the rest is rounding of `Real`.
     template <typename Real>
     void approach() noexcept
     {
@@ -113,7 +113,7 @@ private:
         }
     }
 
-    /// Raises the lower bound by what they show.
+    /// Farthest points along a direction; raises the lower bound by their distance.
     [[nodiscard]] SupportPair find_support(const Vec3& direction) noexcept
     {
         ++iterations_;
@@ -156,7 +156,7 @@ private:
         return SimplexSolver<Real>(points.view(), length_).find(with_last_only);
     }
 
-    /// Of the simplex only the corners that hold the foot.
+    /// Keeps only the simplex's corners that hold the foot.
     template <typename Real>
     void keep(const SimplexFoot<Real>& foot) noexcept
     {
@@ -175,8 +175,8 @@ private:
         distance_ = gap_.norm();
     }
 
-    /// Whether zero is inside of the simplex, whatever rounding did to its corners: an error of r
-    /// in each changes the volume before a side by at most r x the areas that its edges span.
+    /// True if zero is inside of the simplex in spite of its corners' rounding: an error of r in
+    /// each changes the volume before a side by at most r x the areas that its edges span.
     [[nodiscard]] bool is_overlap_proven() const noexcept
     {
         if (simplex_.size() < 4)
@@ -247,8 +247,9 @@ private:
     StaticVector<SupportPair, 4> simplex_;
     std::array<double, 4> weights_{};
     Vec3 gap_{0.0, 0.0, 0.0};
-    double distance_{0.0}; ///< Of the simplex.
-    double lower_{0.0};    ///< Before it is lowered; negative where nothing shows a distance.
+    double distance_{0.0}; ///< Distance of the simplex.
+    double lower_{0.0};    ///< Lower bound before it is lowered by rounding; negative if no
+                           ///< direction shows a distance.
     Vec3 lower_direction_{0.0, 0.0, 0.0};
     std::uint32_t iterations_{0};
 };

@@ -17,7 +17,7 @@ namespace tactus
 namespace
 {
 
-/// An orthonormal frame whose first axis is along `way`; any when that is zero.
+/// An orthonormal frame whose first axis is along `way`; any if that is zero.
 Mat3 frame_along(const Vec3& way) noexcept
 {
     const double length = way.norm();
@@ -26,7 +26,7 @@ Mat3 frame_along(const Vec3& way) noexcept
         return Mat3::Identity();
     }
     const Vec3 first = way / length;
-    // Across the axis that `way` has least of.
+    // The second axis is perpendicular to the coordinate axis along which `way` is least.
     const Vec3 size(std::abs(first.x()), std::abs(first.y()), std::abs(first.z()));
     const int least = size.x() <= size.y() && size.x() <= size.z() ? 0
                       : size.y() <= size.z()                       ? 1
@@ -41,13 +41,13 @@ Mat3 frame_along(const Vec3& way) noexcept
     return axes;
 }
 
-/// From a box to a point, each coordinate rounded once.
+/// Vector from a box to a point, each coordinate rounded once.
 Vec3 gap_from(const Vec3& half, const Vec3& point) noexcept
 {
     return {excess(point.x(), half.x()), excess(point.y(), half.y()), excess(point.z(), half.z())};
 }
 
-/// An object, since a function would be called through a pointer.
+/// A function object, since a function would be called through a pointer.
 constexpr auto squared_length = [](const Vec3& v) noexcept { return v.squaredNorm(); };
 
 CornersAtCore::Row beyond_sq(const std::array<CornersAtCore::Row, 3>& place,
@@ -60,14 +60,15 @@ CornersAtCore::Row beyond_sq(const std::array<CornersAtCore::Row, 3>& place,
         for (std::size_t i = 0; i < sum.size(); ++i)
         {
             const double beyond = std::abs(place[axis][i]) - end;
-            const double gap = 0.5 * (beyond + std::abs(beyond)); // Or zero, without a choice.
+            const double gap = 0.5 * (beyond + std::abs(beyond)); // max(beyond, 0) without a
+                                                                  // branch.
             sum[i] += gap * gap;
         }
     }
     return sum;
 }
 
-/// Of products with a rotation, relative to the largest coordinate.
+/// Rounding of products with a rotation, relative to the largest coordinate.
 constexpr double kRotationRounding = 4e-15;
 
 } // namespace
@@ -114,7 +115,7 @@ PlacedCore::PlacedCore(const ToolCore& core, const Similarity& place) noexcept
     }
 }
 
-/// A box in the body's own axes, round its centre.
+/// Sets the box in the body's own axes, round its centre.
 void PlacedCore::surround(const ConvexBody& body, const Similarity& place) noexcept
 {
     center_ = place.to_there(body.center);
@@ -129,7 +130,7 @@ void PlacedCore::surround(const ConvexBody& body, const Similarity& place) noexc
     }
 }
 
-/// In its own frame.
+/// The core in its own frame as a convex body.
 ConvexBody PlacedCore::own_body() const noexcept
 {
     TACTUS_ASSERT(is_convex_body());
@@ -150,7 +151,7 @@ Vec3 PlacedCore::placed_support(const void* core, const Vec3& direction) noexcep
     return placed.scale_ * (placed.axes_ * farthest);
 }
 
-/// Rows of numbers, which the compiler takes several of at once.
+/// Rows of numbers, which the compiler vectorises.
 CornersAtCore::Row heights_along(const Vec3& axis, const std::array<CornerRow, 3>& corners,
                                  const Vec3& center) noexcept
 {
@@ -216,7 +217,7 @@ ClosestPoints PlacedCore::closest_to_box(const Triangle& triangle) const noexcep
     result.on_shape = center_ + axes_ * result.on_shape;
     result.on_triangle = center_ + axes_ * result.on_triangle;
     result.gap = axes_ * result.gap;
-    // Decided for the turned triangle, so only as well as that is known.
+    // The decision is for the rotated triangle, so it is only as good as that.
     result.distance_error += rounding_of(near);
     return result;
 }
@@ -262,8 +263,9 @@ CoreBounds PlacedCore::bounds(const CornersAtCore& seen,
                   {seen.beyond_sq[a], seen.beyond_sq[b], seen.beyond_sq[c]}, limit);
 }
 
-/// Along each axis of the box, and along the way from it to the nearest corner: across that the box
-/// is on one side, and the triangle at least as far away as its corner that is least far along.
+/// Separates along each axis of the box, and along the vector from it to the nearest corner: the
+/// box is on one side of a plane across that, and the triangle at least as far away as its corner
+/// that is least far along.
 CoreBounds PlacedCore::bounds(const Triangle& near, const std::array<double, 3>& beyond_sq,
                               double limit) const noexcept
 {
@@ -295,7 +297,7 @@ CoreBounds PlacedCore::bounds(const Triangle& near, const std::array<double, 3>&
     return found;
 }
 
-/// How far the triangle is beyond the box along a way of any length, times that.
+/// Separation of triangle and box along `way`, times its length.
 double PlacedCore::apart_along(const Vec3& way, const Triangle& near) const noexcept
 {
     return std::min({way.dot(near[0]), way.dot(near[1]), way.dot(near[2])}) -

@@ -8,16 +8,17 @@
 namespace tactus
 {
 
-// Shapes with a core, a point or a segment, and all within a radius of it. Their distance is the
-// core's minus the radius, so it is negative where they overlap the triangle; `gap` points back
-// then. Where the core itself meets the triangle there is no direction: both points are the shared
-// one, `gap` is zero and the distance minus the radius.
+// Shapes of all points within a radius of a core, a point or a segment. Their distance is the
+// core's minus the radius, so it is negative if they overlap the triangle; `gap` then points back.
+// If the core itself meets the triangle there is no direction: both points are the shared one,
+// `gap` is zero and the distance minus the radius.
 //
-// `meet` is whether the distance is 0 or less, so it is decided up to `distance_error`: the core's
+// `meet` means that the distance is 0 or less, so it is decided up to `distance_error`: the core's
 // and 1.2e-16 x radius.
 
-/// |computed - true| <= (4e-16 + 1e-16 x aspect, of which at most 8) x local length + 1.2e-16 x
-/// radius. Coordinates up to 1e150. About 80 ns.
+///
+/// computed - true| <= (4e-16 + 1e-16 x aspect, counted up to 8) x local length + 1.2e-16 x radius.
+/// Coordinates up to 1e150. About 80 ns.
 [[nodiscard]] ClosestPoints closest_points(const Sphere& sphere,
                                            const Triangle& triangle) noexcept TACTUS_NONBLOCKING;
 

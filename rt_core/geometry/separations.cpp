@@ -15,7 +15,7 @@ namespace tactus
 namespace
 {
 
-/// Of the places in `used`.
+/// Least of the places in `used`.
 double least(const CornersAtCore::Row& row, std::uint32_t used) noexcept
 {
     double found = kInfinity;

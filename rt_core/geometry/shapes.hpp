@@ -9,8 +9,8 @@
 namespace tactus
 {
 
-// Shapes that meet triangles, closed, in the triangle's frame and unit of length. Any of them may
-// be flat: a segment a point, a box a rectangle, a radius zero.
+// Closed shapes for tests against triangles, in the triangle's frame and unit of length. Each may
+// be degenerate: a segment a point, a box a rectangle, a radius zero.
 
 struct Segment
 {
@@ -18,8 +18,8 @@ struct Segment
     Vec3 to{0.0, 0.0, 0.0};
 };
 
-/// At `parameter`, 0 .. 1 (asserted), of the way. Rounded from the nearer end, so that the ends
-/// come out as they are.
+/// Point at `parameter`, 0 .. 1 (asserted). Rounded from the nearer end, so that the ends keep
+/// their bits.
 [[nodiscard]] inline Vec3 point_at(const Segment& segment, double parameter) noexcept
 {
     TACTUS_ASSERT(parameter >= 0.0);
@@ -28,10 +28,10 @@ struct Segment
                             : Vec3(segment.to - (1.0 - parameter) * (segment.to - segment.from));
 }
 
-/// Centred at the origin and parallel to the axes: the triangle is to be given in the box's frame.
+/// Box centred at the origin and parallel to the axes; the triangle must be given in its frame.
 struct Box
 {
-    Vec3 half{0.0, 0.0, 0.0}; ///< Half of each extent, none of them negative.
+    Vec3 half{0.0, 0.0, 0.0}; ///< Half extents, not negative.
 };
 
 struct Sphere

@@ -17,13 +17,14 @@ namespace tactus
 namespace
 {
 
-/// Nearer, in local lengths, the way between two points has too few right bits to tell sides by.
+/// Distance, in local lengths, below which the vector between two points has too few correct bits
+/// to tell sides by.
 constexpr double kLeastApart = 1e-6;
 
-/// Edges at a smaller angle, its sine squared, have many points that are all but the nearest.
+/// Squared sine of an angle below which edges have many points that are nearly the nearest.
 constexpr double kLeastSineSq = 1e-6;
 
-/// Corners of a triangle, one bit each, that its features have.
+/// Corners of a triangle, one bit each, of each feature.
 constexpr std::array<std::uint32_t, 7> kCornersOf{1, 2, 4, 3, 6, 5, 7};
 
 TriangleFeature feature_of(std::uint32_t corners) noexcept
@@ -41,7 +42,7 @@ bool is_same(const Vec3& a, const Vec3& b) noexcept
     return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
-/// Which of a triangle's corners these are; 0 unless each of them is just one of it.
+/// Bits of these corners in the triangle; 0 unless each of them is exactly one of it.
 std::uint32_t find_corners(const Triangle& triangle, std::span<const Vec3> corners) noexcept
 {
     std::uint32_t found = 0;
@@ -61,7 +62,7 @@ std::uint32_t find_corners(const Triangle& triangle, std::span<const Vec3> corne
     return found;
 }
 
-/// Whether a triangle's other corners are farther along `way` than these.
+/// True if the triangle's other corners are farther along `way` than these.
 bool are_others_beyond(const Triangle& triangle, std::uint32_t corners, const Vec3& way,
                        double margin) noexcept
 {
@@ -88,7 +89,7 @@ StaticVector<Vec3, 3> corners_of(const Triangle& triangle, TriangleFeature featu
     return corners;
 }
 
-/// Whether no other points of two features are as near one another as the nearest.
+/// True if two features have a single pair of nearest points.
 bool has_one_nearest(std::span<const Vec3> first, std::span<const Vec3> second) noexcept
 {
     if (first.size() == 1 || second.size() == 1)
@@ -104,7 +105,7 @@ bool has_one_nearest(std::span<const Vec3> first, std::span<const Vec3> second) 
     return u.cross(v).squaredNorm() > kLeastSineSq * (u.squaredNorm() * v.squaredNorm());
 }
 
-/// Whether one of a triangle's corners has this coordinate.
+/// True if one of the triangle's corners has this coordinate.
 bool has_key(const Triangle& triangle, double key) noexcept
 {
     return (static_cast<unsigned>(triangle[0][0] == key) |
@@ -130,8 +131,8 @@ ClosestPoints SharedFeatures::closest_points(const Triangle& first, const Triang
     return closest;
 }
 
-/// The way between the features is across both, so that all of a feature is on its plane; what it
-/// is rounded by is the margin's.
+/// The connection of the features is perpendicular to both, so all of a feature is on its plane;
+/// `margin` covers its rounding.
 std::optional<ClosestPoints> SharedFeatures::find(const Triangle& first,
                                                   const Triangle& second) const noexcept
 {

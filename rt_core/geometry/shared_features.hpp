@@ -12,24 +12,24 @@
 namespace tactus
 {
 
-/// Nearest points of many pairs of triangles that are apart, of meshes whose faces have corners and
-/// edges in common: up to 36 pairs of faces are as near as the two corners that all of them have.
+/// Nearest points of many pairs of separate triangles from meshes whose faces share corners and
+/// edges: up to 36 pairs of faces have the same distance, that of the two corners that all of them
+/// share.
 ///
-/// Where a pair has the two features that were the nearest of another pair, and its other corners
-/// are behind the planes through these features across the way between them, nothing else of it is
-/// as near: the points are known. Only features are kept that have one such pair of points: a
-/// corner and anything, or two edges that are not parallel. Haptic thread; good for triangles of
-/// one frame. 2 KiB.
+/// A pair that has the two nearest features of another pair, with its other corners behind the
+/// planes through these features across their connection, has the same nearest points. Only
+/// features with one such pair of points are kept: a corner and anything, or two edges that are not
+/// parallel. Haptic thread; for triangles of one frame. 2 KiB.
 class SharedFeatures // NOLINT(cppcoreguidelines-pro-type-member-init): keys come with the known.
 {
 public:
-    /// closest_points(first, second, false). Some 0.1 us where it is known, else as long as
-    /// measuring takes.
+    /// closest_points(first, second, false). About 0.1 us if known, otherwise as long as a
+    /// measurement takes.
     [[nodiscard]] ClosestPoints closest_points(const Triangle& first,
                                                const Triangle& second) noexcept TACTUS_NONBLOCKING;
 
 private:
-    /// A corner, the two of an edge, or all three for the inside.
+    /// One corner, the two of an edge, or all three for the inside.
     using Corners = StaticVector<Vec3, 3>;
     struct Known
     {
@@ -44,9 +44,10 @@ private:
     void keep(const Known& known) noexcept TACTUS_NONBLOCKING;
 
     StaticVector<Known, kKnown> known_;
-    std::array<double, kKnown> first_keys_;  ///< Of each the first coordinate of a corner,
-    std::array<double, kKnown> second_keys_; ///< to tell most others by.
-    std::uint32_t oldest_{0};                ///< Its place there: the next that is forgotten.
+    std::array<double, kKnown> first_keys_;  ///< First coordinate of one corner per entry, a cheap
+                                             ///< filter.
+    std::array<double, kKnown> second_keys_; ///< The same for the second triangle.
+    std::uint32_t oldest_{0};                ///< Entry that is replaced next.
 };
 
 } // namespace tactus

@@ -20,39 +20,39 @@ namespace tactus
 template <typename Real>
 inline constexpr double kRounding = std::same_as<Real, double> ? 0x1p-53 : 0x1p-102;
 
-/// As near as makes no difference in double, in the length of what a simplex's points were made of:
-/// a tetrahedron holds the origin where its weights bring it as near.
+/// Distance that double can't tell from zero, in lengths of the operands of a simplex's points: a
+/// tetrahedron holds the origin if its weights bring it this near.
 inline constexpr double kSimplexTouching = 8.0 * kRounding<double>;
 
 /// The point of a simplex nearest to the origin.
 template <typename Real>
 struct SimplexFoot
 {
-    /// Of the simplex's points; none negative, zero for those that aren't corners of the feature
-    /// that holds the foot. Their sum is 1.
+    /// Weights of the simplex's points; none negative, zero for points that aren't corners of the
+    /// feature that holds the foot. Their sum is 1.
     std::array<Real, 4> weights{};
-    /// The foot, as the weighted sum of the points: whatever the weights, it is in the simplex.
+    /// The foot as the weighted sum of the points, so in the simplex for any weights.
     Triple<Real> foot{};
     Real distance_sq{0.0};
-    /// From the origin across the feature, of any length: right where the foot is so near that
-    /// little of its own direction is left.
+    /// Normal of the feature from the origin, of any length: correct even if the foot is so near
+    /// that little of its own direction is left.
     Triple<Real> across{};
     std::size_t corners{0};
 };
 
-/// Where one to four points have their foot: of all features, taken from the largest down, the one
-/// whose foot is nearest. Tetrahedra have none but where the origin is inside.
+/// Finds the foot of one to four points: the nearest of all features' feet, largest features first.
+/// Tetrahedra have one only if the origin is inside.
 ///
-/// A face or edge counts where all its weights are positive: these are ratios of areas and lengths,
-/// so they tell much better which feature it is than the distances do, whose squares differ little
-/// beside an edge. So a smaller feature is taken only if it is nearer by more than rounding.
+/// A face or edge counts if all its weights are positive. These are ratios of areas and lengths and
+/// identify the feature much better than the distances, whose squares differ little beside an edge.
+/// So a smaller feature is taken only if it is nearer by more than rounding.
 template <typename Real>
 class SimplexSolver
 {
 public:
     using Point = Triple<Real>;
 
-    /// `length`: of the numbers from which the points were made; what these were rounded to.
+    /// `length` of the operands from which the points were made, which sets their rounding.
     SimplexSolver(std::span<const Point> points, double length) noexcept
         : points_(points)
         , noise_(8.0 * kRounding<Real> * length)
@@ -60,7 +60,7 @@ public:
     {
     }
 
-    /// Of the features that have the last point as a corner, or of all.
+    /// Foot among the features with the last point as a corner, or among all.
     [[nodiscard]] SimplexFoot<Real> find(bool with_last_only) noexcept
     {
         const std::size_t count = points_.size();
@@ -139,7 +139,7 @@ private:
         Real sum{0.0};
         for (std::size_t side = 0; side < 3; ++side)
         {
-            // Of the corner across this side: how far the origin is inside of it.
+            // Weight of the corner opposite this side: how far the origin is inside of the side.
             const Real inside = dot(cross(edge[side], normal), points_[corner[side]]);
             if (!is_positive(inside))
             {
@@ -158,8 +158,8 @@ private:
         keep_if_nearer(weights, foot, height < Real{0.0} ? -normal : normal, 3);
     }
 
-    /// Where the origin is inside, that is where the volumes across from the corners have one sign.
-    /// Of flat tetrahedra these are noise, and the sum that should be zero tells.
+    /// Adds a foot if the origin is inside: the volumes opposite the corners have one sign. The
+    /// volumes of flat tetrahedra are noise; their weighted sum of points then is not zero.
     void try_inside() noexcept
     {
         const Point front = cross(points_[0], points_[1]);
@@ -201,8 +201,8 @@ private:
     }
 
     std::span<const Point> points_;
-    double noise_;    ///< What rounding may make of zero.
-    double touching_; ///< As near counts as zero.
+    double noise_;    ///< Bound on the rounding of zero.
+    double touching_; ///< Distances up to this count as zero.
     double tie_{0.0};
     SimplexFoot<Real> best_{};
 };

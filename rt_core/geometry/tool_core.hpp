@@ -18,19 +18,22 @@ struct PointCore
 {
 };
 
-/// A tool that is a mesh: all faces of a model of its own, in the frame of the mesh file that the
-/// model was made of. Only `model` is to be given; the frame knows the rest from its header.
+/// A tool that is a mesh: all faces of its own model, in the frame of the mesh file that the model
+/// was built from. Only `model` is set by the caller; the frame takes the rest from the model's
+/// header.
 struct MeshCore
 {
     ModelId model{};
-    Vec3 origin_m{0.0, 0.0, 0.0}; ///< Of the model's frame in the tool's; the axes are parallel.
-    Vec3 extent_m{0.0, 0.0, 0.0}; ///< The model lies between its origin and this.
+    /// Origin of the model's frame in the tool's; the axes are parallel.
+    Vec3 origin_m{0.0, 0.0, 0.0};
+    /// Size of the model, which lies between its origin and this.
+    Vec3 extent_m{0.0, 0.0, 0.0};
 };
 
-/// What is left of a tool when its radius is taken off: a tool is everything within its radius of
-/// its core. A sphere is a point with a radius, a capsule a segment with one, a box may have
-/// rounded edges. In the tool's own frame, metres; finite, which nothing checks. What a hull or
-/// body refers to outlives the tool.
+/// Core of a tool, which consists of all points within its radius of the core: a sphere is a point
+/// with a radius, a capsule a segment with one, a box may have rounded edges. The tool's own frame,
+/// metres; finite, which is not checked. Data that a hull or convex body refers to outlives the
+/// tool.
 using ToolCore = std::variant<PointCore, Segment, Box, Hull, ConvexBody, MeshCore>;
 
 } // namespace tactus

@@ -11,7 +11,7 @@ namespace tactus
 namespace
 {
 
-/// Triangles that meet.
+/// A shared point of triangles that meet.
 ClosestPoints find_shared_point(const Triangle& first, const Triangle& second) noexcept
 {
     if (const auto found = find_edge_piercing(first, second))
