@@ -15,11 +15,11 @@ namespace tactus
 namespace
 {
 
-/// A record may stay while a tool goes this much farther than it has to, as a share of the keep
-/// distance, so that it has not to be looked at at every step.
+/// Distance, as a share of the keep distance, that a tool may go beyond a record's slack before the
+/// record is checked, so that it is not checked at every step.
 constexpr double kPatience = 0.1;
-/// How far the wheel looks ahead, in keep distances of the first question that there is; a record
-/// that may stay longer is looked at once in between.
+/// Range of the wheel, in keep distances of the first question; a record with more slack is checked
+/// once in between.
 constexpr double kHorizon = 4.0;
 
 } // namespace
@@ -41,7 +41,7 @@ void Coarsener::follow(double farthest_m) noexcept
     travel_ += farthest_m;
 }
 
-/// As if the tools had gone farther than any record in the wheel waits for.
+/// Moves the travel beyond all that any record in the wheel waits for.
 void Coarsener::look_at_all() noexcept
 {
     travel_ += horizon_m_;
@@ -67,7 +67,7 @@ void Coarsener::look_when_left(std::uint32_t slot, RecordId id, const VsplitReco
     const Place place{slot, place_in_chunk(id)};
     if (pages_->meta(slot).refined == place.bit())
     {
-        waits_[slot] = PageWaits{}; // Another model may have had the slot.
+        waits_[slot] = PageWaits{}; // The slot may have been another model's.
     }
     for (std::uint32_t i = 0; i < record.fan_size; ++i)
     {
@@ -90,7 +90,8 @@ void Coarsener::set_up_wheel(std::span<const RefineRequest> requests) noexcept
     cursor_ = bucket_of(travel_);
 }
 
-/// Without slack it is due now, else in the first bucket that begins when it is used up.
+/// Lists a record: due now without slack, otherwise in the first bucket that begins when the slack
+/// is used up.
 void Coarsener::list_when_left(const Place& place, double slack_m) noexcept
 {
     list(place, slack_m > 0.0 ? bucket_of(travel_ + slack_m) + 1 : cursor_);
@@ -101,7 +102,7 @@ void Coarsener::list(const Place& place, std::int64_t bucket) noexcept
     PageWaits& waits = waits_[place.slot];
     if ((waits.listed & place.bit()) != 0)
     {
-        return; // Looked at sooner.
+        return; // Already listed, for an earlier check.
     }
     waits.listed |= place.bit();
     const std::int64_t within = std::clamp(bucket, cursor_, cursor_ + kBuckets - 1);
@@ -113,7 +114,7 @@ void Coarsener::run(std::span<const RefineRequest> requests, const Budgets& budg
                     WorkCounters& work) noexcept
 {
     const std::int64_t now = bucket_of(travel_);
-    // All that waits is within one turn, so none is passed twice in a frame.
+    // All records in the wheel are within one turn, so none is passed twice in a frame.
     cursor_ = std::max(cursor_, now - kBuckets);
     for (;; ++cursor_)
     {
@@ -136,8 +137,8 @@ void Coarsener::run(std::span<const RefineRequest> requests, const Budgets& budg
     }
 }
 
-/// A record that is taken from the wheel: merged, or put where it is due next, or left to whoever
-/// holds or needs it.
+/// Checks a record taken from the wheel: merges it, lists it where it is due next, or leaves it
+/// unlisted if it is held or needed.
 void Coarsener::look_at(const Place& place, std::span<const RefineRequest> requests,
                         WorkCounters& work) noexcept
 {
@@ -183,7 +184,7 @@ void Coarsener::look_soon(RecordId record) noexcept
     list(place_of(record), cursor_);
 }
 
-/// Whether the faces without it would do for all who ask: a smaller error is none of theirs.
+/// True if the faces without the record have errors within the tolerance of all questions.
 bool Coarsener::is_needless(const VsplitRecord& record,
                             std::span<const RefineRequest> requests) const noexcept
 {
@@ -194,7 +195,7 @@ bool Coarsener::is_needless(const VsplitRecord& record,
            forest_->error_before(record) <= least;
 }
 
-/// How much farther the tools have to go before the record is left behind by all of them.
+/// Distance that the tools have to go before all of them leave the record behind.
 double Coarsener::slack_of(const VsplitRecord& record,
                            std::span<const RefineRequest> requests) const noexcept
 {

@@ -18,17 +18,16 @@ namespace tactus
 
 /// Merges the records that the tools have left behind: the first phase of a refinement.
 ///
-/// A record is left behind when its star, with all errors in it, is beyond every question's keep
-/// distance, or when the faces without it are within every question's tolerance. Until a tool has
-/// come that far nobody looks: the record waits in a wheel of buckets,
-/// in that of the travel at which it may be left behind, and a frame looks into those that the
-/// tools have passed.
+/// A record is left behind if its star, with all errors in it, is beyond every question's keep
+/// distance, or if the faces without it are within every question's tolerance. Its slack is the
+/// travel of the tools before that can happen. The record waits in a wheel of buckets by travel,
+/// and a frame checks the buckets that the tools have passed.
 ///
 ///     passed, empty | cursor: due ...... | travel | later ......... one turn is the horizon
 ///
-/// A record can be merged while no other one has refined a face of its star. So of each is counted
-/// how many faces others have; with some it is taken from the wheel, and whoever takes the last one
-/// back puts it there again, due at once. So no merge is tried in vain, and what is in the wheel is
+/// A record can be merged only while no other record has refined a face of its star, so those faces
+/// are counted. While there are any, the record is out of the wheel; the merge of the last one
+/// lists it again, due at once. So no merge is tried in vain, and every record in the wheel is
 /// refined.
 ///
 /// Haptic thread. Every loop is bounded by the budgets and by limits.hpp.
@@ -38,21 +37,20 @@ public:
     Coarsener(VertexForest& forest, PageTable& pages, const RefineScratch& scratch,
               float quantum_m) noexcept;
 
-    /// The questions have moved, or their keep distances have shrunk, by at most that much.
+    /// Travel of the questions, including shrinking keep distances, of at most `farthest_m`.
     void follow(double farthest_m) noexcept TACTUS_NONBLOCKING;
-    /// The questions are other ones: every record is due.
+    /// Makes every record due, because the questions changed.
     void look_at_all() noexcept TACTUS_NONBLOCKING;
-    /// The record, of the page in `slot`, was refined.
+    /// Lists a record, of the page in `slot`, that was refined.
     void look_when_left(std::uint32_t slot, RecordId id, const VsplitRecord& record,
                         std::span<const RefineRequest> requests) noexcept TACTUS_NONBLOCKING;
-    /// The record is not held any more, and due.
+    /// Makes a record due that is no longer held.
     void look_soon(RecordId record) noexcept TACTUS_NONBLOCKING;
 
-    /// The forest has left: nothing is refined any more.
+    /// Resets the wheel after the forest has left, with nothing refined.
     void forget_all() noexcept TACTUS_NONBLOCKING;
 
-    /// One frame: looks at up to `budgets.scanned` refined records and merges up to
-    /// `budgets.merges`.
+    /// One frame: checks up to `budgets.scanned` refined records and merges up to `budgets.merges`.
     void run(std::span<const RefineRequest> requests, const Budgets& budgets,
              WorkCounters& work) noexcept TACTUS_NONBLOCKING;
 
@@ -60,7 +58,7 @@ private:
     static constexpr std::uint32_t kBuckets = 256;
     static constexpr std::uint32_t kNoRecord = 0xFFFF'FFFFU;
 
-    /// A record's page slot and its place there.
+    /// A record's page slot and its place in the page.
     struct Place
     {
         std::uint32_t slot{0};
@@ -73,7 +71,7 @@ private:
     {
         return {pages_->find(chunk_of(record)), place_in_chunk(record)};
     }
-    /// In which bucket's stretch of the way a travel lies.
+    /// Bucket of a travel.
     [[nodiscard]] std::int64_t bucket_of(double travel_m) const noexcept
     {
         return static_cast<std::int64_t>(travel_m * buckets_per_m_);
@@ -92,12 +90,12 @@ private:
     PageTable* pages_;
     double quantum_m_;
     std::span<PageWaits> waits_;
-    /// The first record of each bucket, a turn of them from `cursor_` on. 1 KiB.
+    /// First record of each bucket, for one turn from `cursor_` on. 1 KiB.
     std::array<std::uint32_t, kBuckets> heads_{};
-    double horizon_m_{0.0}; ///< The way of one turn; 0: nothing was refined yet.
+    double horizon_m_{0.0}; ///< Travel of one turn; 0: nothing was refined yet.
     double buckets_per_m_{0.0};
-    std::int64_t cursor_{0}; ///< All buckets before are empty.
-    double travel_{0.0};     ///< How far the questions have gone, in metres, since the start.
+    std::int64_t cursor_{0}; ///< All buckets before it are empty.
+    double travel_{0.0};     ///< Travel of the questions since the start, in metres.
 };
 
 } // namespace tactus

@@ -18,64 +18,65 @@
 namespace tactus
 {
 
-/// What is known of a question from frame to frame.
+/// State of a question that is kept from frame to frame.
 struct RefineMemory
 {
     Vec3 center_m{0.0, 0.0, 0.0};
     double keep_m{0.0};
-    /// No coarse face's distance from the centre minus its error is below this. While it is not
-    /// below the reach there is nothing to split, and nobody needs to look.
+    /// Lower bound on all coarse faces' distances from the centre minus their errors. While it is
+    /// not below the reach there is nothing to split, and no search.
     double certified_m{0.0};
-    ErrorCode tolerance{0}; ///< Larger errors are meant by "coarse".
+    ErrorCode tolerance{0}; ///< Faces with larger errors are coarse.
     bool is_known{false};
-    KernelProbe probe{}; ///< Of this frame's centre.
+    KernelProbe probe{}; ///< Probe at this frame's centre.
 };
 
-/// What one pair asks of a model: every original face within `reach_m` of the point, exactly.
+/// Question of one pair to a model: every original face within `reach_m` of the point, exactly.
 /// Model frame, metres; the centre is not is_beyond_kernels().
 ///
-/// With a surface, of those only the faces within reach_m - span_m of it: the ball of `span_m`
-/// holds the surface. Distances, errors taken off, are told as those from the centre all the same,
-/// larger by the span than those from the surface.
+/// With a surface, only the faces within reach_m - span_m of it: the sphere of `span_m` holds the
+/// surface. Distances, errors subtracted, are still given from the centre, larger by the span than
+/// those from the surface.
 struct RefineQuestion
 {
     Vec3 center_m{0.0, 0.0, 0.0};
     double reach_m{0.0};
-    double keep_m{0.0}; ///< Records farther than this may be merged (hysteresis).
+    double keep_m{0.0}; ///< Distance beyond which records may be merged (hysteresis).
     RefineMemory* memory{nullptr};
-    OtherSurface* surface{nullptr}; ///< Null for a ball.
+    OtherSurface* surface{nullptr}; ///< Null for a sphere.
     double span_m{0.0};
-    double moved_m{0.0};      ///< No point of the surface has moved farther since the last frame.
-    double ahead_m{0.0};      ///< How much farther than usual beyond the reach is refined.
-    bool counts_errors{true}; ///< Without: coarse faces are wanted by distance alone.
-    ErrorCode tolerance{0};   ///< Faces with no larger error need no split.
-    UnfinishedSearch* unfinished{nullptr}; ///< Of this question, near another surface; or null.
-    /// So far from where it is needed the question is asked, because that is where it will be: what
-    /// only it wants may wait. 0: it is needed now.
+    double moved_m{0.0};      ///< Bound on the motion of the surface's points since the last frame.
+    double ahead_m{0.0};      ///< Distance refined beyond the reach, in addition to the usual one.
+    bool counts_errors{true}; ///< False: coarse faces are wanted by distance alone.
+    ErrorCode tolerance{0};   ///< Faces with an error up to this need no split.
+    /// Unfinished search of this question near another surface, or null.
+    UnfinishedSearch* unfinished{nullptr};
+    /// Distance of the question's place from the tool's: the question predicts that the tool will
+    /// be there, so its faces may wait. 0: needed now.
     double later_m{0.0};
 };
 
-/// Whether something within the reach may be coarse.
+/// True if a face within the reach may be coarse.
 [[nodiscard]] inline bool is_wanting(const RefineQuestion& question) noexcept
 {
     return question.memory->certified_m < question.reach_m;
 }
 
-/// Records that were split towards one which the budget did not come to: kept from being merged
-/// until it is split, or nobody wants it. One for each pair and model, from frame to frame.
+/// Records that were split for a record which the budget did not reach. They are not merged until
+/// that is split or no longer wanted. One for each pair and model, kept from frame to frame.
 struct Closure
 {
     static constexpr std::uint32_t kNone = 0xFFFF'FFFFU;
 
-    RecordId target{};               ///< None: nothing is open.
-    std::uint32_t first_held{kNone}; ///< In the refiner's list.
+    RecordId target{};               ///< None: no closure is open.
+    std::uint32_t first_held{kNone}; ///< Head of the closure's list in the refiner.
     std::uint32_t saved{0};          ///< Splits that the pair left to others: see SplitShares.
-    std::uint32_t waited{0};         ///< Frames on end in which nothing was left for it.
-    /// What was in the way of something that is needed now, in the last frame.
+    std::uint32_t waited{0};         ///< Consecutive frames without a split left for it.
+    /// Cause, in the last frame, for which faces needed now were not split.
     FrameFault late_for{FrameFault::none};
 };
 
-/// What one pair asks of one model in a frame; without a question, that it asks no more.
+/// Request of one pair to one model in a frame; without questions the pair needs nothing more.
 struct RefineRequest
 {
     ModelId model{};
@@ -83,19 +84,19 @@ struct RefineRequest
     Closure* closure{nullptr};
     Urgency urgency;
 
-    /// Whether something within reach may be coarse that is needed now.
+    /// True if a face within reach that is needed now may be coarse.
     [[nodiscard]] bool is_late() const noexcept
     {
         return std::ranges::any_of(questions, [](const RefineQuestion& question)
                                    { return question.later_m == 0.0 && is_wanting(question); });
     }
-    /// Whether it is asked by how near another surface is.
+    /// True if the request's distances are from another surface.
     [[nodiscard]] bool is_near_surface() const noexcept
     {
         return std::ranges::any_of(questions, [](const RefineQuestion& question)
                                    { return question.surface != nullptr; });
     }
-    /// Whether there may be something to split for it, now or later.
+    /// True if a split for it may be due, now or later.
     [[nodiscard]] bool is_open() const noexcept
     {
         return !closure->target.is_none() ||

@@ -14,34 +14,35 @@
 namespace tactus
 {
 
-/// A record that must not be merged yet, in the list of its closure or of free ones.
+/// A record that must not be merged yet, in the list of its closure or of free entries.
 struct HeldRecord
 {
     RecordId record{};
     std::uint32_t next{Closure::kNone};
 };
 
-/// A coarse face that is wanted, and the state in which it was looked at.
+/// A coarse face that is wanted, and its state when it was found.
 struct RefineCandidate
 {
-    /// Distance minus error minus reach, the least over the questions, each with what it is asked
-    /// ahead; above zero it is only looked ahead for.
+    /// Distance minus error minus reach, the least over the questions, each with its `later_m`;
+    /// above zero the face is only looked ahead for.
     double excess_m{0.0};
     PrimId prim{};
     FaceState state;
 };
 
-/// When the records of a page are looked at for merging: see Coarsener. 328 B.
+/// Schedule for the merge checks of a page's records: see Coarsener. 328 B.
 struct PageWaits
 {
-    std::array<std::uint32_t, kRecordsPerChunk> next{}; ///< In the same bucket, slot x 64 + place.
-    std::array<std::uint8_t, kRecordsPerChunk> dependents{}; ///< Faces that others refined further.
-    std::uint64_t listed{0}; ///< One bit a record: it is in a bucket.
+    std::array<std::uint32_t, kRecordsPerChunk> next{}; ///< Next record in the bucket, slot x 64 +
+                                                        ///< place.
+    std::array<std::uint8_t, kRecordsPerChunk> dependents{}; ///< Faces refined further by others.
+    std::uint64_t listed{0}; ///< One bit per record: it is in a bucket.
 };
 
-/// What refinement needs while it runs, one for all models of a frame, which take turns; and the
-/// records that their closures hold from frame to frame, kMaxHeldRecords of them in all. 29 KiB,
-/// and 328 B a page slot for when to look at its records, which is its owner's matter.
+/// Memory of refinement, shared by all models of a frame, which take turns, and the records that
+/// their closures hold from frame to frame, kMaxHeldRecords of them in all. 29 KiB, and 328 B per
+/// page slot for the merge checks of its records, which the slot's owner uses.
 ///
 /// Haptic thread only.
 struct RefineScratch
@@ -60,11 +61,11 @@ struct RefineScratch
     }
 
     std::span<RefineCandidate> heap;
-    std::span<RecordId> stack; ///< Of a closure.
-    std::span<RecordId> done;  ///< The records that a closure split.
+    std::span<RecordId> stack; ///< Path of a closure.
+    std::span<RecordId> done;  ///< Records that a closure split.
     std::span<HeldRecord> held;
-    std::span<PageWaits> waits;              ///< By page slot of all models.
-    std::uint32_t free_held{Closure::kNone}; ///< First of those that are free.
+    std::span<PageWaits> waits;              ///< Indexed by page slot of all models.
+    std::uint32_t free_held{Closure::kNone}; ///< First free entry.
 };
 
 } // namespace tactus

@@ -18,16 +18,16 @@ namespace tactus
 namespace
 {
 
-/// Near another surface the faces of so many splits are held against it at once, one by one. With
-/// more one walk for all is cheaper: they are looked for again.
+/// Splits whose faces are measured against another surface at once, one by one. For more splits,
+/// one walk for all is cheaper: their faces are searched again.
 constexpr std::uint32_t kMeasuredStars = 8;
-/// So many coarse faces for each split that may be done are looked for near another surface, and
-/// at least so many: some wait for their chunks.
+/// Coarse faces that are searched near another surface: this many for each allowed split, and at
+/// least the number below. Some wait for their chunks.
 constexpr std::uint32_t kFacesPerSplit = 2;
 constexpr std::uint32_t kLeastFaces = 16;
 
-/// Most urgent first; among equals the lower slot, so that the order is the same in every run. An
-/// object, since a function would be called through a pointer.
+/// Order of the heap: most urgent first; among equals the lower slot, so that the order is the same
+/// in every run. A function object, since a function would be called through a pointer.
 constexpr auto comes_later = [](const auto& a, const auto& b) noexcept
 { return a.excess_m != b.excess_m ? a.excess_m > b.excess_m : a.prim > b.prim; };
 
@@ -37,32 +37,33 @@ double target_of(const RefineQuestion& question) noexcept
     return question.reach_m + look_ahead * (question.reach_m - question.span_m) + question.ahead_m;
 }
 
-/// How much too far a face is for being wanted now, when its distance minus error is `lower_m` from
-/// where the question is: at most what it is from where the tool is.
+/// Distance by which a face is too far to be needed now, if its distance minus error is `lower_m`
+/// from the question's place: an upper bound of that from the tool's place.
 double excess_of(const RefineQuestion& question, double lower_m) noexcept
 {
     return lower_m - question.reach_m + question.later_m;
 }
 
-/// What of a face's error counts.
+/// The part of a face's error that counts.
 double counted(const RefineQuestion& question, double error_m) noexcept
 {
     return question.counts_errors ? error_m : 0.0;
 }
 
-/// And what of it doesn't.
+/// The part of a face's error that doesn't count.
 double not_counted(const RefineQuestion& question, double error_m) noexcept
 {
     return error_m - counted(question, error_m);
 }
 
-/// A coarse face whose distance minus its error is `lower` stays as it is for now.
+/// Lowers the certificate for a coarse face that stays, whose distance minus its error is
+/// `lower_m`.
 void leave(const RefineQuestion& question, double lower_m) noexcept
 {
     question.memory->certified_m = std::min(question.memory->certified_m, lower_m);
 }
 
-/// One of that excess over the reach of some question does.
+/// The same for a face with this excess over the reach of one of the questions.
 void leave_at(std::span<const RefineQuestion> questions, double excess_m) noexcept
 {
     for (const RefineQuestion& question : questions)
@@ -133,7 +134,7 @@ void Refiner::begin(std::span<const RefineRequest> requests, const Budgets& budg
                       {
                           if (work.merges != merges_before)
                           {
-                              // What was merged is beyond every keep distance, but no farther.
+                              // Merged faces are beyond every keep distance, but no farther.
                               leave(question, question.keep_m);
                           }
                           work.skipped.add(Skip::regions, is_wanting(question) ? 0 : 1);
@@ -155,15 +156,15 @@ FrameFault Refiner::refine(const RefineRequest& request, SplitLimits limits, con
     split_wanted(request, limits, frame, work, found);
     if (!is_all && work.splits == before && splits > 0)
     {
-        // None of those can be split now: others may.
+        // None of the faces found can be split now, but others may.
         (void)gather(request, limits, NearFaces::kAll, budgets, work, found);
         split_wanted(request, limits, frame, work, found);
     }
     return found | given_up_;
 }
 
-/// Finds the coarse faces of all of a request's questions; false where more of them than `enough`
-/// may be near another surface.
+/// Finds the coarse faces of all of a request's questions; false if more than `enough` of them may
+/// be near another surface.
 bool Refiner::gather(const RefineRequest& request, SplitLimits limits, std::uint32_t enough,
                      const Budgets& budgets, WorkCounters& work, FrameFault& found) noexcept
 {
@@ -171,7 +172,7 @@ bool Refiner::gather(const RefineRequest& request, SplitLimits limits, std::uint
     bool is_all = true;
     for (const bool may_wait : {false, true})
     {
-        // Not looked for where what is found already is more than may be split.
+        // Faces are not searched if those found already exceed the allowed splits.
         const bool is_of_use = !may_wait || work.splits + heap_size_ < limits.later;
         for (const RefineQuestion& question : request.questions)
         {
@@ -184,7 +185,7 @@ bool Refiner::gather(const RefineRequest& request, SplitLimits limits, std::uint
     return is_all;
 }
 
-/// Certificates lose what their questions moved, and records are left behind by as much.
+/// Lowers certificates by their questions' motion, and the coarsener's slack by the largest motion.
 void Refiner::follow() noexcept
 {
     double farthest = 0.0;
@@ -240,7 +241,7 @@ void Refiner::follow(const RefineQuestion& question, double& farthest_m, bool& i
     memory.keep_m = question.keep_m;
 }
 
-/// A search that has come too near to reach as far as is needed begins again.
+/// Restarts an unfinished search whose bound no longer covers the needed distance.
 void Refiner::follow(double moved_m, double needed_m, UnfinishedSearch& unfinished) noexcept
 {
     unfinished.moved_m += moved_m;
@@ -250,7 +251,7 @@ void Refiner::follow(double moved_m, double needed_m, UnfinishedSearch& unfinish
     }
 }
 
-/// Finds the coarse faces within the target; the certificate reaches as far as was looked.
+/// Finds the coarse faces within the target; the certificate covers the searched distance.
 bool Refiner::gather(const RefineQuestion& question, std::uint32_t enough, const Budgets& budgets,
                      WorkCounters& work, FrameFault& found) noexcept
 {
@@ -333,7 +334,7 @@ void Refiner::gather_block(std::uint32_t index, const RefineQuestion& question) 
     }
 }
 
-/// A coarse face whose distance minus its error is not less than that: wanted, or left for now.
+/// Adds a coarse face with at least this distance minus its error, or leaves it for now.
 void Refiner::take(PrimId prim, double lower_m, const RefineQuestion& question) noexcept
 {
     if (lower_m <= target_of(question))
@@ -374,7 +375,7 @@ void Refiner::split_wanted(const RefineRequest& request, SplitLimits limits, std
             pending_excess = kInfinity;
             if (pages_->is_refined(wanted.record))
             {
-                release(closure); // Split for a nearer face, or for another pair, meanwhile.
+                release(closure); // Split meanwhile for a nearer face or another pair.
                 continue;
             }
         }
@@ -387,12 +388,12 @@ void Refiner::split_wanted(const RefineRequest& request, SplitLimits limits, std
         can_go_on = try_advance(wanted, request, wanted.excess_m <= 0.0 ? limits.now : limits.later,
                                 frame, work, found);
     }
-    // The nearest of those that were not come to.
+    // The certificate ends at the nearest face that was not reached.
     leave_at(own, std::min(pending_excess, heap_size_ > 0 ? heap_[0].excess_m : kInfinity));
 }
 
-/// The least excess of a face for which the open closure was begun; infinity when none of them
-/// waits within the target any more.
+/// The least excess of a face for which the open closure was begun; infinity if none of them waits
+/// within the target any more.
 double Refiner::excess_of_pending(const RefineRequest& request) const noexcept
 {
     const RecordId target = request.closure->target;
@@ -419,7 +420,7 @@ double Refiner::excess_of_pending(const RefineRequest& request) const noexcept
     return excess;
 }
 
-/// Splits towards a wanted record; false when nothing more can be split for the request.
+/// Splits towards a wanted record; false if nothing more can be split for the request.
 bool Refiner::try_advance(const Wanted& wanted, const RefineRequest& request, std::uint32_t limit,
                           std::uint32_t frame, WorkCounters& work, FrameFault& found) noexcept
 {
@@ -448,8 +449,8 @@ bool Refiner::try_advance(const Wanted& wanted, const RefineRequest& request, st
     return false;
 }
 
-/// Depth-first over the records that must be split before `target`; the stack is never deeper than
-/// the deepest record.
+/// Splits depth-first the records that must be split before `target`, then that; the stack is never
+/// deeper than the deepest record.
 Refiner::ClosureOutcome Refiner::split_with_closure(RecordId target,
                                                     std::span<const RefineQuestion> own,
                                                     std::uint32_t limit, std::uint32_t frame,
@@ -477,7 +478,7 @@ Refiner::ClosureOutcome Refiner::split_with_closure(RecordId target,
             stack_[depth++] = missing;
             continue;
         }
-        // One split is allowed whatever was spent before: every frame gets on.
+        // One split is allowed even with a spent budget: every frame makes progress.
         if (work.splits >= limit || (work.splits > 0 && work.budget.is_spent()))
         {
             return ClosureOutcome::budget_spent;
@@ -517,7 +518,7 @@ Refiner::Progress Refiner::fill(std::uint32_t records, std::uint32_t limit, std:
     {
         if (!pages_->is_refined({next_record_}))
         {
-            FrameFault found = FrameFault::none; // That a chunk is on its way is no fault here.
+            FrameFault found = FrameFault::none; // A chunk that is still loading is no fault here.
             is_filling_ = true;
             const ClosureOutcome outcome =
                 split_with_closure({next_record_}, {}, limit, frame, work, found);
@@ -533,9 +534,9 @@ Refiner::Progress Refiner::fill(std::uint32_t records, std::uint32_t limit, std:
     return next_record_ == records ? Progress::complete : Progress::under_way;
 }
 
-/// The faces that a split changed may be wanted themselves: at once by the questions that it was
-/// made for, in their own turn by others. Where another surface is near they are left to the next
-/// walk if others already wait for all splits that are left, or for most of them.
+/// Checks the faces that a split changed, which may be wanted themselves: at once for the request's
+/// own questions, in their own turn for others. Near another surface they are left to the next walk
+/// if other faces already need all remaining splits or most of them.
 void Refiner::consider_star(RecordId id, const VsplitRecord& record,
                             const VertexForest::StarGeometry& star,
                             std::span<const RefineQuestion> own, std::uint32_t splits_left) noexcept
@@ -560,7 +561,7 @@ void Refiner::consider_star(RecordId id, const VsplitRecord& record,
     {
         if (is_filling_ && question.surface != nullptr)
         {
-            leave(question, 0.0); // Asked anew, in one walk for all.
+            leave(question, 0.0); // The question is asked again, in one walk for all.
             return;
         }
         const double nearest = (vertex - question.center_m).norm() * kRootRoundedDown - reach;
@@ -608,7 +609,7 @@ void Refiner::consider_star(RecordId id, const VsplitRecord& record,
     }
 }
 
-/// Distances minus errors of a star's coarse faces, or less.
+/// Lower bounds on distances minus errors of a star's coarse faces.
 void Refiner::bound_star_near_ball(const RefineQuestion& question, const LooseFaces& coarse,
                                    StarBounds& lower_m) const noexcept
 {
@@ -622,7 +623,7 @@ void Refiner::bound_star_near_ball(const RefineQuestion& question, const LooseFa
     }
 }
 
-/// The same; infinity beyond both the target and what is certified.
+/// The same near another surface; infinity beyond both the target and the certificate.
 void Refiner::bound_star_near_surface(const RefineQuestion& question, const LooseFaces& coarse,
                                       StarBounds& lower_m) const noexcept
 {
@@ -665,8 +666,8 @@ double Refiner::lower_bound(PrimId prim, const RefineQuestion& question) const n
     return std::max(lower, from_surface - error + question.span_m);
 }
 
-/// Full: the face waits for the next frame, when nearer ones are done. One that is only looked
-/// ahead for is missed by nobody, and leaves half of the heap to others.
+/// Adds a face to the heap. If the heap is full, the face waits for the next frame. Faces that are
+/// only looked ahead for may take half of the heap, and dropping one is no fault.
 void Refiner::push(const Candidate& candidate, std::span<const RefineQuestion> questions) noexcept
 {
     TACTUS_ASSERT(!candidate.prim.is_none());
@@ -695,7 +696,8 @@ bool Refiner::is_current(const Candidate& candidate) const noexcept
     return !face.id.is_none() && face.state == candidate.state;
 }
 
-/// Full: the record may be merged before its closure is complete, and has to be split again.
+/// Holds a record. If the list is full, the record may be merged before its closure is complete and
+/// has to be split again.
 void Refiner::hold(RecordId record, Closure& closure) noexcept
 {
     const std::uint32_t place = scratch_->free_held;

@@ -20,44 +20,44 @@
 namespace tactus
 {
 
-/// How many splits a frame may have done when a request was served.
+/// Limits on a frame's splits by the time that a request was served.
 struct SplitLimits
 {
     std::uint32_t now{0};
-    std::uint32_t later{0}; ///< Of what may wait, no more than `now`.
+    std::uint32_t later{0}; ///< Limit with splits that may wait, at most `now`.
 };
 
-/// Moves one model's refined front to what the pairs ask for: first merges what all of them left
-/// behind (Coarsener), then splits pair by pair what each lacks, nearest first, until its
+/// Moves one model's refined front to the requests of the pairs: first merges records that all of
+/// them left behind (Coarsener), then splits pair by pair what each lacks, nearest first, until its
 /// certificate holds or its share of the budget is spent.
 ///
 /// A face is split while it is coarse and its distance minus its error is within a question's
-/// reach. When none is left every original face in reach is active: the ball is certified. It is
-/// refined a little beyond the reach (kLookAhead), so that a slow tool has frames without any work
-/// here, and where the tool will be (RefineQuestion::later_m). That may wait: it comes after all
-/// that is wanted now, the sooner needed the earlier, and at a steady pace. Records split for a
+/// reach. If none is left every original face in reach is active: the sphere is certified. A little
+/// beyond the reach is refined as well (kLookAhead), so that a slow tool has frames without any
+/// work here, and the place where the tool will be (RefineQuestion::later_m). These splits come
+/// after all that are needed now, in order of need, and at a steady pace. Records split for a
 /// closure that the budget cut short are held: not merged until the closure is complete or its pair
-/// does not want it, so a small budget makes progress in every frame. A split that one pair asked
-/// for takes from every other pair's certificate what it made coarse there.
+/// does not want it, so a small budget makes progress in every frame. A split for one pair reduces
+/// every other pair's certificate by the coarse faces that it made there.
 ///
 /// Haptic thread. Every loop is bounded by the budgets and by limits.hpp.
 class Refiner
 {
 public:
-    /// `scratch` may serve other models as well, and outlives them.
+    /// `scratch` may serve other models as well and outlives them.
     Refiner(VertexForest& forest, PageTable& pages, const AbTree& tree, RefineScratch& scratch,
             float quantum_m) noexcept;
 
-    /// The frame begins: all that is asked of the model in it, the most urgent first. Follows the
-    /// questions and merges, in all until `work` has `budgets.scanned` and `budgets.merges`. The
-    /// requests must stay until the frame ends.
+    /// Begins the frame with all requests to the model, the most urgent first. Follows the
+    /// questions and merges until `work` has `budgets.scanned` and `budgets.merges`. The requests
+    /// must stay until the frame ends.
     void begin(std::span<const RefineRequest> requests, const Budgets& budgets,
                WorkCounters& work) noexcept TACTUS_NONBLOCKING;
 
-    /// Splits what one of the frame's requests lacks until `work` has as many splits as the limits
-    /// say, at most kMaxSplitsPerFrame. The tree's boxes are those of the last refit. Pages whose
-    /// records a closure needs are touched. Returns what was in the way; it matters while the
-    /// request is_late().
+    /// Splits the faces that one of the frame's requests lacks until `work` has as many splits as
+    /// the limits allow, at most kMaxSplitsPerFrame. The tree's boxes are those of the last refit.
+    /// Pages whose records a closure needs are touched. Returns the obstacles, which matter while
+    /// the request is_late().
     [[nodiscard]] FrameFault refine(const RefineRequest& request, SplitLimits limits,
                                     const Budgets& budgets, std::uint32_t frame,
                                     WorkCounters& work) noexcept TACTUS_NONBLOCKING;
@@ -65,26 +65,26 @@ public:
     enum class Progress : std::uint8_t
     {
         under_way,
-        full,     ///< A pool has no room.
+        full,     ///< A pool is full.
         complete, ///< All records are refined.
     };
-    /// Splits the model's records one after the other until `work` has `limit` splits. Requests
-    /// may lack something for it afterwards.
+    /// Splits the model's records in order until `work` has `limit` splits. Certificates of
+    /// requests may shrink by it.
     [[nodiscard]] Progress fill(std::uint32_t records, std::uint32_t limit, std::uint32_t frame,
                                 WorkCounters& work, FrameFault& faults) noexcept TACTUS_NONBLOCKING;
 
-    /// How far beyond the reach is refined, as a share of it.
+    /// Share of the reach that is refined beyond it.
     static constexpr double kLookAhead = 0.02;
 
-    /// What is held for a closure may be merged again: nobody asks for it any more.
+    /// Ends a closure that no request wants: its held records may be merged again.
     void release(Closure& closure) noexcept TACTUS_NONBLOCKING;
 
-    /// The forest has left, and no closure is open: as new.
+    /// Resets the refiner after the forest has left, with no closure open.
     void forget_all() noexcept TACTUS_NONBLOCKING;
 
 private:
     using Candidate = RefineCandidate;
-    /// A record whose split a face of that excess waits for.
+    /// A record whose split a face with this excess waits for.
     struct Wanted
     {
         RecordId record{};
@@ -94,8 +94,8 @@ private:
     {
         complete,
         budget_spent,
-        full,    ///< A pool has no room.
-        blocked, ///< A record isn't here yet, or is refused.
+        full,    ///< A pool is full.
+        blocked, ///< A record isn't resident yet, or is refused.
     };
 
     void follow() noexcept;
@@ -142,19 +142,21 @@ private:
     Coarsener coarsener_;
     double quantum_m_;
     RefineScratch* scratch_;
-    std::span<Candidate> heap_; ///< Of the scratch, as the two below.
+    std::span<Candidate> heap_; ///< Memory of the scratch, like the two below.
     std::span<RecordId> stack_;
     std::span<RecordId> done_;
     std::uint32_t heap_size_{0};
     std::uint32_t done_count_{0};
-    std::span<const RefineRequest> requests_; ///< Of this frame.
-    std::uint32_t questions_{0};              ///< Theirs.
+    std::span<const RefineRequest> requests_; ///< Requests of this frame.
+    std::uint32_t questions_{0};              ///< Number of their questions.
     std::size_t question_count_{0};
-    std::uint32_t next_record_{0}; ///< fill() has done those before.
-    /// Splits are not for the questions: another surface is not walked for each of them.
+    std::uint32_t next_record_{0}; ///< Records before it are done by fill().
+    /// fill() is running: its splits do not walk another surface for each question.
     bool is_filling_{false};
-    std::uint32_t stars_left_{0}; ///< That are held against another surface in this refine().
-    FrameFault given_up_{FrameFault::none}; ///< For want of room, since refine() began.
+    /// Splits in this refine() whose faces may still be measured against another surface.
+    std::uint32_t stars_left_{0};
+    /// Faults for lack of capacity since refine() began.
+    FrameFault given_up_{FrameFault::none};
 };
 
 } // namespace tactus

@@ -12,32 +12,32 @@
 namespace tactus
 {
 
-/// How one frame's splits are shared among the requests that wait for some.
+/// Shares one frame's splits among the requests that wait for some.
 ///
-/// The more urgent class takes what it can use, but for an eighth of all, rounded up, for each
-/// class below in which somebody waits. Within a class everyone in turn may take an equal part of
-/// what the class has left, and while there is enough for all what it saved before: a request that
-/// needs little, in bursts, is not behind others that always need all. So with at least eight
-/// splits a frame each of n requests of a class may take one in ceil(n / ceil(splits / 8)) frames,
-/// whatever the others ask for, if those go first for which nothing was left longest
-/// (docs/accuracy.md).
+/// The more urgent class takes what it can use, except an eighth of all, rounded up, for each lower
+/// class with a waiting request. Within a class each request in turn may take an equal part of what
+/// the class has left, and, if there is enough for all, its earlier savings: a request with short
+/// bursts is not behind others that always need everything. So with at least eight splits a frame
+/// each of n requests of a class may take one in ceil(n / ceil(splits / 8)) frames, independent of
+/// the others' needs, if requests that got nothing for longest go first (docs/accuracy.md).
 class SplitShares
 {
 public:
     explicit SplitShares(std::uint32_t splits) noexcept : splits_(splits) {}
 
-    /// A request that waits, before the first take().
+    /// Adds a waiting request, before the first take().
     void add(UrgencyClass of) noexcept { ++waiting_[static_cast<std::size_t>(of)]; }
 
-    /// What one request may take.
+    /// Splits that one request may take.
     struct Share
     {
-        std::uint32_t equal{0}; ///< Its part.
-        std::uint32_t limit{0}; ///< With what it saved: splits that the frame may have done then.
+        std::uint32_t equal{0}; ///< Its equal part.
+        std::uint32_t limit{0}; ///< Total splits of the frame up to which it may go, including its
+                                ///< savings.
     };
 
-    /// The next request of a class, classes in order, which saved so many splits, in a frame that
-    /// has `done` so many.
+    /// Share of the next request of a class, classes in order, which has `saved` splits, in a frame
+    /// that has done `done`.
     [[nodiscard]] Share take(UrgencyClass of, std::uint32_t saved, std::uint32_t done) noexcept
     {
         const auto own = static_cast<std::size_t>(of);
@@ -51,18 +51,18 @@ public:
         const std::uint32_t free = left - std::min(left, kept);
         const std::uint32_t equal = (free + waiting_[own] - 1) / waiting_[own];
         --waiting_[own];
-        const std::uint32_t others = std::min(waiting_[own], free - equal); // One for each.
+        const std::uint32_t others = std::min(waiting_[own], free - equal); // One for each of them.
         return {equal, done + equal + std::min(saved, free - equal - others)};
     }
 
-    /// What a request has saved after a frame in which it used so many. Half of a frame's splits at
-    /// most, or it could hold up all others for long.
+    /// Savings of a request after a frame in which it used `used` splits; at most half of a frame's
+    /// splits, or it could delay all others for long.
     [[nodiscard]] std::uint32_t save(std::uint32_t saved, std::uint32_t equal,
                                      std::uint32_t used) const noexcept
     {
         return std::min(saved + equal - std::min(saved + equal, used), splits_ / 2);
     }
-    /// What one has saved that asked for none: it might have had an eighth.
+    /// Savings of a request that needed none: an eighth more.
     [[nodiscard]] std::uint32_t save_all(std::uint32_t saved) const noexcept
     {
         return save(saved, (splits_ + 7) / 8, 0);

@@ -11,30 +11,30 @@
 namespace tactus
 {
 
-/// How large the error of a face may be that counts as the surface for one pair: the least that is
-/// allowed, or, where pools or budgets don't suffice for what is in reach, more, up to a limit. It
-/// grows within some frames and shrinks slowly when there is room again, so that it doesn't swing.
+/// Largest error of a face that counts as the surface for one pair: the least allowed, or more, up
+/// to a limit, if pools or budgets don't suffice for all faces in reach. It grows within some
+/// frames and shrinks slowly when there is capacity again, so that it doesn't oscillate.
 ///
 /// Haptic thread. The same frames give the same tolerances.
 class SurfaceTolerance
 {
 public:
-    /// Codes of the least and the most; both 0: everything is to be exact.
+    /// Codes of the least and the most; both 0: all must be exact.
     struct Range
     {
         ErrorCode least{0};
         ErrorCode most{0};
     };
-    /// What the last frame found of the surface in reach.
+    /// Capacity that the last frame found for the surface in reach.
     enum class Room : std::uint8_t
     {
-        enough,  ///< For a surface that is finer, too.
-        fitting, ///< Or nothing is in reach.
-        late,    ///< What is to be split isn't yet.
-        short_,  ///< Something of it had no room.
+        enough,  ///< A finer surface would fit, too.
+        fitting, ///< The surface fits, or none is in reach.
+        late,    ///< Splits are still missing.
+        short_,  ///< Some of it did not fit.
     };
 
-    /// One frame; least <= most.
+    /// Updates the tolerance, once per frame; least <= most.
     void fit(Range range, Room room) noexcept
     {
         TACTUS_ASSERT(range.least <= range.most);
@@ -57,17 +57,17 @@ public:
 
     [[nodiscard]] ErrorCode code() const noexcept { return code_; }
 
-    /// A finer surface of this one is this much larger at most, and has to fit as well.
+    /// A finer surface is at most this much larger, and has to fit as well.
     static constexpr double kFinerGrowth = 1.5;
 
 private:
-    /// Frames in which something is late until the tolerance doubles: a front that only follows
-    /// has caught up by then. One in which something is short counts as so many: what is merged
-    /// because of the last time has gone after six.
+    /// Late frames until the tolerance doubles: a front that only lags has caught up by then. A
+    /// short_ frame counts as the number below: merges caused by the previous step are done after
+    /// six.
     static constexpr std::uint32_t kPatience = 24;
     static constexpr std::uint32_t kShortWeight = 4;
     static constexpr std::uint32_t kGrowth = 4;
-    /// Frames with room until it is a quarter of that smaller.
+    /// Consecutive frames with capacity until the tolerance shrinks.
     static constexpr std::uint32_t kCalm = 30;
 
     ErrorCode code_{0};

@@ -12,18 +12,18 @@ namespace tactus
 namespace
 {
 
-constexpr std::uint32_t kOne = 256;   ///< The mean of one split a frame.
-constexpr std::uint32_t kFrames = 32; ///< That are lately.
+constexpr std::uint32_t kOne = 256;   ///< Unit of the mean: one split per frame.
+constexpr std::uint32_t kFrames = 32; ///< Time constant of the mean.
 constexpr std::uint32_t kBudgetMax = 1'000'000;
 
-/// Two fifths of the budget, or all that is the least.
+/// Upper limit: two fifths of the budget, but not below `least`.
 std::uint32_t most_of(std::uint32_t budget, std::uint32_t least) noexcept
 {
     TACTUS_ASSERT(budget <= kBudgetMax);
     return std::max(least, 2 * budget / 5);
 }
 
-/// Half as much again as the mean, and two.
+/// One and a half times the mean, plus two.
 std::uint32_t steady(std::uint32_t mean) noexcept
 {
     return 3 * mean / (2 * kOne) + 2;
@@ -45,7 +45,8 @@ std::uint32_t WorkPace::splits_of(std::uint32_t budget) const noexcept
     return std::clamp(steady(mean_), least, most_of(budget, least));
 }
 
-/// Both together are an eighth more than lately, when there was a merge for each split.
+/// Splits and merges together are limited to nine eighths of the recent total, with one merge per
+/// split.
 std::uint32_t WorkPace::merges_of(std::uint32_t budget) const noexcept
 {
     const std::uint32_t least = (budget + 15) / 16;

@@ -9,27 +9,27 @@
 namespace tactus
 {
 
-/// How much of what may wait a frame does: splits ahead of the tools, and merges behind them. Half
-/// as much again as was split in a frame lately, so what piles up goes down, and no frame has much
-/// more to do than the others. Part of the frame's state: integers, so that a replay agrees.
+/// Steady pace for work that may wait: splits ahead of the tools, and merges behind them. A frame
+/// does up to one and a half times the recent mean of splits, so a backlog shrinks and no frame has
+/// much more to do than the others. Part of the frame's state: integers, so that a replay agrees.
 class WorkPace
 {
 public:
-    /// A frame split so many.
+    /// Records the splits of a frame.
     void count(std::uint32_t splits) noexcept TACTUS_NONBLOCKING;
 
-    /// Up to how many splits, of a budget of at most a million, a frame goes on with what may wait:
-    /// an eighth of it at least, so that the first frames of a motion have some, and two fifths at
-    /// most.
+    /// Number of splits, of a budget of at most a million, up to which a frame does splits that may
+    /// wait: at least an eighth of the budget, so that the first frames of a motion have some, and
+    /// at most two fifths.
     [[nodiscard]] std::uint32_t splits_of(std::uint32_t budget) const noexcept TACTUS_NONBLOCKING;
 
-    /// The same of merges, which make room for splits: fewer after a frame that split many, a
-    /// sixteenth at least.
+    /// The same for merges, which make room for splits: fewer after a frame that split many, at
+    /// least a sixteenth.
     [[nodiscard]] std::uint32_t merges_of(std::uint32_t budget) const noexcept TACTUS_NONBLOCKING;
 
 private:
-    std::uint32_t mean_{0}; ///< Of the splits a frame, in parts of one.
-    std::uint32_t last_{0}; ///< The last frame's.
+    std::uint32_t mean_{0}; ///< Moving average of splits per frame, fixed point.
+    std::uint32_t last_{0}; ///< Splits of the last frame.
 };
 
 } // namespace tactus
