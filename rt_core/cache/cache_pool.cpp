@@ -34,8 +34,8 @@ void CachePool::set_period(std::int64_t period_ns) noexcept
 void CachePool::adopt_arrivals(std::uint32_t budget, std::uint32_t frame,
                                WorkCounters& work) noexcept
 {
-    // Looked at once a frame: the other side makes room at any time, and how many wishes leave must
-    // not depend on when.
+    // Checked once a frame: the other side makes room at any time, and the number of requests must
+    // not depend on that time.
     wish_room_ = static_cast<std::uint32_t>(door.wanted.capacity() - door.wanted.size());
     wish_room_at_start_ = wish_room_;
     refused_class_ = kUrgencyClasses;
@@ -62,8 +62,8 @@ void CachePool::adopt_arrivals(std::uint32_t budget, std::uint32_t frame,
     index_wishes.expire(frame, wish_timeout_frames_);
 }
 
-/// False when the door had no room for one more wish at the start of the frame, or too many are
-/// under way.
+/// Sends a request; false if the door had no room for one more at the start of the frame, or too
+/// many are under way.
 bool CachePool::try_wish(ContentKey key, std::uint32_t owner, std::uint32_t generation) noexcept
 {
     const std::uint32_t open = chunk_wishes.under_way() + index_wishes.under_way();

@@ -22,47 +22,48 @@ namespace tactus
 
 class ChunkCache;
 
-/// What the caches of all models share: who has which slot, who may have one more, and the door.
-/// Haptic thread, but for the other ends of the door.
+/// Shared data of the caches of all models: slot owners, free capacity, and the door. Haptic
+/// thread, except the other ends of the door.
 class CachePool
 {
 public:
-    /// Of up to `models` models, of which `guests` may come and go; with a door of so many slots
-    /// and their base meshes that has room for as many wishes.
+    /// Pool for up to `models` models, `guests` of which are streamed. The door holds all slots and
+    /// base meshes, and as many requests.
     CachePool(Arena& arena, std::uint32_t page_slots, std::uint32_t index_slots,
               std::uint32_t models, std::uint32_t guests = 0) noexcept;
 
-    /// How long a frame is; a period of 1 ms unless told. Wishes wait for answers kWishTimeout_ns.
+    /// Sets the duration of a frame; 1 ms without a call. Requests wait kWishTimeout_ns for
+    /// answers.
     void set_period(std::int64_t period_ns) noexcept;
 
-    /// The frame begins: the caches take over what arrived for them, in its order, up to the first
-    /// slot beyond `budget` and kMaxArrivalsPerFrame, or the first link update beyond
-    /// kMaxLinkUpdatesPerFrame. Wishes that waited for too long are forgotten.
+    /// Begins a frame: the caches adopt their arrivals in order, up to the first slot beyond
+    /// `budget` and kMaxArrivalsPerFrame, or the first link update beyond kMaxLinkUpdatesPerFrame.
+    /// Requests without an answer for too long expire.
     void adopt_arrivals(std::uint32_t budget, std::uint32_t frame,
                         WorkCounters& work) noexcept TACTUS_NONBLOCKING;
-    /// The frame begins: it has taken nothing yet.
+    /// Begins a frame that has taken nothing yet.
     void forget_taken() noexcept { taken_count_ = 0; }
-    /// What the last one took. With the frame's arguments this is all that decides what the frame
-    /// does. Valid until the next one.
+    /// Events that the last frame took. With the frame's arguments they decide all that the frame
+    /// does. Valid until the next adoption.
     [[nodiscard]] DoorTake taken() const noexcept
     {
         return {taken_.first(taken_count_), wish_room_at_start_};
     }
 
-    /// The most urgent class for which a chunk where a tool is found no page in this frame;
-    /// kUrgencyClasses: none.
+    /// Most urgent class for which a chunk at a tool found no page in this frame; kUrgencyClasses:
+    /// none.
     [[nodiscard]] std::uint32_t refused_class() const noexcept { return refused_class_; }
 
-    /// What is known of a slot of index pages.
+    /// State of a slot for index pages.
     struct IndexMeta
     {
         IndexPageId page{};       ///< None: the slot is the transport thread's.
-        std::uint32_t touched{0}; ///< Frame number of the last use.
+        std::uint32_t touched{0}; ///< Frame of the last use.
         std::uint32_t owner{0};
     };
 
     PagePool pages;
-    IdTable index_slot_of; ///< By PagePool::first_key() + page.
+    IdTable index_slot_of; ///< Key: PagePool::first_key() + page.
     std::span<IndexMeta> index_metas;
     WishPool chunk_wishes;
     WishPool index_wishes;
@@ -72,30 +73,30 @@ private:
     friend class ChunkCache;
     friend class CacheValidator;
 
-    /// Pages that are looked at for one to give back, from where the last look ended: the oldest of
-    /// them goes.
+    /// Pages checked for one eviction, from where the last check ended; the oldest of them is
+    /// evicted.
     static constexpr std::uint32_t kEvictionLooks = 128;
 
     [[nodiscard]] bool try_wish(ContentKey key, std::uint32_t owner,
                                 std::uint32_t generation) noexcept TACTUS_NONBLOCKING;
-    /// No page could be given back for want of this class where a tool is.
+    /// Records that a chunk of this class at a tool found no page to evict.
     void refuse(UrgencyClass of) noexcept
     {
         refused_class_ = std::min(refused_class_, static_cast<std::uint32_t>(of));
     }
 
-    /// By owner, while it lives: one cache may take a page of another that is of no use there.
+    /// Caches by owner, while alive: one cache may take an unused page of another.
     std::span<ChunkCache*> caches_;
-    std::span<DoorEvent> taken_; ///< The first `taken_count_` are of this frame.
+    std::span<DoorEvent> taken_; ///< Events of this frame are the first `taken_count_`.
     std::uint32_t taken_count_{0};
-    DoorEvent next_;       ///< That the last frame had no room for.
-    bool has_next_{false}; ///< There is one.
+    DoorEvent next_;       ///< Event for which the last frame had no room.
+    bool has_next_{false}; ///< `next_` is valid.
     std::uint32_t wish_room_at_start_{0};
     std::uint32_t wish_room_{0};
     std::uint32_t wish_timeout_frames_{kWishTimeoutFrames};
     std::uint32_t refused_class_{kUrgencyClasses};
-    std::uint32_t hand_{0};         ///< The next page to look at for giving back,
-    std::uint32_t barren_looks_{0}; ///< and so many looks since the last one that was.
+    std::uint32_t hand_{0};         ///< Next page to check for eviction.
+    std::uint32_t barren_looks_{0}; ///< Checks since the last eviction.
 };
 
 } // namespace tactus

@@ -16,7 +16,7 @@ namespace tactus
 namespace
 {
 
-/// Of all index pages' boxes; of a model without any the origin.
+/// Box of all index pages' boxes; the origin for a model without any.
 QuantumBox extent_of(const ModelHeader& header) noexcept
 {
     QuantumBox extent;
@@ -33,7 +33,7 @@ QuantumBox extent_of(const ModelHeader& header) noexcept
     return extent;
 }
 
-/// Those of eight boxes from `first` on, of `open` ones, that a wider ball meets.
+/// Boxes that a wider sphere meets, of the eight from `first` on and of those in `open`.
 std::uint32_t met_of(std::uint32_t open, std::span<const WantedBall> balls, double wider,
                      const IndexPage& index, const QuantumBox& page_box,
                      std::uint32_t first) noexcept
@@ -67,7 +67,7 @@ ChunkCache::ChunkCache(CachePool& pool, const Kept& kept, const ModelHeader& hea
     , chunk_wishes_(pool.chunk_wishes, pages.owner(), kept.pages)
     , index_wishes_(pool.index_wishes, pages.owner(), kept.index_pages)
 {
-    if (pool.caches_.data() != nullptr) // Not where it is measured.
+    if (pool.caches_.data() != nullptr) // Null when measuring.
     {
         pool.caches_[pages.owner()] = this;
     }
@@ -101,7 +101,7 @@ void ChunkCache::take(const DoorEvent& event, std::uint32_t frame) noexcept
     }
 }
 
-/// The model went while the piece was on its way.
+/// Returns a slot whose piece arrived after the model was removed.
 void ChunkCache::send_back(const DoorEvent& arrival, std::uint32_t frame) noexcept
 {
     WishList& wishes = arrival.key.kind == ContentKind::chunk ? chunk_wishes_ : index_wishes_;
@@ -164,7 +164,7 @@ bool ChunkCache::try_empty(std::uint32_t most, std::uint32_t frame, WorkCounters
     return true;
 }
 
-/// Wishes for it that are older are of no use to the transport thread from here on.
+/// Marks the base mesh as returned; older requests for it are void for the transport thread.
 void ChunkCache::end_base(std::uint32_t frame) noexcept
 {
     has_base_ = false;
@@ -193,7 +193,7 @@ void ChunkCache::adopt(const DoorEvent& arrival, std::uint32_t frame) noexcept
     TACTUS_ASSERT(inserted);
     ++index_pages_used_;
     index_wishes_.arrive(arrival.key.number, frame);
-    forget(IndexPageId{arrival.key.number}); // It has not been searched yet.
+    forget(IndexPageId{arrival.key.number}); // The page has not been searched yet.
 }
 
 void ChunkCache::request_missing(std::span<const RankedRegion> regions, const Budgets& budgets,
@@ -205,7 +205,7 @@ void ChunkCache::request_missing(std::span<const RankedRegion> regions, const Bu
     const bool has_expired = chunk_wishes_.take_expired();
     if (index_wishes_.take_expired() || has_expired)
     {
-        begin_again(); // What was asked for in vain is to be asked for again.
+        begin_again(); // Requests without an answer must be repeated.
     }
     const IndexSearch::Balls urgent = to_quanta(regions, true);
     const IndexSearch::Balls patient = to_quanta(regions, false);
@@ -225,7 +225,7 @@ void ChunkCache::request_missing(std::span<const RankedRegion> regions, const Bu
     search(patient_, budgets, work, faults);
 }
 
-/// The balls near the model in the order of their levels.
+/// The spheres near the model in the order of their levels.
 IndexSearch::Balls ChunkCache::to_quanta(std::span<const RankedRegion> regions,
                                          bool are_urgent) const noexcept
 {
@@ -253,7 +253,7 @@ IndexSearch::Balls ChunkCache::to_quanta(std::span<const RankedRegion> regions,
     return balls;
 }
 
-/// What is due of a search, and some of the pages of its round, until the frame has done `most`.
+/// Searches due groups, then pages of the round, until the frame has done `most`.
 void ChunkCache::search(IndexSearch& search, const Budgets& most, WorkCounters& work,
                         FrameFault& faults) noexcept
 {
@@ -276,7 +276,7 @@ void ChunkCache::search(IndexSearch& search, const Budgets& most, WorkCounters& 
         work.budget.spend(more * group_cost);
         looked += more;
     };
-    // A page is looked at whatever work was spent before; what is left stays due.
+    // One page is searched even with a spent budget; the others stay due.
     const auto may_look = [&]
     { return looked + kGroups <= groups && (looked == 0 || !work.budget.is_spent()); };
     while (may_look())
@@ -288,7 +288,7 @@ void ChunkCache::search(IndexSearch& search, const Budgets& most, WorkCounters& 
         }
         look(*near);
     }
-    // The upper level is cheap to look at: sixteen entries count as much as one page.
+    // The upper level is cheap: sixteen entries count as much as one page.
     const std::uint32_t entries = 16 / kGroups * groups;
     for (std::uint32_t entry = 0; entry < entries && may_look() && search.is_on_round(); ++entry)
     {
@@ -315,7 +315,7 @@ void ChunkCache::request_everything(const Budgets& budgets, WorkCounters& work,
         const IndexPageId page{chunk.value >> kChunksPerIndexPageLog2};
         if (find_index_page(page) == IdTable::kAbsent)
         {
-            // What verifies the chunk comes first.
+            // The page that verifies the chunk comes first.
             static_cast<void>(try_want_index_page(page, work, faults));
             return;
         }
@@ -339,8 +339,8 @@ std::uint32_t ChunkCache::unused_since() const noexcept
     return std::min(urgent_.last_round_began(), patient_.last_round_began());
 }
 
-/// Looks at the groups of a page that are due: asks for what a ball meets there, and finds how far
-/// the balls may go before they are due again. How many groups it looked at.
+/// Searches the due groups of a page: requests chunks that a sphere meets, and finds how far the
+/// spheres may move before the groups are due again. Returns the number of groups.
 std::uint32_t ChunkCache::look_at(IndexSearch::NearPage& near, const Look& look, WorkCounters& work,
                                   FrameFault& faults) noexcept
 {
@@ -372,7 +372,7 @@ std::uint32_t ChunkCache::look_at(IndexSearch::NearPage& near, const Look& look,
     {
         near.until[static_cast<std::size_t>(std::countr_zero(left))] = IndexSearch::kNever;
     }
-    near.due &= (1U << ((index.chunks + 7) / 8)) - 1; // The last page may have fewer.
+    near.due &= (1U << ((index.chunks + 7) / 8)) - 1; // The last page may have fewer groups.
     look_at_boxes(near, index, box, look, work, faults);
     return static_cast<std::uint32_t>(std::popcount(near.due));
 }
@@ -418,7 +418,7 @@ void ChunkCache::look_at_boxes(IndexSearch::NearPage& near, const IndexPage& ind
             float& gap = gaps[i / 8];
             if (const auto way = look.search.gap_to(box_of(index, page_box, i), 1.0))
             {
-                gap = std::min(gap, static_cast<float>(*way)); // Only the wider ones meet it.
+                gap = std::min(gap, static_cast<float>(*way)); // Only wider spheres meet these.
             }
             else if (!try_want(chunk, want, look.most, work, faults))
             {
@@ -434,7 +434,7 @@ void ChunkCache::look_at_boxes(IndexSearch::NearPage& near, const IndexPage& ind
     for (std::uint32_t left = near.due; left != 0; left &= left - 1)
     {
         const auto group = static_cast<std::uint32_t>(std::countr_zero(left));
-        // A chunk of it may have given way to another meanwhile.
+        // A chunk of the group may have been evicted meanwhile.
         const bool is_still_due =
             (waiting >> group & 1U) != 0 || near.until[group] == IndexSearch::kNow;
         near.until[group] =
@@ -442,7 +442,7 @@ void ChunkCache::look_at_boxes(IndexSearch::NearPage& near, const IndexPage& ind
     }
 }
 
-/// Whether the chunk is here, or on its way.
+/// Touches a chunk; true if it is resident or under way.
 bool ChunkCache::try_touch(ChunkId chunk, const Want& want, WorkCounters& work) noexcept
 {
     if (const std::uint32_t slot = pages_->find(chunk); slot != IdTable::kAbsent)
@@ -454,15 +454,15 @@ bool ChunkCache::try_touch(ChunkId chunk, const Want& want, WorkCounters& work) 
     return chunk_wishes_.is_under_way(chunk.value);
 }
 
-/// Asks for what is neither.
+/// Requests a chunk that is neither.
 bool ChunkCache::try_want(ChunkId chunk, const Want& want, const Budgets& most, WorkCounters& work,
                           FrameFault& faults) noexcept
 {
     if (work.requests < most.requests && !chunk_wishes_.has_credit())
     {
         give_page_back(want, work);
-        // One page may not be enough when late answers to expired wishes took slots meanwhile. What
-        // is only foretold may go without: it was worth asking for, no more.
+        // One page may not be enough if late answers to expired requests took slots meanwhile. A
+        // predicted chunk may fail without a fault.
         if (is_present(want.level) && !chunk_wishes_.has_credit())
         {
             faults |= FrameFault::cache_full;
@@ -483,7 +483,7 @@ bool ChunkCache::try_want(ChunkId chunk, const Want& want, const Budgets& most, 
     return true;
 }
 
-/// Whether the page is on its way.
+/// Requests an index page; true if it is under way.
 bool ChunkCache::try_want_index_page(IndexPageId page, WorkCounters& work,
                                      FrameFault& faults) noexcept
 {
@@ -503,8 +503,8 @@ bool ChunkCache::try_want_index_page(IndexPageId page, WorkCounters& work,
     return true;
 }
 
-/// Gives the least recently touched page back, of some, that is not pinned and was of no use for
-/// long enough, to this model or to another that has more than its own.
+/// Evicts the least recently touched of some pages that are not pinned and were unused for long
+/// enough, of this model or of another that has more than its reservation.
 void ChunkCache::give_page_back(const Want& want, WorkCounters& work) noexcept
 {
     const std::uint32_t slots = pages_->capacity();
@@ -535,9 +535,9 @@ void ChunkCache::give_page_back(const Want& want, WorkCounters& work) noexcept
     pool_->caches_[pages_->meta(oldest).owner]->evict(oldest, work);
 }
 
-/// Pages of a kind that were last touched before are for others: none that are kept for the model,
-/// and none that were of use in the last two rounds or in so many frames before. A model that
-/// nobody is near has no rounds.
+/// Last touch before which other models may take a page of a kind: none of the pages reserved for
+/// the model, and none used in the last two rounds or in `age` frames before. A model without
+/// requests has no rounds.
 std::uint32_t ChunkCache::lends_before(const WishList& wishes, std::uint32_t frame,
                                        std::uint32_t age) const noexcept
 {
@@ -545,14 +545,14 @@ std::uint32_t ChunkCache::lends_before(const WishList& wishes, std::uint32_t fra
     return wishes.has_more_than_its_own() ? (is_idle ? frame : lends_before_) - age : 0;
 }
 
-/// What is of no use gives way after two rounds of both searches.
+/// Begins new rounds; unused pages may be evicted after two rounds of both searches.
 void ChunkCache::begin_again() noexcept
 {
     urgent_.begin_again();
     patient_.begin_again();
 }
 
-/// It has come or gone.
+/// Drops certificates of a page that was loaded or evicted.
 void ChunkCache::forget(IndexPageId page) noexcept
 {
     urgent_.forget(page);

@@ -16,10 +16,10 @@ namespace tactus
 namespace
 {
 
-/// More than what double precision takes from a distance in quanta, as a share of it.
+/// Bound on double precision's rounding of a distance in quanta, as a share of it.
 constexpr double kRounding = 1e-12;
 
-/// How far a ball's centre moved, and how much the wider one grew.
+/// Motion of a sphere's centre, plus the growth of the wider sphere.
 double way_between(const QuantumBall& before, const QuantumBall& now) noexcept
 {
     double moved_sq = 0.0;
@@ -62,9 +62,9 @@ BallLanes::BallLanes(std::span<const WantedBall> balls, double wider) noexcept
 
 KernelPage BallLanes::page(const QuantumBox& box) const noexcept
 {
-    // A step has less than 18 bits. Of all sizes' sum the gap is off by less than 8 x 2^-24.
+    // A step has less than 18 bits. The gap is off by less than 8 x 2^-24 of the sum of all sizes.
     constexpr double kSlack = 0x1p-20;
-    // Squares of what is larger may be no numbers any more: then single precision decides nothing.
+    // Squares of larger sizes may overflow: single precision then decides nothing.
     constexpr double kLargest = 1e18;
     KernelPage page{};
     double size = size_;
@@ -89,7 +89,7 @@ void IndexSearch::aim(const Balls& balls, std::uint32_t pages, std::uint32_t fra
     wider_ = keeps_rounds ? kWider : 1.0;
     if (balls.empty())
     {
-        // Nothing is of use here: whatever was touched before is not.
+        // Nothing touched before is in use any more.
         is_kept_ = false;
         has_due_ = false;
         near_.clear();
@@ -113,8 +113,7 @@ void IndexSearch::aim(const Balls& balls, std::uint32_t pages, std::uint32_t fra
     find_due();
 }
 
-/// How far the farthest ball went since the last frame; none where they are others, or others of
-/// them are of one level.
+/// Motion of the farthest sphere since the last frame; none if the spheres or their levels changed.
 std::optional<double> IndexSearch::way_of(const Balls& balls) const noexcept
 {
     if (balls.size() != kept_.size())
@@ -164,8 +163,8 @@ void IndexSearch::begin_round(const Balls& balls, double way, std::uint32_t fram
     ended_ = frame;
 }
 
-/// The balls as the frame has them, each with its most urgent level of the round. Where one is more
-/// urgent than before, what it meets is to be touched again.
+/// Keeps the frame's spheres, each with its most urgent level of the round. If one is more urgent
+/// than before, the pages that it meets must be touched again.
 void IndexSearch::keep(const Balls& balls) noexcept
 {
     bool is_more_urgent = false;

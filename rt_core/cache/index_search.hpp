@@ -17,7 +17,7 @@
 namespace tactus
 {
 
-/// 0 is the most urgent: two for each UrgencyClass, a tool that is there and one that is predicted.
+/// Level of a region, 0 being the most urgent: two for each UrgencyClass, at a tool and predicted.
 [[nodiscard]] constexpr std::uint32_t level_of(UrgencyClass of, bool is_present) noexcept
 {
     return 2 * static_cast<std::uint32_t>(of) + (is_present ? 0 : 1);
@@ -32,41 +32,41 @@ namespace tactus
 }
 inline constexpr std::uint32_t kWantedLevels = 2 * kUrgencyClasses;
 
-/// A ball in which chunks are wanted, in quanta.
+/// A sphere in which chunks are wanted, in quanta.
 struct WantedBall
 {
     QuantumBall ball;
     std::uint32_t level{0};
 };
 
-/// Balls as the kernels see them, around the first one's centre.
+/// Spheres as the kernels use them, around the first one's centre.
 class BallLanes
 {
 public:
-    /// Each ball's radius is so many times its own.
+    /// Multiplies each sphere's radius by `wider`.
     BallLanes(std::span<const WantedBall> balls, double wider) noexcept;
 
     [[nodiscard]] const KernelBall* from(std::size_t ball) const noexcept { return &lanes_[ball]; }
-    /// An index page with this box, around the same point.
+    /// Kernel page of an index page with this box, around the same point.
     [[nodiscard]] KernelPage page(const QuantumBox& box) const noexcept;
 
 private:
     StaticVector<KernelBall, kMaxRankedRegions> lanes_;
     std::array<double, 3> around_{};
-    double size_{0.0}; ///< What the balls add to a page's slack.
+    double size_{0.0}; ///< Share of the spheres in a page's slack.
 };
 
-/// Which boxes of a model's index are to be looked at, so that no chunk that a ball meets is
+/// Finds the boxes of a model's index that must be searched so that no chunk that a sphere meets is
 /// missed.
 ///
-/// A *round* goes over all index pages and lists those that the balls may come near. Of each page
-/// on the list eight *groups* of eight boxes have a certificate: so far the balls may move and grow
-/// before one of them can meet a box that it didn't when the group was looked at. A frame looks at
-/// the groups whose certificate is used up. The list holds until the balls have gone farther than
-/// the round's margin; a round begins then, and kRestFrames after the last one's end, by which all
-/// that is of use is touched again.
+/// A *round* visits all index pages and lists those that the spheres may come near. On each listed
+/// page, eight *groups* of eight boxes have a certificate: the distance by which the spheres may
+/// move and grow before one of them can meet a box that it didn't meet when the group was searched.
+/// A frame searches the groups whose certificate is used up. The list holds until the spheres have
+/// moved farther than the round's margin. A new round begins then, and also kRestFrames after the
+/// last one's end, so that all pages in use are touched again.
 ///
-/// Where a ball of a more urgent level comes to a box counts, too, and where a ball becomes more
+/// A sphere of a more urgent level that reaches a box counts, too, and if a sphere becomes more
 /// urgent all groups are due. Haptic thread.
 class IndexSearch
 {
@@ -75,16 +75,16 @@ public:
     static constexpr std::uint32_t kGroups = kChunksPerIndexPage / 8;
     static constexpr std::uint32_t kAllGroups = (1U << kGroups) - 1;
 
-    /// A page that the balls may come near.
+    /// A page that the spheres may come near.
     struct NearPage
     {
         IndexPageId page;
-        std::uint32_t due{0}; ///< The groups to look at in this frame, a bit each.
-        /// A wider ball meets its box; until then the certificates are of that box.
+        std::uint32_t due{0}; ///< Groups to search in this frame, one bit each.
+        /// A wider sphere meets the page's box; until then the certificates are that box's.
         bool is_met{false};
-        std::array<float, kGroups> until{}; ///< So far on the balls' way each group's holds.
+        std::array<float, kGroups> until{}; ///< Motion up to which each group's certificate holds.
     };
-    /// A group that has to be looked at in the next frame, and one without a box that matters.
+    /// Value for a group due in the next frame; below, for one without a box that matters.
     static constexpr float kNow = -1.0F;
     static constexpr float kNever = 0x1p120F;
 
@@ -94,69 +94,69 @@ public:
     {
     }
 
-    /// This frame's balls, the most urgent first; they must stay until the frame's last look.
-    /// `pages` are all index pages of the model. Without `keeps_rounds` every frame begins a round.
+    /// Sets this frame's spheres, the most urgent first; they must stay until the frame's last
+    /// search. `pages` are all index pages of the model. Without `keeps_rounds` every frame begins
+    /// a round.
     void aim(const Balls& balls, std::uint32_t pages, std::uint32_t frame,
              bool keeps_rounds) noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] std::span<const WantedBall> balls() const noexcept { return balls_; }
-    /// What balls a little wider meet is of use, and as urgent as if they met it; only what they
-    /// meet as they are is asked for. So what a ball has just left stays, and what it will meet
-    /// next has the urgency of where it is. So many times their radius.
+    /// Factor of the wider spheres. Chunks that a wider sphere meets are in use, with its urgency;
+    /// only chunks that the sphere itself meets are requested. So chunks that a sphere has just
+    /// left stay, and those that it reaches next have its urgency.
     [[nodiscard]] double wider() const noexcept { return wider_; }
-    /// The most urgent level of a ball in this round, as which it touches what it meets: a pair
-    /// that touches now and then is one that touches.
+    /// Most urgent level of a sphere in this round, with which it touches pages: a pair that
+    /// touches now and then counts as touching.
     [[nodiscard]] std::uint32_t touch_level(std::size_t ball) const noexcept
     {
         return is_kept_ ? kept_[ball].level : balls_[ball].level;
     }
 
-    /// Whether nothing is to be looked at in this frame.
+    /// True if this frame has nothing to search.
     [[nodiscard]] bool is_at_rest() const noexcept { return !is_on_round() && !has_due_; }
-    /// The next page of the list with groups that are due, each once a frame; null: no more.
+    /// The next listed page with groups that are due, each once a frame; null: no more.
     [[nodiscard]] NearPage* next_due() noexcept TACTUS_NONBLOCKING;
 
-    /// Whether the round has not come to its end.
+    /// True if the round has not ended.
     [[nodiscard]] bool is_on_round() const noexcept { return pages_left_ > 0; }
-    /// The round's next page; on a round.
+    /// The round's next page, during a round.
     [[nodiscard]] IndexPageId next(std::uint32_t frame) noexcept TACTUS_NONBLOCKING;
-    /// Whether a wider ball may meet the box before the next round.
+    /// True if a wider sphere may meet the box before the next round.
     [[nodiscard]] bool may_come_to(const QuantumBox& box) const noexcept TACTUS_NONBLOCKING;
-    /// Lists a page, all groups of which are due. Where the list is full every frame begins a
-    /// round.
+    /// Lists a page, all groups of which are due. With a full list every frame begins a round.
     [[nodiscard]] NearPage& add(IndexPageId page) noexcept TACTUS_NONBLOCKING;
 
-    /// How far the balls may move before one, so many times wider, can meet the box; none when one
-    /// does.
+    /// Motion before a sphere, widened by this factor, can meet the box; none if one does.
     [[nodiscard]] std::optional<double> gap_to(const QuantumBox& box,
                                                double wider) const noexcept TACTUS_NONBLOCKING;
-    /// The end of a certificate that holds for so much motion from now on.
+    /// End of a certificate that holds for a motion of `gap` from now on.
     [[nodiscard]] float until(double gap) const noexcept
     {
-        // Less by more than all roundings of ways.
+        // Reduced by more than all roundings of motions.
         return static_cast<float>((way_ + gap) * (1.0 - 0x1p-22));
     }
 
-    /// What the page's certificates rest on has changed: it came or went.
+    /// Drops certificates that depend on a page that was loaded or evicted.
     void forget(IndexPageId page) noexcept TACTUS_NONBLOCKING;
-    /// The chunk has gone.
+    /// Drops certificates that depend on a chunk that was evicted.
     void forget(ChunkId chunk) noexcept TACTUS_NONBLOCKING;
-    /// The next frame begins a round.
+    /// Begins a round in the next frame.
     void begin_again() noexcept { is_kept_ = false; }
 
-    /// A page that was of use at least once in two rounds was touched in this frame or later.
+    /// Pages that were in use at least once in two rounds were touched in this frame or later.
     [[nodiscard]] std::uint32_t last_round_began() const noexcept { return last_round_began_; }
 
-    /// Between two rounds: pages stay touched all but as soon as without a rest.
+    /// Frames between two rounds: pages in use are touched nearly as often as without the pause.
     static constexpr std::uint32_t kRestFrames = 16;
-    /// A round's margin is what the balls go in a rest at the frame's speed, within these shares of
-    /// the smallest one's radius.
+    /// Bounds of a round's margin as shares of the smallest sphere's radius; within them it is the
+    /// motion of the spheres in kRestFrames at the frame's speed.
     static constexpr double kLeastMargin = 0.1;
     static constexpr double kMostMargin = 1.0;
-    /// How much wider balls are.
+    /// Factor of the wider spheres.
     static constexpr double kWider = 1.1;
-    /// Balls that a round is kept for: twelve spheres that move. With more every frame begins one.
+    /// Spheres for which a round is kept: twelve moving tools with spheres. With more every frame
+    /// begins one.
     static constexpr std::size_t kKeptBalls = 64;
-    /// Pages on the list.
+    /// Capacity of the list.
     static constexpr std::size_t kMaxNear = 32;
 
 private:
@@ -166,24 +166,25 @@ private:
     void find_due() noexcept;
     [[nodiscard]] NearPage* find(IndexPageId page) noexcept;
 
-    StaticVector<WantedBall, kKeptBalls> kept_; ///< The last frame's balls, with touch levels.
+    StaticVector<WantedBall, kKeptBalls> kept_; ///< The last frame's spheres, with touch levels.
     StaticVector<NearPage, kMaxNear> near_;
     NearPage unlisted_;
-    QuantumBox region_; ///< No ball leaves it during the round.
+    QuantumBox region_; ///< Region that no sphere leaves during the round.
     std::span<const WantedBall> balls_;
-    bool is_kept_{false}; ///< The list and its certificates are of kept_.
+    bool is_kept_{false}; ///< The list and its certificates belong to kept_.
     bool has_due_{false};
     double wider_{1.0};
     double margin_{0.0};
-    double way_{0.0};           ///< How far any ball moved and grew at most since the round began.
-    std::size_t turn_{0};       ///< Next place of the list to look at,
-    std::size_t turns_left_{0}; ///< and how many of them in this frame.
-    std::uint32_t cursor_{0};   ///< Next page to look at.
+    /// Bound on motion and growth of the spheres since the round began.
+    double way_{0.0};
+    std::size_t turn_{0};       ///< Next place of the list to check.
+    std::size_t turns_left_{0}; ///< Places left in this frame.
+    std::uint32_t cursor_{0};   ///< Next page to check.
     std::uint32_t pages_{0};
-    std::uint32_t pages_left_{0};    ///< Of the round.
+    std::uint32_t pages_left_{0};    ///< Pages left of the round.
     std::uint32_t ended_{0};         ///< Frame of its last page.
-    std::uint32_t round_began_;      ///< Frame in which the cursor last passed zero,
-    std::uint32_t last_round_began_; ///< and the time before.
+    std::uint32_t round_began_;      ///< Frame in which the cursor last passed zero.
+    std::uint32_t last_round_began_; ///< Frame of the pass before.
 };
 
 } // namespace tactus

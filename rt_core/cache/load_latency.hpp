@@ -8,8 +8,8 @@
 namespace tactus
 {
 
-/// How many frames pass from a wish to its piece, lately: a smoothed mean and mean deviation, as
-/// RFC 6298 estimates a round trip.
+/// Frames from a request to the piece's arrival: a smoothed mean and mean deviation, as RFC 6298
+/// estimates a round trip.
 class LoadLatency
 {
 public:
@@ -28,9 +28,9 @@ public:
     }
 
     [[nodiscard]] double mean_frames() const noexcept { return mean_; }
-    /// What nearly all pieces stay within.
+    /// Bound that nearly all pieces keep.
     [[nodiscard]] double most_frames() const noexcept { return mean_ + 2.0 * deviation_; }
-    /// Whether a piece has come yet; until then the others are those of a local network at 1 kHz.
+    /// True once a piece has arrived; before that the values are those of a local network at 1 kHz.
     [[nodiscard]] bool is_measured() const noexcept { return is_measured_; }
 
 private:

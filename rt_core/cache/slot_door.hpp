@@ -14,47 +14,47 @@
 namespace tactus
 {
 
-/// A slot that the haptic thread has no more use for. A model's base mesh goes after all its pages,
-/// and so do cells that were given back for it.
+/// A slot that the haptic thread returns. A model's base mesh is returned after all its pages;
+/// cells returned without a mesh are confirmed the same way.
 struct FreedSlot
 {
     ContentKind kind{ContentKind::chunk};
-    std::uint32_t slot{0};       ///< Of a base mesh: the model that it is of.
-    std::uint32_t generation{0}; ///< Of a base mesh: older wishes for it are of no use any more.
+    std::uint32_t slot{0};       ///< Slot; for a base mesh its model.
+    std::uint32_t generation{0}; ///< Generation before which requests for a base mesh are void.
 };
 
-/// A piece that the haptic thread wants. Wishes of an older generation may be dropped.
+/// A request of the haptic thread for a piece. Requests of an older generation may be dropped.
 struct PieceWish
 {
-    ContentKey key; ///< Of a base mesh, the number is the first cell of those that are lent for it.
+    ContentKey key; ///< Key of the piece; for a base mesh, the number is the first of the cells
+                    ///< lent for it.
     std::uint32_t generation{0};
-    std::uint8_t owner{0}; ///< The model that the piece is of.
+    std::uint8_t owner{0}; ///< Model that the piece belongs to.
 };
 
-/// The one door between the transport thread and the haptic thread, for all models. Slots, words of
-/// linked bits and wishes cross it, each kind in one order, and nothing else.
+/// Queues between the transport thread and the haptic thread, for all models. Only slots, words of
+/// linked bits and requests pass through them, each kind in order.
 ///
 /// A slot of PageSlots (a page, or an index page), and the cells of a base mesh, which the haptic
-/// thread lends with its wish, have one owner at a time:
+/// thread lends with its request, have one owner at a time:
 ///
 ///     transport: loan (parse into it) -> fill -> hand over (`arrived`)
 ///     haptic:    adopt -> use -> evict -> free (`freed`) -> the transport's again
 ///
-/// Cells that no base mesh came for are given back through `arrived`, and the haptic thread says
-/// that it knows through `freed`, so that no older wish lends them again.
+/// Cells for which no base mesh arrived are returned through `arrived`; the haptic thread confirms
+/// that through `freed`, so that no older request lends them again.
 ///
 /// At start every slot is the transport's. `arrived` keeps arrivals and link updates in one order,
-/// so what a frame learns is what it popped, however the threads ran.
+/// so a frame's input is what it popped, independent of thread timing.
 struct SlotDoor
 {
-    /// Wishes of all models under way at once: what the transport side remembers. With more it
-    /// would forget the oldest, however urgent, and what it forgets is asked again when it times
-    /// out.
+    /// Requests of all models under way at once, the memory of the transport side. With more it
+    /// would drop the oldest, regardless of urgency, and dropped requests are repeated only after
+    /// the timeout.
     static constexpr std::uint32_t kOpenWishes = 256;
 
-    /// `slots` are all that may cross it. Room for each in both queues, so those never refuse, and
-    /// for link updates while those leave arrivals their room (has_room_for_update()); for so many
-    /// wishes.
+    /// Queues for `slots` slots in all, which always fit, for link updates as long as those leave
+    /// room for arrivals (has_room_for_update()), and for `wishes` requests.
     SlotDoor(Arena& arena, std::size_t slots, std::size_t wishes) noexcept
         : arrived(arena.take<DoorEvent>(slots + kMaxLinkUpdatesPerFrame))
         , freed(arena.take<FreedSlot>(std::max<std::size_t>(slots, 1)))
@@ -62,8 +62,8 @@ struct SlotDoor
     {
     }
 
-    /// Whether a link update may be pushed: with fewer than kMaxLinkUpdatesPerFrame events waiting
-    /// no more than that many updates are ever among them, and every arrival finds room.
+    /// True if a link update may be pushed. Updates need fewer than kMaxLinkUpdatesPerFrame waiting
+    /// events, so at most that many updates are in the queue, and every arrival finds room.
     [[nodiscard]] bool has_room_for_update() const noexcept
     {
         return arrived.size() < kMaxLinkUpdatesPerFrame;

@@ -30,8 +30,8 @@ public:
     }
 
 private:
-    /// Freed slots and base meshes are on their way to the transport thread, which may take them
-    /// meanwhile.
+    /// Checks freed slots and base meshes, which are on their way to the transport thread; it may
+    /// take them meanwhile.
     void check_freed() noexcept
     {
         const CachePool& pool = *cache_.pool_;

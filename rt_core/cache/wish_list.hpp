@@ -19,22 +19,22 @@ namespace tactus
 
 class WishList;
 
-/// The wishes of all models for one kind of slot. Never more pieces are asked for than the
-/// transport thread has slots. 28 B a slot. Haptic thread only.
+/// Requests of all models for one kind of slot, never more than the transport thread has slots. 28
+/// B per slot. Haptic thread only.
 class WishPool
 {
 public:
-    /// The transport thread has all slots at first.
+    /// The transport thread has all slots at start.
     WishPool(Arena& arena, std::uint32_t slots) noexcept
         : room_(slots), place_of_(arena, slots), wishes_(arena.take<Wish>(slots))
     {
     }
 
-    /// Forgets wishes that went unanswered for too long, so that they may be asked again. Looks at
-    /// so many a call that each is looked at once in `timeout` calls. `timeout` > 0, in frames.
+    /// Expires requests without an answer for too long, so that they may be repeated. Checks enough
+    /// requests per call to check each once in `timeout` calls. `timeout` > 0, in frames.
     void expire(std::uint32_t frame, std::uint32_t timeout = kWishTimeoutFrames) noexcept;
 
-    /// Of all models.
+    /// Requests of all models.
     [[nodiscard]] std::uint32_t under_way() const noexcept { return place_of_.size(); }
 
 private:
@@ -43,8 +43,9 @@ private:
 
     struct Wish
     {
-        std::uint32_t key{IdTable::kAbsent}; ///< PagePool::first_key() + the piece's number.
-        std::uint32_t asked{0};              ///< In this frame.
+        std::uint32_t key{IdTable::kAbsent}; ///< Key of the piece: PagePool::first_key() + its
+                                             ///< number.
+        std::uint32_t asked{0};              ///< Frame of the request.
         WishList* list{nullptr};
     };
 
@@ -56,12 +57,12 @@ private:
     std::uint32_t cursor_{0};
 };
 
-/// One model's part of it: which pieces are under way, and how many of the slots the model has,
-/// those that wishes wait for included. No more than other models leave. Does not move.
+/// One model's part of the pool: its pieces under way, and the number of its slots, including those
+/// that requests wait for, within what other models leave. Does not move.
 class WishList
 {
 public:
-    /// The pool outlives the list; `least` slots are kept for the model.
+    /// The pool outlives the list; `least` slots are reserved for the model.
     WishList(WishPool& pool, std::uint32_t owner, std::uint32_t least) noexcept
         : pool_(&pool), first_key_(PagePool::first_key(owner)), share_(pool.room_.promise(least))
     {
@@ -76,7 +77,7 @@ public:
     {
         return pool_->place_of_.find(first_key_ + number) != IdTable::kAbsent;
     }
-    /// Whether one more piece may be asked for.
+    /// True if one more piece may be requested.
     [[nodiscard]] bool has_credit() const noexcept { return pool_->room_.left_for(share_) > 0; }
     void ask(std::uint32_t number, std::uint32_t frame) noexcept
     {
@@ -92,7 +93,7 @@ public:
         TACTUS_ASSERT(inserted);
         ++under_way_;
     }
-    /// The piece has come, in a slot that is no longer the transport thread's.
+    /// Records a piece that arrived, in a slot that is no longer the transport thread's.
     void arrive(std::uint32_t number, std::uint32_t frame) noexcept
     {
         const std::uint32_t place = pool_->place_of_.find(first_key_ + number);
@@ -103,12 +104,12 @@ public:
             return;
         }
         TACTUS_ASSERT(slots_had() < pool_->room_.capacity());
-        pool_->room_.take_unasked(share_); // Its wish had expired: the slot was anybody's.
+        pool_->room_.take_unasked(share_); // The request had expired, so its slot was not reserved.
     }
-    /// Whether a wish expired since this was last asked.
+    /// True if a request expired since the last call.
     [[nodiscard]] bool take_expired() noexcept { return std::exchange(has_expired_, false); }
     void give_back_slot() noexcept { pool_->room_.give_back(share_); }
-    /// Whether the model has more than what is kept for it.
+    /// True if the model has more than its reservation.
     [[nodiscard]] bool has_more_than_its_own() const noexcept
     {
         return share_.used > share_.promised;
@@ -116,7 +117,7 @@ public:
     [[nodiscard]] std::uint32_t slots_had() const noexcept { return share_.used - under_way_; }
     [[nodiscard]] std::uint32_t under_way() const noexcept { return under_way_; }
 
-    /// From asking to arriving, of what came before it expired.
+    /// Time from request to arrival, of pieces that arrived before their request expired.
     [[nodiscard]] const LoadLatency& latency() const noexcept { return latency_; }
 
 private:
