@@ -11,22 +11,22 @@ namespace
 {
 
 /// Time constants of the smoothed velocity and acceleration: slower than a tremor, faster than a
-/// turn.
+/// change of direction.
 constexpr double kVelocityTime_s = 0.01;
 constexpr double kAccelerationTime_s = 0.02;
 /// Weight of the newest error among all of them.
 constexpr double kNewestError = 0.2;
-/// Another way is believed when its errors are below this share of the present one's.
+/// Share of the present method's error below which another method replaces it.
 constexpr double kClearlyBetter = 0.9;
-/// No ball is wider than by this share of what is asked for round the tool: its pages grow with the
-/// square, and a forecast that errs by more is worth no place in the cache. At 2 diag/s half of it
-/// and twice it leave more frames open.
+/// Largest widening of a sphere, as a share of what is requested round the tool. Its pages grow
+/// with the square, and a forecast with a larger error is not worth its pages. At 2 diag/s, half
+/// and twice this value leave more frames open.
 constexpr double kWidest = 1.0;
-/// The shares of the lead after which places are foretold.
+/// Shares of the prediction horizon after which places are predicted.
 constexpr std::array<double, 4> kLeads{0.25, 0.5, 0.75, 1.0};
 
-/// Each ball moved by the region's centre and wider by its radius. A full ranking leaves the later
-/// pairs' balls out: only those where a tool is now are missed.
+/// Adds each sphere moved by the region's centre and widened by its radius. A full ranking drops
+/// later pairs' spheres; only those at a tool's present place are missed.
 void add_balls(const RankedRegion& moved, const CoreCover& balls, RegionRanking& ranking) noexcept
 {
     for (const Ball& ball : balls)
@@ -88,7 +88,7 @@ void RegionPredictor::judge_forecasts() noexcept
     }
 }
 
-/// How far the core's centre goes in this time, no faster than it can.
+/// Displacement of the core's centre in this time, limited by its maximum speed.
 Vec3 RegionPredictor::way_in(Prediction way, double lead_s) const noexcept
 {
     if (way == Prediction::local_neighbours)
@@ -99,7 +99,7 @@ Vec3 RegionPredictor::way_in(Prediction way, double lead_s) const noexcept
     Vec3 ahead = motion_.way_m;
     if (way == Prediction::quadratic)
     {
-        velocity += kVelocityTime_s * acceleration_; // By which smoothing lags behind.
+        velocity += kVelocityTime_s * acceleration_; // Correction of the smoothing's lag.
         ahead += 0.5 * lead_s * lead_s * acceleration_;
     }
     ahead += lead_s * velocity;

@@ -13,45 +13,45 @@
 namespace tactus
 {
 
-/// What one frame knows of how a pair's tool moves. Model frame, SI.
+/// Motion of a pair's tool in one frame. Model frame, SI.
 struct PairMotion
 {
-    Vec3 center_m{0.0, 0.0, 0.0};  ///< Of the core, where the surface lets it be.
-    Vec3 way_m{0.0, 0.0, 0.0};     ///< From there to where the hand has it.
-    double speed_max_m_per_s{0.0}; ///< At which the tool comes after the hand.
-    double elapsed_s{0.0};         ///< Since the frame before; > 0.
-    /// The surface as the last query found it: towards the tool, and how far the tool is from
-    /// touching it. Zero: nothing was near.
+    Vec3 center_m{0.0, 0.0, 0.0};  ///< Centre of the core at the proxy.
+    Vec3 way_m{0.0, 0.0, 0.0};     ///< Vector from there to the device's goal.
+    double speed_max_m_per_s{0.0}; ///< Limit of the tool's speed towards its goal.
+    double elapsed_s{0.0};         ///< Time since the last frame; > 0.
+    /// Surface of the last query: direction towards the tool, and the tool's distance from contact.
+    /// Zero: none nearby.
     Vec3 outward{0.0, 0.0, 0.0};
     double gap_m{0.0};
 };
 
-/// Contact-region prediction: where will this pair's tool be after the time that loading takes? One
+/// Contact-region prediction: the place of this pair's tool after the time that loading takes. One
 /// instance per pair of tool and object; haptic thread.
 ///
-/// All ways foretell the tool's place after the lead; when that time has come each is compared with
-/// where the tool is, and foretells anew. What a way erred of late is how much wider its balls are
-/// made, at most as much again, and the automatic choice is the way that erred least. So speed,
-/// latency and noise decide by what they do to a forecast.
+/// All methods predict the tool's place after the prediction horizon. At its end each is compared
+/// with the tool's place and predicts again. A method's recent error widens its spheres, at most to
+/// twice the size, and the automatic choice is the method with the least error. So speed, latency
+/// and noise act through their effect on a forecast.
 class RegionPredictor
 {
 public:
-    /// `lead_s` > 0: how far ahead things have to be asked for at present.
+    /// Observes a frame. `lead_s` > 0: the present prediction horizon of requests.
     void observe(const PairMotion& motion, double lead_s) noexcept TACTUS_NONBLOCKING;
 
-    /// Adds the balls to the ranking, most urgent first, each wider by `reach_m`: where they are,
-    /// and where they go with the core's centre in each quarter of the lead, so that there is no
-    /// gap on the way of a tool that had to wait.
+    /// Adds the spheres to the ranking, most urgent first, each widened by `reach_m`: at their
+    /// present place, and moved with the core's centre at each quarter of the horizon, so that
+    /// there is no gap on the path of a tool that had to wait.
     void rank(Prediction way, ModelId model, const CoreCover& balls, double reach_m,
               RegionRanking& ranking) const noexcept TACTUS_NONBLOCKING;
 
-    /// Only where the balls are, of what stands still in its own frame.
+    /// Adds the spheres at their present place only, for tools at rest in the model's frame.
     static void rank_present(ModelId model, const CoreCover& balls, double reach_m,
                              RegionRanking& ranking) noexcept TACTUS_NONBLOCKING;
 
-    /// The hand's.
+    /// Velocity of the device's goal.
     [[nodiscard]] const Vec3& velocity_m_per_s() const noexcept { return velocity_; }
-    /// What Prediction::automatic stands for at present.
+    /// Method in use for Prediction::automatic.
     [[nodiscard]] Prediction believed() const noexcept { return believed_; }
 
 private:
@@ -69,7 +69,7 @@ private:
     Vec3 velocity_{0.0, 0.0, 0.0};
     Vec3 acceleration_{0.0, 0.0, 0.0};
     bool has_hand_{false};
-    std::array<Vec3, kPredictions> forecasts_m_{}; ///< For forecast_left_s_ from now.
+    std::array<Vec3, kPredictions> forecasts_m_{}; ///< Places in forecast_left_s_ from now.
     double forecast_left_s_{0.0};
     bool has_forecasts_{false};
     std::array<double, kPredictions> errors_m_{};
