@@ -17,7 +17,7 @@
 namespace tactus
 {
 
-/// One face of the base mesh: the coarsest cut, always resident.
+/// One face of the base mesh, the coarsest cut, which is always resident.
 struct BaseFace
 {
     std::array<VertexId, 3> corners{};
@@ -25,7 +25,7 @@ struct BaseFace
     ErrorCode error{0};
 };
 
-/// The base mesh as a reader sees it; in the model's frame.
+/// The base mesh as a reader uses it; in the model's frame.
 struct BaseView
 {
     std::span<const Vec3f> positions_m;
@@ -37,24 +37,24 @@ struct BaseMesh
 {
     std::span<Vec3f> positions_m;
     std::span<BaseFace> faces;
-    /// Per face: which record splits it first, as VsplitRecord::next.
+    /// Record that splits each face first, as VsplitRecord::next.
     std::span<std::uint32_t> next;
 
     [[nodiscard]] BaseView view() const noexcept { return {positions_m, faces}; }
-    /// One mesh of several that lie in these spans, in cells of its own from `first` on.
+    /// One mesh of several in these spans, in its own cells from `first` on.
     [[nodiscard]] BaseMesh part(std::uint32_t first, const ModelCounts& counts) const noexcept
     {
         return {positions_m.subspan(first, counts.base_vertices),
                 faces.subspan(first, counts.base_faces), next.subspan(first, counts.base_faces)};
     }
-    /// Cells that a mesh of these counts takes: of a vertex, a face and its `next` each.
+    /// Number of cells of a mesh with these counts; a cell holds a vertex, a face and its `next`.
     [[nodiscard]] static std::uint32_t cells_of(const ModelCounts& counts) noexcept
     {
         return std::max(counts.base_vertices, counts.base_faces);
     }
 };
 
-/// How many bits each field of a coded base mesh takes: as many as its largest value.
+/// Number of bits of each field of a coded base mesh, by its largest value.
 struct BaseLayout
 {
     std::array<std::uint32_t, 3> axis_bits{};
@@ -74,7 +74,7 @@ struct BaseLayout
     }
 };
 
-/// Bytes of the coded base mesh: the bits of all fields, a checksum. Of a header that parses.
+/// Bytes of the coded base mesh: the bits of all fields, and a checksum. The header must be valid.
 [[nodiscard]] constexpr std::uint64_t coded_base_bytes(const HeaderFields& fields) noexcept
 {
     const BaseLayout layout(fields);
@@ -83,8 +83,9 @@ struct BaseLayout
     return (fields.base_vertices * vertex + fields.base_faces * face + 7) / 8 + kChecksumBytes;
 }
 
-/// Reads a coded base mesh into `mesh`, whose spans have the header's counts (asserted). On refusal
-/// the content of `mesh` is unspecified, nothing else is touched. Time by the bytes.
+/// Reads a coded base mesh into `mesh`, whose spans must have the header's counts (asserted). On
+/// refusal the content of `mesh` is unspecified, nothing else is changed. Time is linear in the
+/// bytes.
 [[nodiscard]] Result<Done, SpmRefusal> parse_base_mesh(std::span<const std::byte> bytes,
                                                        const ModelHeader& header,
                                                        const BaseMesh& mesh) noexcept;

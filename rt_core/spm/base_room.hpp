@@ -13,16 +13,16 @@
 namespace tactus
 {
 
-/// Which cells of the base meshes' memory are taken: each model that is here has one range of them.
-/// Haptic thread; at most kMaxModels steps a call.
+/// Taken cells of the base meshes' memory: each resident model has one range of them. Haptic
+/// thread; at most kMaxModels steps a call.
 class BaseRoom
 {
 public:
     BaseRoom() noexcept = default;
     explicit BaseRoom(std::uint32_t cells) noexcept : cells_(cells) {}
 
-    /// The first of `count` free cells in a row, the lowest there are; they are taken then. None
-    /// where no gap is that long.
+    /// Takes the lowest free range of `count` cells and returns its first cell; none if no gap is
+    /// that long.
     [[nodiscard]] std::optional<std::uint32_t> try_take(std::uint32_t count) noexcept
     {
         TACTUS_ASSERT(count > 0);
@@ -42,7 +42,7 @@ public:
         return first;
     }
 
-    /// Of what try_take() gave.
+    /// Returns a range that try_take() gave.
     void give_back(std::uint32_t first) noexcept
     {
         auto* const range = std::ranges::find(taken_, first, &Range::first);
@@ -64,7 +64,7 @@ private:
 
     std::uint32_t cells_{0};
     std::uint32_t used_{0};
-    StaticVector<Range, kMaxModels> taken_; ///< By their place.
+    StaticVector<Range, kMaxModels> taken_; ///< Sorted by place.
 };
 
 } // namespace tactus

@@ -16,7 +16,7 @@ namespace
 
 using Owner = CodedRecord::Owner;
 
-/// Wider than any two places on the grid are apart.
+/// Larger than any difference of two places on the grid.
 constexpr std::int32_t kMaxResidual = 1 << 27;
 
 bool is_possible(const Owner& owner, RecordId id, const ModelCounts& counts) noexcept

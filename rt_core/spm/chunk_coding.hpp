@@ -12,11 +12,11 @@ namespace tactus
 {
 
 /// Coder version 3: CodedRecords in a range code (rt_core/spm/chunk_grammar.hpp), then a checksum.
-/// The chunk's number and its count of records are known to whoever asked for it.
+/// The caller knows the chunk's number and its count of records.
 
-/// Reads the coded chunk `id`: each record of `page` is then the waiting_form() of what the chunk
-/// says, for the linker to resolve; unused records of a last, shorter page are cleared. Needs this
-/// chunk's bytes only. On refusal the page is unspecified. 64 records at most, no allocation;
+/// Reads the coded chunk `id`: each record of `page` is then the waiting_form() of the chunk's
+/// record, for the linker to resolve; unused records of a last, shorter page are cleared. Needs
+/// this chunk's bytes only. On refusal the page is unspecified. 64 records at most, no allocation;
 /// transport thread.
 [[nodiscard]] Result<Done, SpmRefusal> parse_chunk(std::span<const std::byte> bytes,
                                                    const ModelHeader& header, ChunkId id,
@@ -25,7 +25,7 @@ namespace tactus
 /// CRC-32C of a chunk's code, with the chunk's number behind it.
 [[nodiscard]] std::uint32_t chunk_checksum(std::span<const std::byte> code, ChunkId id) noexcept;
 
-/// How many records a chunk holds: 64 but for the last one.
+/// Number of records in a chunk: 64 except in the last one.
 [[nodiscard]] constexpr std::uint32_t records_in_chunk(const ModelCounts& counts,
                                                        ChunkId chunk) noexcept
 {

@@ -22,7 +22,7 @@ inline constexpr std::uint32_t kAdaptShift = 5;
 /// The coder's range never stays below this.
 inline constexpr std::uint32_t kRangeLeast = 1U << 24U;
 
-/// Never leaves 31 .. 4065.
+/// Moves the probability of a 0 bit towards `bit`; it never leaves 31 .. 4065.
 constexpr void adapt(Probability& zero, std::uint32_t bit) noexcept
 {
     constexpr std::uint32_t kOne = 1U << kProbabilityBits;
@@ -32,15 +32,15 @@ constexpr void adapt(Probability& zero, std::uint32_t bit) noexcept
     zero = static_cast<Probability>(zero + more - less);
 }
 
-/// Adaptive model of a whole number: how many bits it has, then its two bits below the first one;
-/// the rest is raw.
+/// Adaptive model of a whole number: its number of bits, then the two bits below the first one; the
+/// other bits are raw.
 struct NumberModel
 {
     std::array<Probability, 32> width{};
     std::array<std::array<Probability, 4>, 32> next_bits{};
 };
 
-/// And of a number with a sign.
+/// Adaptive model of a signed number.
 struct SignedModel
 {
     Probability negative{};
@@ -53,9 +53,9 @@ struct ChunkModel
 {
     static constexpr std::size_t kWidthGroups = 12;
 
-    /// Anchors, then other owners.
+    /// Index: anchors, other owners.
     std::array<std::array<std::array<Probability, 16>, 3>, 2> tier_step;
-    /// For each of both: within the record's own tier, in a coarser one.
+    /// Index: as above; then within the record's own tier, in a coarser one.
     std::array<std::array<SignedModel, 2>, 2> owner_step;
     std::array<std::array<Probability, 8>, 2> place;
     std::array<std::array<Probability, 4>, 8> corner;
@@ -64,26 +64,26 @@ struct ChunkModel
     Probability has_both_sides;
     Probability has_only_second;
     std::array<std::array<Probability, 4>, 2> is_named;
-    /// In the plane of the ring and along its normal; by the width of the record's before.
+    /// Index: in the plane of the ring, along its normal; then the width of the previous residual.
     std::array<std::array<std::array<Probability, 32>, kWidthGroups>, 2> residual_width;
     std::array<std::array<std::array<Probability, 4>, 32>, 2> residual_next_bits;
     std::array<Probability, 2> residual_negative;
     std::array<Probability, 4> is_exact;
     SignedModel largest_error;
-    /// By what the face before had: none, exact, or some error; of A and B, of fan faces.
+    /// Index: A and B, fan faces; then the error of the previous face: none, exact, other.
     std::array<std::array<std::array<Probability, 16>, 3>, 2> error_below;
     std::array<SignedModel, 2> bucket_step;
-    Probability has_none; ///< Of records without both sides.
+    Probability has_none; ///< Used for records without both sides.
 };
 
 inline constexpr std::size_t kChunkProbabilities = sizeof(ChunkModel) / sizeof(Probability);
 static_assert(kChunkProbabilities * sizeof(Probability) == sizeof(ChunkModel));
 
-/// Where every chunk's probabilities start.
+/// Initial probabilities of every chunk.
 [[nodiscard]] const ChunkModel& initial_chunk_model() noexcept;
 
-/// Errors are told beside the record's largest one, in steps of two codes below it.
-inline constexpr std::uint32_t kExactBelow = 15; ///< Stands for an error of 0.
+/// Errors are coded relative to the record's largest one, in steps of two codes below it.
+inline constexpr std::uint32_t kExactBelow = 15; ///< Value for an error of 0.
 
 [[nodiscard]] constexpr std::uint32_t steps_below(ErrorCode error, ErrorCode largest) noexcept
 {
@@ -96,15 +96,15 @@ inline constexpr std::uint32_t kExactBelow = 15; ///< Stands for an error of 0.
     const std::uint32_t error = largest > 2 * steps ? largest - 2 * steps : 1U;
     return static_cast<ErrorCode>(steps == kExactBelow ? 0U : error);
 }
-/// The error that a chunk can tell: not less, exact only if it was.
+/// The error as a chunk can code it: not less, and exact only if it was.
 [[nodiscard]] constexpr ErrorCode rounded_error(ErrorCode error, ErrorCode largest) noexcept
 {
     return error_below(largest, steps_below(error, largest));
 }
 
 /// The syntax of a chunk, written once: with a RangeEncoder it writes records, with a RangeDecoder
-/// it reads them. Records stand for what the coder's bits say afterwards; their values are any that
-/// bits can make, so a reader checks ranges. Cost: 64 to 90 bits a record.
+/// it reads them. Decoded values are any that bits can produce, so a reader checks ranges. Cost: 64
+/// to 90 bits a record.
 template <typename Coder>
 class ChunkGrammar
 {
@@ -117,7 +117,7 @@ public:
         const Tier own = tier_of(first);
         for (std::uint32_t tier = 0; tier < kTiers; ++tier)
         {
-            // Both run over the same area in the same order.
+            // Both loops run over the same area in the same order.
             const Tier& other = kAllTiers[tier];
             const std::uint64_t ahead = first.value - own.first;
             last_[tier] = static_cast<std::uint32_t>(
@@ -135,14 +135,14 @@ public:
         code_buckets(record);
     }
 
-    /// No number so far led out of a coarser tier than the first, or to an error that has no code.
+    /// False once a number led out of a coarser tier than the first, or to an error without a code.
     [[nodiscard]] bool is_sound() const noexcept { return is_sound_; }
 
-    /// The probabilities as they are now; to learn where they should start.
+    /// The present probabilities; used to learn the initial ones.
     [[nodiscard]] const ChunkModel& model() const noexcept { return model_; }
 
 private:
-    static constexpr std::uint32_t kTiers = 12; ///< Up to 2^29 records.
+    static constexpr std::uint32_t kTiers = 12; ///< Enough for 2^29 records.
     static constexpr std::uint32_t kBaseStep = 15;
 
     struct Tier
@@ -273,7 +273,7 @@ private:
         }
     }
 
-    /// Less than both: none of them, A or B.
+    /// Sides, if not both: none, A or B.
     std::uint8_t code_side(std::uint32_t sides) noexcept
     {
         if (coder_.code_bit(model_.has_none, sides == 0 ? 1 : 0) != 0)
@@ -342,7 +342,7 @@ private:
     {
         for (std::size_t i = 0; i < 3; ++i)
         {
-            const std::size_t kind = i < 2 ? 0 : 1; // The last is along the normal.
+            const std::size_t kind = i < 2 ? 0 : 1; // The last one is along the normal.
             const std::uint32_t magnitude = magnitude_of(record.residual[i]);
             const std::size_t group =
                 std::min<std::size_t>(widths_[kind], ChunkModel::kWidthGroups - 1);
@@ -416,7 +416,7 @@ private:
     Coder& coder_;
     ChunkModel model_;
     ModelCounts counts_;
-    std::array<std::uint32_t, kTiers> last_{}; ///< By tier: the owner named last, or a guess.
+    std::array<std::uint32_t, kTiers> last_{}; ///< Last named owner by tier, or a guess.
     std::uint32_t own_{0};                     ///< Tier of the record.
     std::uint32_t last_step_{0};
     std::array<std::uint32_t, 2> widths_{};

@@ -10,7 +10,7 @@ namespace tactus
 namespace
 {
 
-/// Part of coder version 3: learnt from a few models once (train_chunk_model), never changed since.
+/// Part of coder version 3: learnt once from a few models (train_chunk_model) and fixed since.
 constexpr std::array<Probability, kChunkProbabilities> kLearnt{
 #include "rt_core/spm/chunk_model.inc"
 };

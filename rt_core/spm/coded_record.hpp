@@ -14,19 +14,21 @@
 namespace tactus
 {
 
-/// A record as a chunk says it: "a fan round a corner of this face, so many faces to its left and
-/// right". What that means depends on the records that are named, so it can be parsed by itself
-/// but becomes a VsplitRecord only when those are linked (rt_core/spm/star_resolver.hpp).
+/// A record as a chunk codes it: a fan round a corner of the anchor face, with `left` faces on one
+/// side of it and `right` on the other. It can be parsed alone, but its meaning depends on the
+/// records that it names, so it becomes a VsplitRecord only when those are linked
+/// (rt_core/spm/star_resolver.hpp).
 struct CodedRecord
 {
-    /// Which record changed a fan face last.
+    /// The record that changed a fan face last.
     struct Owner
     {
         enum class Kind : std::uint8_t
         {
-            derived, ///< Found from the edge to the face before it; never for the anchor.
-            record,  ///< `value` is a record.
-            base     ///< `value` is a base face in its base state.
+            /// Derived from the edge to the previous face; never for the anchor.
+            derived,
+            record, ///< `value` is a record.
+            base    ///< `value` is a base face in its base state.
         };
         std::uint32_t value{0};
         Kind kind{Kind::derived};
@@ -36,18 +38,18 @@ struct CodedRecord
     };
 
     Owner anchor;
-    /// Of the further fan faces, rightward from the anchor, then leftward.
+    /// Owners of the further fan faces, rightward from the anchor, then leftward.
     std::array<Owner, kMaxFanFaces - 1> others{};
-    /// v against its prediction (RingPrediction).
+    /// v minus its prediction (RingPrediction).
     std::array<std::int32_t, 3> residual{};
-    /// Of A against the anchor's bucket, or B's where there is no A; of B against A's.
+    /// Bucket of A minus the anchor's, or of B if there is no A; bucket of B minus A's.
     std::array<std::int32_t, 2> bucket_step{};
-    std::array<ErrorCode, kMaxStarFaces> error{}; ///< As in VsplitRecord.
-    std::uint8_t place{0};                        ///< The anchor's in its owner's star.
-    std::uint8_t corner{0};                       ///< Which of the anchor's corners is u.
+    std::array<ErrorCode, kMaxStarFaces> error{}; ///< Same as in VsplitRecord.
+    std::uint8_t place{0};                        ///< Place of the anchor in its owner's star.
+    std::uint8_t corner{0};                       ///< The anchor's corner that is u.
     std::uint8_t left{0};                         ///< Fan faces before the anchor.
-    std::uint8_t right{0};                        ///< And behind it.
-    std::uint8_t sides{0};                        ///< 1 when A is there, 2 for B.
+    std::uint8_t right{0};                        ///< Fan faces behind the anchor.
+    std::uint8_t sides{0};                        ///< Bit 0: A exists; bit 1: B exists.
     std::array<std::uint8_t, 3> reserved{};
     std::array<std::uint32_t, 11> unused{};
 
@@ -59,7 +61,7 @@ struct CodedRecord
     constexpr bool operator==(const CodedRecord&) const noexcept = default;
 };
 
-// A parsed record waits in the place of the record that it becomes.
+// A parsed record waits in the memory of the record that it becomes.
 static_assert(sizeof(CodedRecord) == sizeof(VsplitRecord));
 
 [[nodiscard]] inline VsplitRecord waiting_form(const CodedRecord& coded) noexcept

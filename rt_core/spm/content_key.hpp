@@ -10,17 +10,17 @@
 namespace tactus
 {
 
-/// What one transferred piece of a model is.
+/// Kind of one transferred piece of a model.
 enum class ContentKind : std::uint8_t
 {
     base = 0,
     index_page = 1,
     chunk = 2,
-    header = 3, ///< On the wire only.
+    header = 3, ///< Only used on the wire.
 };
 
 /// Names one piece within one model: its index page or chunk number; 0 for the base mesh. On the
-/// wire, where base mesh and header go in parts, the part's number.
+/// wire, which splits base mesh and header, the part's number.
 struct ContentKey
 {
     ContentKind kind{ContentKind::base};
@@ -29,8 +29,8 @@ struct ContentKey
     constexpr bool operator==(const ContentKey&) const noexcept = default;
 };
 
-/// Names one piece anywhere, as it stands in front of every piece on the wire: 28 bytes,
-/// little-endian. `model` is the first 128 bits of the header's root hash.
+/// Names one piece globally; on the wire it precedes every piece: 28 bytes, little-endian. `model`
+/// is the first 128 bits of the header's root hash.
 struct WireKey
 {
     ContentHash model{};

@@ -44,7 +44,7 @@ static_assert(kErrorQuanta[1] == 1.0F / 256.0F);
 
 } // namespace detail
 
-/// The bound that a code stands for, in quanta. Exact 0 for code 0.
+/// Bound of a code, in quanta. Exactly 0 for code 0.
 [[nodiscard]] constexpr float error_in_quanta(ErrorCode code) noexcept
 {
     return detail::kErrorQuanta[code];
@@ -57,7 +57,7 @@ static_assert(kErrorQuanta[1] == 1.0F / 256.0F);
     std::uint32_t code = 1;
     for (std::uint32_t step = 128; step > 0; step /= 2)
     {
-        // Below `code + step` all bounds are too small; 255 is taken as it is.
+        // All codes below `code + step` are too small; the bound of 255 is never checked.
         if (code + step <= 255 &&
             static_cast<double>(detail::kErrorQuanta[code + step - 1]) < quanta)
         {

@@ -42,7 +42,7 @@ bool geometry_is_in_range(const HeaderFields& fields) noexcept
     return has_extent;
 }
 
-/// No coordinate is NaN, either.
+/// True if the model is within kModelReachMax_m; false for NaN.
 bool is_in_reach(const HeaderFields& fields, double quantum_m) noexcept
 {
     bool is = true;

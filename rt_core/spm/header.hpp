@@ -22,23 +22,25 @@ namespace tactus
 /// chunks, so a model's hash covers every byte of it (docs/internals/spm-format.md).
 using ContentHash = std::array<std::uint8_t, 16>;
 
-/// Why bytes were refused. `refusal_text` gives the words for a message.
+/// Reasons for which bytes were refused. `refusal_text` gives the words for a message.
 enum class SpmRefusal : std::uint8_t
 {
-    too_short, ///< Fewer bytes than are stated.
+    too_short, ///< Fewer bytes than stated.
     wrong_magic,
-    unknown_version, ///< Not kFormatVersion and kCoderVersion.
-    wrong_checksum,  ///< Or, where hashes are verified, another hash.
-    wrong_size,      ///< A size that is stated is not what the counts make.
+    unknown_version, ///< Other than kFormatVersion and kCoderVersion.
+    wrong_checksum,  ///< Wrong checksum or, if verified, wrong hash.
+    wrong_size,      ///< A stated size contradicts the counts.
     count_out_of_range,
-    id_out_of_range, ///< A vertex, face or record that the model doesn't have.
+    /// The model has no such vertex, face or record.
+    id_out_of_range,
     value_out_of_range,
-    too_far,        ///< Beyond kModelReachMax_m.
-    trailing_bytes, ///< More bytes than are stated.
-    wrong_identity, ///< Sound bytes, but of another model, page or chunk than was asked for.
+    too_far,        ///< Coordinates beyond kModelReachMax_m.
+    trailing_bytes, ///< More bytes than stated.
+    /// Sound bytes, but of another model, page or chunk than requested.
+    wrong_identity,
 };
 
-/// Words that follow what was refused, such as a file's name; static.
+/// Text that follows the refused thing, such as a file's name; static.
 [[nodiscard]] const char* refusal_text(SpmRefusal refusal) noexcept;
 
 inline constexpr std::array<char, 8> kSpmMagic{'T', 'A', 'C', 'T', 'S', 'P', 'M', '\n'};
@@ -47,18 +49,18 @@ inline constexpr std::uint16_t kFormatVersion = 1;
 /// docs/internals/decisions/0006-chunk-coder.md.
 inline constexpr std::uint16_t kCoderVersion = 3;
 
-/// Whether every edge of the source has two faces of like winding: then a distance has a sign.
+/// Topology of the source. Closed: every edge has two faces of like winding, so a distance has a
+/// sign.
 inline constexpr std::uint16_t kOpenTopology = 0;
 inline constexpr std::uint16_t kClosedTopology = 1;
 
-/// The fixed part of a header, as it stands in the file and on the wire (little-endian, no
-/// padding).
+/// The fixed part of a header, as in the file and on the wire (little-endian, no padding).
 struct HeaderFields
 {
     std::array<char, 8> magic{kSpmMagic};
     std::uint16_t format_version{kFormatVersion};
     std::uint16_t coder_version{kCoderVersion};
-    std::uint32_t header_bytes{0}; ///< All of it, up to and with the closing checksum.
+    std::uint32_t header_bytes{0}; ///< Whole header, including the closing checksum.
     std::uint32_t revision{0};     ///< 0 for a model that was never edited.
     std::uint32_t base_vertices{0};
     std::uint32_t base_faces{0};
@@ -68,9 +70,9 @@ struct HeaderFields
     std::uint16_t topology{0};                    ///< kOpenTopology or kClosedTopology.
     std::array<std::uint32_t, 3> extent_quanta{}; ///< Largest coordinate; the smallest is 0.
     std::uint32_t max_depth{0};                   ///< Largest dependency depth of a record.
-    std::array<double, 3> origin_m{};             ///< Of (0, 0, 0), in the source's frame.
+    std::array<double, 3> origin_m{};             ///< Place of (0, 0, 0) in the source's frame.
     double quantisation_m{0.0};       ///< Largest |source - grid| of a vertex, up to the diagonal.
-    std::uint32_t source_vertices{0}; ///< Of the quantised mesh.
+    std::uint32_t source_vertices{0}; ///< Vertices of the quantised mesh.
     std::uint32_t source_faces{0};
     std::uint32_t rounds{0};             ///< Rounds of collapses.
     std::uint32_t max_error_quanta{0};   ///< Largest bound of any face state, rounded up.
@@ -78,8 +80,8 @@ struct HeaderFields
     std::array<std::uint32_t, 3> region_grid{};
     std::uint32_t occupied_regions{0};
     std::uint32_t base_bytes{0};
-    std::uint64_t base_offset{0};  ///< In the file.
-    std::uint64_t index_offset{0}; ///< In the file; index pages follow one another.
+    std::uint64_t base_offset{0};  ///< Offset in the file.
+    std::uint64_t index_offset{0}; ///< Offset in the file; index pages are consecutive.
     std::uint64_t file_bytes{0};
     ContentHash base_hash{};
 };
@@ -99,20 +101,20 @@ struct QuantumBox
 struct IndexPageEntry
 {
     QuantumBox box;                 ///< Union of the page's influence boxes.
-    std::uint64_t chunks_offset{0}; ///< Of the page's first chunk in the file.
-    ContentHash hash{};             ///< Of the index page.
+    std::uint64_t chunks_offset{0}; ///< Offset of the page's first chunk in the file.
+    ContentHash hash{};             ///< Hash of the index page.
 };
 
 static_assert(sizeof(IndexPageEntry) == 48);
 
-/// A header that passed every check; a default one has no model. It is a view into the parsed
-/// bytes: they must outlive it and its copies.
+/// A header that passed every check; a default one has no model. It is a view of the parsed bytes,
+/// which must outlive it and its copies.
 class ModelHeader
 {
 public:
     /// Checks everything: magic, versions, sizes (in 64 bits), counts, ranges and the checksum.
-    /// `bytes` is exactly one header. Does not verify hashes (rt_core has no cryptography). Time by
-    /// the bytes.
+    /// `bytes` is exactly one header. Does not verify hashes (rt_core has no cryptography). Time is
+    /// linear in the bytes.
     [[nodiscard]] static Result<ModelHeader, SpmRefusal>
     parse(std::span<const std::byte> bytes) noexcept;
 
@@ -123,23 +125,22 @@ public:
     }
     /// Metres in one quantum; a power of two, so products with grid integers are exact floats.
     [[nodiscard]] float quantum_m() const noexcept TACTUS_NONBLOCKING;
-    /// Of the model's bounding box.
+    /// Diagonal of the model's bounding box.
     [[nodiscard]] double diagonal_m() const noexcept;
-    /// Where the source mesh has the origin of the model's frame; the axes are parallel.
+    /// Origin of the model's frame in the source mesh's; the axes are parallel.
     [[nodiscard]] Vec3 origin_m() const noexcept
     {
         return {fields_.origin_m[0], fields_.origin_m[1], fields_.origin_m[2]};
     }
     [[nodiscard]] bool is_closed() const noexcept { return fields_.topology == kClosedTopology; }
 
-    /// - There is such a page (asserted).
+    /// Index entry of a page, which must exist (asserted).
     [[nodiscard]] IndexPageEntry index_entry(IndexPageId page) const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] std::uint32_t region_count() const noexcept
     {
         return fields_.region_grid[0] * fields_.region_grid[1] * fields_.region_grid[2];
     }
-    /// Whether any face meets the region.
-    /// - There is such a region (asserted).
+    /// True if any face meets the region, which must exist (asserted).
     [[nodiscard]] bool is_occupied(RegionId region) const noexcept;
     /// The region that holds a point of the model's frame; the nearest one for points outside.
     [[nodiscard]] RegionId region_at(const std::array<double, 3>& point_m) const noexcept;
@@ -153,11 +154,11 @@ private:
     std::span<const std::byte> regions_;
 };
 
-/// Bytes of the parts that follow the fixed fields: index entries, region bits, root hash,
+/// Sizes of the parts that follow the fixed fields: index entries, region bits, root hash,
 /// checksum.
 inline constexpr std::size_t kRootHashBytes = 32;
 inline constexpr std::size_t kChecksumBytes = 4;
-/// Of a whole header, up to and with the checksum.
+/// Size of a whole header, including the checksum.
 [[nodiscard]] constexpr std::uint64_t header_bytes(std::uint64_t index_pages,
                                                    std::uint64_t regions) noexcept
 {

@@ -31,8 +31,8 @@ inline constexpr std::uint32_t kRecordsPerChunk = 1U << kRecordsPerChunkLog2;
 inline constexpr std::uint32_t kChunksPerIndexPageLog2 = 6;
 inline constexpr std::uint32_t kChunksPerIndexPage = 1U << kChunksPerIndexPageLog2;
 
-/// How many ids of each kind one model has; the id arithmetic lives here. Ids that the model
-/// doesn't have are a bug: record_of(), vertex_of() and face_of() assert.
+/// Number of ids of each kind in one model, and the arithmetic of ids. Ids that the model doesn't
+/// have are a bug: record_of(), vertex_of() and face_of() assert.
 struct ModelCounts
 {
     std::uint32_t base_vertices{0};

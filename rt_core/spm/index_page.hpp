@@ -14,8 +14,8 @@
 namespace tactus
 {
 
-/// A chunk's influence box in steps of its index page's box, rounded outward: a ball that misses it
-/// needs no record of the chunk. `low > high` on an axis never occurs.
+/// A chunk's influence box in steps of its index page's box, rounded outward: a sphere that misses
+/// it needs no record of the chunk. `low > high` on an axis never occurs.
 struct InfluenceBox
 {
     std::array<std::uint16_t, 3> low{};
@@ -29,7 +29,7 @@ struct IndexPage
 
     std::array<Row, 3> low{};
     std::array<Row, 3> high{};
-    std::uint32_t chunks{0}; ///< 1 .. 64; less than 64 only in the last page.
+    std::uint32_t chunks{0}; ///< 1 .. 64; below 64 only in the last page.
 
     [[nodiscard]] InfluenceBox box(std::size_t chunk) const noexcept
     {
@@ -48,14 +48,14 @@ struct IndexPage
     }
 };
 
-/// A ball in the quanta of a model.
+/// A sphere in the quanta of a model.
 struct QuantumBall
 {
     std::array<double, 3> center{};
     double radius{0.0};
 };
 
-/// The distance of a place from a box, in quanta; 0 inside.
+/// Squared distance of a place from a box, in quanta; 0 inside.
 [[nodiscard]] double distance_sq(const std::array<double, 3>& place,
                                  const QuantumBox& box) noexcept TACTUS_NONBLOCKING;
 
@@ -64,18 +64,18 @@ struct QuantumBall
     return distance_sq(ball.center, box) <= ball.radius * ball.radius;
 }
 
-/// A chunk's influence box; `page_box` is its page's own.
+/// Influence box of a chunk; `page_box` is its page's box.
 [[nodiscard]] QuantumBox box_of(const IndexPage& page, const QuantumBox& page_box,
                                 std::size_t chunk) noexcept TACTUS_NONBLOCKING;
 
-/// What the transport side keeps of a chunk besides its box.
+/// Data of a chunk on the transport side, besides its box.
 struct ChunkEntry
 {
     std::uint16_t coded_bytes{0};
     ContentHash hash{};
 };
 
-/// Quanta in one step of an index page's boxes along an axis: the least that spans it in 16 bits.
+/// Quanta per step of an index page's boxes along an axis: the least that spans it in 16 bits.
 [[nodiscard]] constexpr std::uint32_t index_step(std::int32_t low, std::int32_t high) noexcept
 {
     TACTUS_ASSERT(low <= high);
@@ -84,15 +84,15 @@ struct ChunkEntry
     return static_cast<std::uint32_t>(extent / 65'535 + 1);
 }
 
-/// Bytes of one entry in the coded page: box, coded size, hash.
+/// Size of one entry in the coded page: box, coded size, hash.
 inline constexpr std::size_t kIndexEntryBytes = 12 + 2 + 16;
-/// Coded index page: page number, the entries, a checksum.
+/// Size of a coded index page: page number, entries, checksum.
 [[nodiscard]] constexpr std::size_t coded_index_page_bytes(std::uint32_t chunks) noexcept
 {
     TACTUS_ASSERT(chunks <= kChunksPerIndexPage);
     return 4 + chunks * kIndexEntryBytes + kChecksumBytes;
 }
-/// How many chunks an index page holds.
+/// Number of chunks in an index page.
 [[nodiscard]] constexpr std::uint32_t chunks_in_index_page(const ModelCounts& counts,
                                                            IndexPageId page) noexcept
 {
@@ -101,8 +101,8 @@ inline constexpr std::size_t kIndexEntryBytes = 12 + 2 + 16;
     return left < kChunksPerIndexPage ? left : kChunksPerIndexPage;
 }
 
-/// Reads the coded index page `id` of a model. `entries` gets one ChunkEntry a chunk and has room
-/// for 64. On refusal the outputs are unspecified.
+/// Reads the coded index page `id` of a model. `entries` has room for 64 and receives one
+/// ChunkEntry per chunk. On refusal the outputs are unspecified.
 [[nodiscard]] Result<Done, SpmRefusal> parse_index_page(std::span<const std::byte> bytes,
                                                         const ModelCounts& counts, IndexPageId id,
                                                         IndexPage& page,

@@ -14,7 +14,7 @@ namespace tactus
 namespace
 {
 
-/// Relaxed: see load_next(). The inbox publishes it together with the linked bit.
+/// Relaxed order, see load_next(): the inbox publishes it together with the linked bit.
 void store_next(std::uint32_t& next, RecordId id) noexcept
 {
     std::atomic_ref<std::uint32_t>(next).store(id.value, std::memory_order_relaxed);
@@ -89,7 +89,7 @@ void Linker::release_page(std::uint32_t slot) noexcept
     {
         stop_waiting((slot << kRecordsPerChunkLog2) + place);
     }
-    // From here on no dependent is found in this page itself.
+    // The loop below finds no dependent in this page.
     pool_->slot_of_.erase(PagePool::first_key(owner_) + chunk.value);
     for (std::uint32_t place = 0; place < records_in_chunk(counts_, chunk); ++place)
     {
@@ -116,7 +116,7 @@ bool Linker::try_take_update(Update& update) noexcept
         owing_.is_empty = slot == owing_.last;
         owing_.first = owing_.behind[slot];
         owing_.behind[slot] = kNotOwing;
-        // Told with its arrival: then it owes nothing any more.
+        // Updates reported with the arrival are no longer owed.
         if (residents_[slot].linked != residents_[slot].told)
         {
             update = {residents_[slot].chunk, slot, tell_linked(slot)};
@@ -146,7 +146,7 @@ void Linker::owe_update(std::uint32_t slot) noexcept
     owing_.is_empty = false;
 }
 
-/// One look at each slot that owes an update.
+/// Removes a slot from the list. One step per slot that owes an update.
 void Linker::owe_nothing(std::uint32_t slot) noexcept
 {
     if (owing_.behind[slot] == kNotOwing)
@@ -172,7 +172,7 @@ void Linker::owe_nothing(std::uint32_t slot) noexcept
 }
 
 /// Links the record if nothing is missing, then those that waited for it, and so on. Every turn
-/// takes a record off a list and puts it back for a later dependency at most, so this ends.
+/// takes a record off a list and at most puts it back for a later dependency, so this ends.
 void Linker::settle(Seat seat) noexcept
 {
     TACTUS_ASSERT(ready_ == kNoSeat);
@@ -236,7 +236,8 @@ void Linker::link(Seat seat, const VsplitRecord& record, const StarRing& ring) n
     ++linked_count_;
 }
 
-/// Exact faces are never split, taken ones not by a second record.
+/// True if this record may split its fan faces: exact faces are never split, taken ones not by a
+/// second record.
 bool Linker::is_free_for(RecordId id, const VsplitRecord& record) const noexcept
 {
     for (std::uint32_t i = 0; i < record.fan_size; ++i)
@@ -250,8 +251,8 @@ bool Linker::is_free_for(RecordId id, const VsplitRecord& record) const noexcept
     return true;
 }
 
-/// A linked record of which an owner came back: sets what isn't set any more, and waits for the
-/// next owner that is away.
+/// Sets a linked record's missing `next` after one of its owners returned, and waits for the next
+/// absent owner.
 void Linker::mend_next(Seat seat) noexcept
 {
     const VsplitRecord& record = record_at(seat);
@@ -269,7 +270,7 @@ void Linker::mend_next(Seat seat) noexcept
         }
         else if (std::uint32_t& next = next_of(record.star[2 + i], state); next == kNextPending)
         {
-            store_next(next, id_of(seat)); // Otherwise taken, by this record or a rival of it.
+            store_next(next, id_of(seat)); // Otherwise it is taken, by this record or a rival.
         }
     }
     if (!missing.is_none())
@@ -318,8 +319,8 @@ void Linker::stop_waiting(Seat seat) noexcept
     waiting_[seat] = {};
 }
 
-/// The linked records that stand in the `next` of one that leaves have to set them anew when it
-/// comes back.
+/// Makes the linked records named in the `next` of a leaving record wait for its return, when they
+/// set it again.
 void Linker::let_dependents_wait(Seat leaving) noexcept
 {
     if (!is_linked_at(leaving))
@@ -338,7 +339,8 @@ void Linker::let_dependents_wait(Seat leaving) noexcept
         const Seat dependent = seat_of({next});
         if (dependent == kNoSeat || !is_linked_at(dependent) || waiting_[dependent].is_in_list())
         {
-            continue; // Away, or it looks at all its owners when the one it waits for comes back.
+            // Absent, or it checks all its owners when the one it waits for returns.
+            continue;
         }
         wait_for(dependent, id);
     }
@@ -369,7 +371,7 @@ std::uint32_t& Linker::next_of(FaceId face, FaceState state) const noexcept
     return record_at(owner).next[state.place()];
 }
 
-/// kNoSeat when the record's page is away.
+/// Seat of a record; kNoSeat if its page is absent.
 Linker::Seat Linker::seat_of(RecordId record) const noexcept
 {
     const std::uint32_t slot = slot_of(chunk_of(record));

@@ -17,7 +17,7 @@ namespace tactus
 
 class Linker;
 
-/// What linking keeps beside each page slot of all models: about 2.4 KB. Transport thread.
+/// Data of linking for each page slot of all models: about 2.4 KB. Transport thread.
 class LinkPool
 {
 public:
@@ -36,12 +36,12 @@ private:
     /// A record by its place in the page slots: slot * 64 + place.
     using Seat = std::uint32_t;
     static constexpr Seat kNoSeat = 0xFFFF'FFFFU;
-    /// A quarter of the records that may wait at most.
+    /// A quarter of the records that may wait.
     static constexpr std::size_t kListsPerPage = 16;
     static constexpr Seat kNowhere = 0xFFFF'FFFEU;
     static constexpr std::uint32_t kNotOwing = 0xFFFF'FFFFU;
 
-    /// A record in a list: for which record it waits, and who is behind it there.
+    /// Entry of a list: the record that is awaited, and the next entry.
     struct Waiting
     {
         RecordId awaited{};
@@ -54,40 +54,39 @@ private:
         ChunkId chunk{};
         std::uint32_t owner{0};
         static_assert(kRecordsPerChunk <= 64);
-        std::uint64_t linked{0}; ///< One bit a record.
-        std::uint64_t told{0};   ///< Of `linked`, what the haptic thread was told.
+        std::uint64_t linked{0}; ///< One bit per record.
+        std::uint64_t told{0};   ///< Bits of `linked` reported to the haptic thread.
     };
 
-    IdTable slot_of_; ///< By PagePool::first_key() + chunk.
+    IdTable slot_of_; ///< Key: PagePool::first_key() + chunk.
     std::span<Resident> residents_;
-    std::span<StarRing> rings_;  ///< Per seat; of linked records.
-    std::span<Waiting> waiting_; ///< Per seat.
-    std::span<Seat> lists_;      ///< First waiting, by a hash of owner and awaited record.
-    /// Per slot, the one behind it that owes an update; itself when last, kNotOwing when it
-    /// doesn't.
+    std::span<StarRing> rings_;  ///< Rings of linked records, by seat.
+    std::span<Waiting> waiting_; ///< List entries by seat.
+    std::span<Seat> lists_;      ///< First entry, by a hash of owner and awaited record.
+    /// Per slot, the next slot that owes an update; itself if last, kNotOwing if it owes none.
     std::span<std::uint32_t> behind_;
 };
 
-/// Resolves parsed records of one model against the records they depend on, and links them, on the
-/// transport thread.
+/// Resolves parsed records of one model against the records that they depend on, and links them, on
+/// the transport thread.
 ///
-/// A record says what it is in terms of records that last changed its fan faces, and of those that
-/// brought its vertices. When these are linked it is resolved (StarResolver) and `next` of each
+/// A record is defined in terms of the records that last changed its fan faces, and of those that
+/// brought its vertices. When these are linked it is resolved (StarResolver), and `next` of each
 /// fan face's owner is set to it. Records whose dependencies are absent wait, parsed, in their
-/// page. Which records are linked reaches the haptic thread through the inbox only: with the page's
+/// page. The haptic thread learns of linked records through the inbox only: with the page's
 /// arrival, and by updates afterwards (try_take_update()).
 ///
-/// A waiting record stands in a list of those that wait for one and the same record, the first of
-/// its dependencies that isn't linked; when that one is, they are looked at again. So a record is
-/// looked at once for each of its dependencies at most, whatever else is resident.
+/// A waiting record is in the list of one awaited record, the first of its dependencies that isn't
+/// linked; when that is linked, the list is checked again. So a record is checked at most once for
+/// each of its dependencies, regardless of other resident records.
 ///
-/// A page that comes back after an eviction has all its `next` pending again. Linked records of
-/// other pages that stood there wait from the eviction on, and set them anew: at the latest when
-/// all that they depend on is back, which is what they need to be split.
+/// A page that returns after an eviction has all its `next` pending again. Linked records of other
+/// pages that were named there wait from the eviction on, and set them again: at the latest when
+/// all their dependencies are back, without which they can't be split.
 ///
-/// Refused for good: a walk that finds no face, a vertex off the grid, a fan face that is exact or
-/// that another record splits (the first one keeps it). Whatever is linked names only what was
-/// linked before, so a dependency cycle never is.
+/// Refused permanently: a walk that finds no face, a vertex off the grid, a fan face that is exact
+/// or that another record splits (the first one keeps it). A linked record names only records
+/// linked before it, so a dependency cycle is never linked.
 class Linker
 {
 public:
@@ -95,20 +94,22 @@ public:
     Linker(LinkPool& pool, std::uint32_t owner, const ModelHeader& header,
            PageSlots slots) noexcept;
 
-    /// The base mesh of a model that comes, or none of one that goes. No page is here then.
+    /// Sets the base mesh of a model that is added, or none for a removed one. No page is resident
+    /// then.
     void set_base(const BaseMesh& base) noexcept;
     [[nodiscard]] bool has_base() const noexcept { return !slots_.base.faces.empty(); }
-    /// Of this model.
+    /// Pages of this model.
     [[nodiscard]] std::uint32_t pages_here() const noexcept { return pages_here_; }
 
-    /// A page was parsed into `slot`: links what can be linked now, in it and in waiting pages.
-    /// Cost: per record, and per waiting record that one of them was the last thing missing for.
+    /// Links all records that can be linked now, in the page parsed into `slot` and in waiting
+    /// pages. Cost: per record, and per waiting record for which one of them was the last missing
+    /// one.
     void link_page(ChunkId chunk, std::uint32_t slot) noexcept;
 
-    /// The haptic thread gave the slot back, its content as it was; its records are gone.
+    /// Removes the records of a slot that the haptic thread returned with its content unchanged.
     void release_page(std::uint32_t slot) noexcept;
 
-    /// A page of which more records are linked than the haptic thread has been told.
+    /// Page of which more records are linked than reported to the haptic thread.
     struct Update
     {
         ChunkId chunk{};
@@ -116,10 +117,10 @@ public:
         std::uint64_t linked{0};
     };
 
-    /// The page's linked records, told with its arrival. Later ones are owed as updates.
+    /// Linked records of the page, reported with its arrival. Later ones are owed as updates.
     [[nodiscard]] std::uint64_t tell_linked(std::uint32_t slot) noexcept;
-    /// Takes the update that is owed longest; false when none is. Only for pages that were handed
-    /// over: call tell_linked() for a page right after link_page().
+    /// Takes the update that has been owed longest; false if none is. Only for pages that were
+    /// handed over: call tell_linked() for a page right after link_page().
     [[nodiscard]] bool try_take_update(Update& update) noexcept;
     [[nodiscard]] std::uint64_t linked(std::uint32_t slot) const noexcept
     {
@@ -132,13 +133,14 @@ public:
     {
         return slot_of(chunk) != IdTable::kAbsent;
     }
-    /// Records that were refused since the start; each is a fault of the model or of its sender.
+    /// Records refused since the start; each is a fault of the model or of its sender.
     [[nodiscard]] std::uint64_t records_refused() const noexcept { return refused_count_; }
     [[nodiscard]] std::uint64_t records_linked() const noexcept { return linked_count_; }
-    /// Looks at a record since the start: 1 + what it waited for at most a stay in the pools.
+    /// Checks of records since the start: per stay in the pools at most 1 + the record's
+    /// dependencies.
     [[nodiscard]] std::uint64_t looks() const noexcept { return looks_; }
 
-    /// A record that is linked, for StarResolver.
+    /// Linked record, for StarResolver.
     [[nodiscard]] LinkedStar find(RecordId id) const noexcept;
 
 private:
@@ -148,10 +150,10 @@ private:
     static constexpr Seat kNoSeat = LinkPool::kNoSeat;
     static constexpr std::uint32_t kNotOwing = LinkPool::kNotOwing;
 
-    /// Slots that owe an update, in the order in which they came to owe it.
+    /// Slots that owe an update, oldest first.
     struct Owing
     {
-        std::span<std::uint32_t> behind; ///< The pool's.
+        std::span<std::uint32_t> behind; ///< Span of the pool.
         std::uint32_t first{0};
         std::uint32_t last{0};
         bool is_empty{true};
@@ -185,11 +187,11 @@ private:
     PageSlots slots_;
     std::uint32_t owner_;
     LinkPool* pool_;
-    std::span<Resident> residents_; ///< All of the pool's, as the three below.
+    std::span<Resident> residents_; ///< Spans of the whole pool, like the three below.
     std::span<StarRing> rings_;
     std::span<Waiting> waiting_;
     std::span<Seat> lists_;
-    Seat ready_{kNoSeat}; ///< Records to look at, a list of the same kind.
+    Seat ready_{kNoSeat}; ///< List of records to check.
     Owing owing_;
     std::uint32_t pages_here_{0};
     std::uint64_t linked_count_{0};

@@ -14,8 +14,8 @@
 namespace tactus
 {
 
-/// Which state a face is in: the record that last changed it and the face's place in that record's
-/// star. A base face that no record has changed yet is in its base state.
+/// State of a face: the record that last changed it and the face's place in that record's star. A
+/// base face that no record has changed yet is in its base state.
 struct FaceState
 {
     static constexpr std::uint32_t kBaseValue = 0xFFFF'FFFFU;
@@ -29,7 +29,7 @@ struct FaceState
         return {(record.value << 3U) | place};
     }
     [[nodiscard]] constexpr bool is_base() const noexcept { return value == kBaseValue; }
-    /// Neither this nor place() may be asked of the base state.
+    /// Undefined for the base state, as is place().
     [[nodiscard]] constexpr RecordId record() const noexcept
     {
         TACTUS_ASSERT(!is_base());
@@ -46,7 +46,7 @@ struct FaceState
 static_assert(kMaxStarFaces <= 8, "a place in a star is three bits of a FaceState");
 static_assert(kMaxRecords <= FaceState::kBaseValue >> 3U, "no record's state is the base state");
 
-/// One vsplit record as the forest reads it.
+/// One vsplit record in the forest's form.
 ///
 /// Around the vanished vertex v, joined to its parent u, the star in canonical order is
 ///
@@ -63,10 +63,10 @@ struct VsplitRecord
 {
     Vec3f position_m{};                       ///< v in the model's frame; exact.
     VertexId parent{};                        ///< u.
-    std::array<FaceId, kMaxStarFaces> star{}; ///< A, B, fan; none where there is no face.
-    /// The record that splits this face next, after this record: `kNextExact` when the face is
-    /// exact then, `kNextPending` until that record is here. The transport thread writes it through
-    /// std::atomic_ref, the haptic thread reads it the same way.
+    std::array<FaceId, kMaxStarFaces> star{}; ///< A, B, fan; none if there is no face.
+    /// The record that splits this face next, after this record: `kNextExact` if the face is then
+    /// exact, `kNextPending` until that record is linked. Both threads access it through
+    /// std::atomic_ref; only the transport thread writes.
     std::array<std::uint32_t, kMaxStarFaces> next{};
     std::array<FaceState, kMaxFanFaces> before{};    ///< State of fan face i before this split.
     std::array<std::uint8_t, kMaxStarFaces> error{}; ///< Error code of each star face after it.
@@ -86,7 +86,8 @@ struct VsplitRecord
 };
 
 inline constexpr std::uint32_t kNextExact = 0xFFFF'FFFFU;   ///< No record splits this face.
-inline constexpr std::uint32_t kNextPending = 0xFFFF'FFFEU; ///< One does; it isn't here yet.
+inline constexpr std::uint32_t kNextPending = 0xFFFF'FFFEU; ///< The record that splits it isn't
+                                                            ///< resident yet.
 
 static_assert(kMaxRecords <= kNextPending, "no record's id says exact or pending");
 static_assert(sizeof(VsplitRecord) == 128 && std::is_trivially_copyable_v<VsplitRecord>);

@@ -15,28 +15,28 @@
 namespace tactus
 {
 
-/// What of a page slot is shown to viewers.
+/// Part of a page slot's state that viewers see.
 struct ShownPage
 {
     ChunkId chunk{};        ///< None: the slot is the transport thread's.
     std::uint32_t owner{0}; ///< The model that had the slot last.
     static_assert(kRecordsPerChunk <= 64);
-    std::uint64_t refined{0}; ///< One bit a record. The page is pinned while any is set.
+    std::uint64_t refined{0}; ///< One bit per record. Any bit pins the page.
 
     bool operator==(const ShownPage&) const noexcept = default;
 };
 static_assert(sizeof(ShownPage) == 16);
 
-/// What the haptic thread knows of a page slot.
+/// State of a page slot on the haptic thread.
 struct PageMeta : ShownPage
 {
     std::uint64_t held{0};    ///< Refined for a closure that isn't complete; not to be merged.
-    std::uint64_t linked{0};  ///< As the inbox has told so far; the linker may know of more.
+    std::uint64_t linked{0};  ///< Bits reported through the inbox; the linker may be ahead.
     std::uint32_t touched{0}; ///< Frame number of the last use.
 };
 
-/// Which chunk of which model is in which slot, for the page tables of all models. 56 B a page.
-/// Haptic thread only.
+/// Slot of each resident chunk of all models, shared by their page tables. 56 B per page. Haptic
+/// thread only.
 struct PagePool
 {
     PagePool(Arena& arena, std::uint32_t slots) noexcept
@@ -46,20 +46,19 @@ struct PagePool
     {
     }
 
-    /// A model's chunks are numbered from here on.
+    /// First key of a model's chunks.
     [[nodiscard]] static constexpr std::uint32_t first_key(std::uint32_t owner) noexcept
     {
         return owner << kKeyBits;
     }
 
-    /// What is shown of the slot is another than it was; whoever changes it says so.
+    /// Marks the slot as changed for the viewer copy. Callers must call it after each change.
     void mark_changed(std::uint32_t slot) noexcept
     {
         changed_[slot / kWord] |= std::uint64_t{1} << (slot % kWord);
     }
-    /// Brings a copy of the first slots up to date, which was so at the last call: 9 instructions
-    /// for 64 slots, and 16 for each one that was marked since. There is one such copy, made once
-    /// from `metas` as they were.
+    /// Updates a copy of the first slots since the last call: 9 instructions per 64 slots, and 16
+    /// for each marked one. There is one such copy, made once from `metas`.
     void update_copy(std::span<ShownPage> copy) noexcept
     {
         const std::size_t words = std::min(changed_.size(), (copy.size() + kWord - 1) / kWord);
@@ -78,7 +77,7 @@ struct PagePool
         }
     }
 
-    IdTable slot_of; ///< By first_key() + chunk.
+    IdTable slot_of; ///< Key: first_key() + chunk.
     std::span<PageMeta> metas;
 
 private:
@@ -87,7 +86,7 @@ private:
     static_assert(kMaxRecords >> kRecordsPerChunkLog2 < 1U << kKeyBits);
     static_assert(kMaxModels <= 1U << (32 - kKeyBits));
 
-    std::span<std::uint64_t> changed_; ///< A bit a slot.
+    std::span<std::uint64_t> changed_; ///< One bit per slot.
 };
 
 } // namespace tactus

@@ -14,14 +14,14 @@
 namespace tactus
 {
 
-/// The memory in which a model's pages live, seen by both threads. Pages and index pages are those
-/// of all models, each slot of one at a time; the base mesh is the model's own. Before models it is
-/// the memory in which those that come and go have theirs.
+/// Memory of a model's pages, shared by both threads. Pages and index pages are those of all
+/// models, each slot used by one at a time; the base mesh is the model's own. Without a model,
+/// `base` is the memory for the base meshes of streamed models.
 ///
-/// The transport thread alone writes it: a page's content while the slot is on loan to it, and
-/// later only `next` (through std::atomic_ref). The haptic thread reads slots that were handed over
-/// through the inbox. A record counts for it once an event from the inbox has told that it is
-/// linked; it keeps those bits in its PageTable.
+/// The transport thread alone writes: a page's content while the slot is on loan to it, and later
+/// only `next` (through std::atomic_ref). The haptic thread reads slots that were handed over
+/// through the inbox. A record counts for it once an event of the inbox reports it as linked; its
+/// PageTable holds those bits.
 struct PageSlots
 {
     std::span<Page> pages;
@@ -38,9 +38,9 @@ struct PageSlots
         return slots.of_model(arena, counts);
     }
 
-    /// The same pages, without a base mesh so far.
+    /// The same pages, without a base mesh.
     [[nodiscard]] PageSlots without_base() const noexcept { return {pages, index_pages, {}}; }
-    /// The same pages, with a base mesh of its own.
+    /// The same pages, with an own base mesh for a model of these counts.
     [[nodiscard]] PageSlots of_model(Arena& arena, const ModelCounts& counts) const noexcept
     {
         PageSlots slots{pages, index_pages, {}};
@@ -51,11 +51,11 @@ struct PageSlots
     }
 };
 
-/// Reads a `next` that the other thread may be writing, which is the one thing that changes while a
-/// frame runs, and still no result depends on when. A `next` goes once from kNextPending to the id
-/// of one record, and that is written before the record's linked bit is pushed into the inbox. So
-/// whoever has taken that bit reads the id; whoever hasn't finds that the id isn't linked
-/// (PageTable::find_linked), and that means the same as kNextPending. Hence relaxed, too.
+/// Reads a `next` that the other thread may be writing. It is the only data that changes during a
+/// frame, yet no result depends on when. A `next` changes once from kNextPending to the id of one
+/// record, and that is written before the record's linked bit is pushed into the inbox. A reader
+/// that has taken the bit reads the id; a reader that hasn't finds that the id isn't linked
+/// (PageTable::find_linked), which means the same as kNextPending. So relaxed order suffices.
 [[nodiscard]] inline std::uint32_t load_next(std::uint32_t& next) noexcept
 {
     return std::atomic_ref<std::uint32_t>(next).load(std::memory_order_relaxed);

@@ -14,14 +14,15 @@
 namespace tactus
 {
 
-/// The haptic thread's view of one model's pages: which chunk is in which slot, which of its
-/// records are refined (split), and when it was last of use. Haptic thread only.
+/// The haptic thread's view of one model's pages: slot of each chunk, refined (split) records, and
+/// last use. Haptic thread only.
 class PageTable
 {
 public:
     using Meta = PageMeta;
 
-    /// Slots and pool are all models'; the pool has as many slots and outlives the table.
+    /// `pool` and `slots` are shared by all models; the pool has as many slots and outlives the
+    /// table.
     PageTable(PagePool& pool, std::uint32_t owner, PageSlots slots) noexcept
         : pool_(&pool)
         , meta_(pool.metas)
@@ -32,7 +33,7 @@ public:
         TACTUS_ASSERT(slots.pages.size() == pool.metas.size());
     }
 
-    /// `linked` has a bit for each record that find_linked() may return.
+    /// Adopts a page; `linked` has a bit for each record that find_linked() may return.
     void adopt(ChunkId chunk, std::uint32_t slot, std::uint32_t frame,
                std::uint64_t linked = 0) noexcept
     {
@@ -46,8 +47,8 @@ public:
         ++used_;
     }
 
-    /// More records of the chunk are linked. No effect when the slot does not hold it any more: the
-    /// update was on its way when the page was evicted.
+    /// Adds linked records of the chunk. No effect if the slot does not hold it any more: the
+    /// update was under way when the page was evicted.
     void update_linked(ChunkId chunk, std::uint32_t slot, std::uint64_t linked) noexcept
     {
         TACTUS_ASSERT(slot < meta_.size());
@@ -58,7 +59,7 @@ public:
         }
     }
 
-    /// Forgets an unpinned page; the slot may go back to the transport thread.
+    /// Removes an unpinned page; the slot may be returned to the transport thread.
     void evict(std::uint32_t slot) noexcept
     {
         TACTUS_ASSERT(slot < meta_.size());
@@ -72,7 +73,7 @@ public:
         --used_;
     }
 
-    /// The forest has left: no record of the page is refined or held any more.
+    /// Clears refined and held records of the page, after the forest has left.
     void forget_refined(std::uint32_t slot) noexcept
     {
         TACTUS_ASSERT(is_own(slot));
@@ -87,7 +88,7 @@ public:
         return pool_->slot_of.find(first_key_ + chunk.value);
     }
 
-    /// The record when its page is adopted and it is linked; otherwise null.
+    /// The record if its page is adopted and the record is linked; otherwise null.
     [[nodiscard]] VsplitRecord* find_linked(RecordId record) const noexcept
     {
         const std::uint32_t slot = find(chunk_of(record));
@@ -103,7 +104,7 @@ public:
         return is_linked ? &slots_.pages[slot].records[place] : nullptr;
     }
 
-    /// A record whose page must be here: refined records pin theirs.
+    /// Record of a resident page: refined records pin theirs.
     [[nodiscard]] VsplitRecord& resident(RecordId record) const noexcept
     {
         const std::uint32_t slot = find(chunk_of(record));
@@ -145,9 +146,9 @@ public:
         TACTUS_ASSERT(!meta_[slot].chunk.is_none());
         meta_[slot].touched = frame;
     }
-    /// Of any model's slot.
+    /// State of a slot of any model.
     [[nodiscard]] const Meta& meta(std::uint32_t slot) const noexcept { return meta_[slot]; }
-    /// Whether a page of this model is in the slot.
+    /// True if a page of this model is in the slot.
     [[nodiscard]] bool is_own(std::uint32_t slot) const noexcept
     {
         return meta_[slot].owner == owner_ && !meta_[slot].chunk.is_none();
@@ -174,7 +175,7 @@ private:
     }
 
     PagePool* pool_;
-    std::span<Meta> meta_; ///< All of the pool's.
+    std::span<Meta> meta_; ///< Span of the whole pool.
     PageSlots slots_;
     std::uint32_t owner_;
     std::uint32_t first_key_;

@@ -12,7 +12,7 @@ namespace tactus
 {
 
 /// Binary range decoder with adaptive probabilities (Martin 1979; 12-bit probabilities and 32-bit
-/// range as in LZMA). Behind the last byte it reads zeros: an encoder leaves trailing ones out.
+/// range as in LZMA). It reads zeros behind the last byte: an encoder omits trailing ones.
 class RangeDecoder
 {
 public:
@@ -24,11 +24,11 @@ public:
         }
     }
 
-    /// The argument says nothing here; it lets one grammar serve encoder and decoder.
+    /// Decodes a bit. The second argument is unused; it lets one grammar serve encoder and decoder.
     std::uint32_t code_bit(Probability& zero, std::uint32_t /*value*/ = 0) noexcept
     {
         const std::uint32_t bound = (range_ >> kProbabilityBits) * zero;
-        // Without a branch: what a bit is can't be foreseen.
+        // Branchless: bits are not predictable.
         const std::uint32_t bit = code_ < bound ? 0U : 1U;
         const std::uint32_t if_one = 0U - bit;
         code_ -= bound & if_one;
@@ -52,11 +52,11 @@ public:
         return value;
     }
 
-    /// Bytes that no symbol has come near to are left over.
+    /// True if bytes are left that no symbol used.
     [[nodiscard]] bool has_surplus() const noexcept { return read_ < bytes_.size(); }
 
 private:
-    /// No bit makes the range smaller by more than 2^-8.
+    /// Refills the range, which no bit shrinks by more than 2^-8.
     void refill() noexcept
     {
         if (range_ < kRangeLeast)

@@ -16,7 +16,7 @@ namespace tactus
 namespace
 {
 
-/// Rounded to the nearest, halves up; `divisor` > 0.
+/// Quotient rounded to the nearest, halves up; `divisor` > 0.
 std::int64_t divide(std::int64_t value, std::int64_t divisor) noexcept
 {
     TACTUS_ASSERT(divisor > 0);
@@ -58,7 +58,7 @@ RingPrediction::RingPrediction(std::span<const GridPosition> ring) noexcept
         axis_ = std::abs(normal_[axis]) > std::abs(normal_[axis_]) ? axis : axis_;
     }
     outward_ = normal_[axis_] < 0 ? -1 : 1;
-    // At most 30 bits, so that their products with coordinates fit.
+    // The normal has at most 30 bits, so that products with coordinates fit.
     const auto width =
         static_cast<int>(std::bit_width(static_cast<std::uint64_t>(std::abs(normal_[axis_]))));
     for (std::int64_t& component : normal_)
@@ -67,7 +67,7 @@ RingPrediction::RingPrediction(std::span<const GridPosition> ring) noexcept
     }
 }
 
-/// How far the plane is above the mean where the other two coordinates are these, from the mean.
+/// Height of the plane above the mean at these other two coordinates, relative to the mean.
 std::int64_t RingPrediction::height_at(std::int64_t first, std::int64_t second) const noexcept
 {
     const std::int64_t normal = std::abs(normal_[axis_]);

@@ -24,21 +24,21 @@ struct StarRing
 /// A record that is linked, with its ring.
 struct LinkedStar
 {
-    const VsplitRecord* record{nullptr}; ///< Null when it isn't linked.
+    const VsplitRecord* record{nullptr}; ///< Null if it isn't linked.
     const StarRing* ring{nullptr};
     RecordId id{};
 };
 
-/// Makes a VsplitRecord of a CodedRecord and of the linked records that it depends on.
+/// Makes a VsplitRecord of a CodedRecord and the linked records that it depends on.
 ///
-/// The record that last changed a face is always one of the face's corners, the finest of them.
-/// So a fan is walked from its anchor: the next face over an edge is looked for in the stars of
-/// that edge's two vertices and of the owners met so far, and only where the deepest of these isn't
-/// the right one does the chunk name it. Vertices of a star, and the records that brought its
-/// faces, are among what its record depends on, so whoever has that can resolve it.
+/// The record that last changed a face is always one of the face's corners, the finest of them. So
+/// a fan is walked from its anchor: the next face over an edge is searched in the stars of that
+/// edge's two vertices and of the owners found so far; a chunk names it only if the deepest of
+/// these isn't the right one. Vertices of a star, and the records that brought its faces, are among
+/// a record's dependencies, so a record can be resolved with its dependencies alone.
 ///
 /// `Lookup` has `LinkedStar find(RecordId) const`, for records of the model. Bounded by the star's
-/// size; whole numbers but for one root. Source: docs/internals/spm-format.md, section 6.
+/// size; whole numbers except one root. Source: docs/internals/spm-format.md, section 6.
 template <typename Lookup>
 class StarResolver
 {
@@ -46,7 +46,7 @@ public:
     enum class Outcome : std::uint8_t
     {
         resolved,
-        waits, ///< For missing().
+        waits, ///< See missing().
         refused
     };
 
@@ -70,7 +70,7 @@ public:
     [[nodiscard]] const StarRing& ring() const noexcept { return ring_; }
     [[nodiscard]] RecordId missing() const noexcept { return missing_; }
 
-    /// The corners of a star's face at `place`, v first: canonical, whatever the face's own order.
+    /// Corners of the face at `place` of a star, v first, in canonical order.
     [[nodiscard]] std::array<VertexId, 3> corners(const LinkedStar& star,
                                                   std::uint32_t place) const noexcept
     {
@@ -86,8 +86,8 @@ public:
                           : std::array{v, w[place - 2], w[place - 1]};
     }
 
-    /// The place in the star of the face with the directed edge, or kNoPlace. Where the fan closes,
-    /// w0 = wk, its edges come before those of A and B.
+    /// Place in the star of the face with the directed edge, or kNoPlace. If the fan closes, w0 =
+    /// wk, its edges precede those of A and B.
     [[nodiscard]] std::uint32_t place_with_edge(const LinkedStar& star, VertexId from,
                                                 VertexId to) const noexcept
     {
@@ -118,7 +118,7 @@ public:
     }
     static constexpr std::uint32_t kNoPlace = 8;
 
-    /// The vertex's place on the grid; false when its record is missing.
+    /// Finds the vertex's place on the grid; false if its record is missing.
     [[nodiscard]] bool find_position(VertexId vertex, GridPosition& position) noexcept
     {
         TACTUS_ASSERT(vertex.value < counts_.vertices());
@@ -144,7 +144,7 @@ public:
         return true;
     }
 
-    /// The bucket of a face of the model; false when the record that brings it is missing.
+    /// Finds the bucket of a face of the model; false if the record that brings it is missing.
     [[nodiscard]] bool find_bucket(FaceId face, std::uint32_t& bucket) noexcept
     {
         TACTUS_ASSERT(face.value < counts_.face_ids());
@@ -159,15 +159,15 @@ public:
         return star.record != nullptr;
     }
 
-    /// The ring of the record resolved last as places on the grid, u first.
+    /// Grid places of the last resolved record's ring, u first.
     [[nodiscard]] std::span<const GridPosition> ring_positions() const noexcept
     {
         return std::span(ring_positions_).first(record_.fan_size + 2U);
     }
 
-    // Steps of an encoder, which tries anchors.
+    // Steps of the encoder, which tries anchors.
 
-    /// Starts a fan: the owners met are those from here on.
+    /// Starts a fan, with no owners found yet.
     void begin_fan() noexcept
     {
         owner_count_ = 0;
@@ -178,7 +178,7 @@ public:
         TACTUS_ASSERT(owner_count_ < owners_.size());
         owners_[owner_count_++] = owner;
     }
-    /// The state of the face with the directed edge as the walk derives it; base when it can't.
+    /// State of the face with the directed edge as the walk derives it; base if it can't.
     [[nodiscard]] FaceState derive(VertexId from, VertexId to) noexcept
     {
         FaceState best = FaceState::base();
@@ -308,7 +308,7 @@ private:
         return true;
     }
 
-    /// Over the directed edge from -> to into the next face, whose third corner is `third`.
+    /// Crosses the directed edge from -> to into the next face, whose third corner is `third`.
     [[nodiscard]] bool step(const Owner& owner, std::uint32_t fan_place, VertexId from, VertexId to,
                             VertexId& third) noexcept
     {
@@ -441,8 +441,9 @@ private:
     VsplitRecord record_;
     StarRing ring_;
     std::array<GridPosition, kMaxFanFaces + 2> ring_positions_{};
-    std::array<LinkedStar, kMaxFanFaces> owners_{};     ///< Met so far; of base faces none.
-    std::array<LinkedStar, kMaxFanFaces> fan_owners_{}; ///< By fan place.
+    std::array<LinkedStar, kMaxFanFaces> owners_{};     ///< Owners found so far; none for base
+                                                        ///< faces.
+    std::array<LinkedStar, kMaxFanFaces> fan_owners_{}; ///< Indexed by fan place.
     std::uint32_t owner_count_{0};
     RecordId missing_{};
 };

@@ -40,7 +40,7 @@ Flaw find_flaw(const PageTable& pages, const ModelCounts& counts) noexcept
         finder.expect((meta.held & ~meta.refined) == 0, "slot", slot,
                       "holds a record that is not refined");
     }
-    // Every page is found in its own slot, so with as many of both none is left in the index alone.
+    // Every page is found in its own slot, so equal counts leave none in the index alone.
     finder.expect(resident == pages.used(), "table", resident,
                   "pages are in its slots, and its index has others");
     return finder.first();

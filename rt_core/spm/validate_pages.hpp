@@ -9,9 +9,9 @@
 namespace tactus
 {
 
-/// Holds a page table against what it promises: each slot has one chunk at most and each chunk one
-/// slot; records are held only where they are refined, refined only where they are linked, and
-/// linked only where their page is here. One look at each slot.
+/// Checks the invariants of a page table: each slot has one chunk at most and each chunk one slot;
+/// held records are refined, refined ones linked, and linked ones on resident pages. One check per
+/// slot.
 [[nodiscard]] Flaw find_flaw(const PageTable& pages,
                              const ModelCounts& counts) noexcept TACTUS_NONBLOCKING;
 
