@@ -13,13 +13,12 @@ namespace tactus
 namespace
 {
 
-/// A list is made this much wider than is asked for, so that a tool goes on with it for a while.
+/// Factor by which a list is wider than needed, so that a tool can use it for a while.
 constexpr double kWider = 1.5;
-/// With more round a tool than its list holds, another walk would find the same: it waits so many
-/// frames.
+/// Frames that a tool waits after a walk filled its list: another walk would find the same objects.
 constexpr std::uint32_t kFullWait = 8;
-/// What a distance between two places may be off by, as a share of their coordinates: some ten
-/// roundings by 1.1e-16.
+/// Error of a distance between two places, as a share of their coordinates: about ten roundings by
+/// 1.1e-16.
 constexpr double kGapRounding = 2e-15;
 
 double size_of(const Vec3& place) noexcept
@@ -27,7 +26,7 @@ double size_of(const Vec3& place) noexcept
     return std::max({std::abs(place.x()), std::abs(place.y()), std::abs(place.z())});
 }
 
-/// What the distance of both is at least, from the square of the one that was computed.
+/// Lower bound on the distance of both, from the computed squared distance.
 double proven_gap(const Vec3& place, const Ball& ball, double square) noexcept
 {
     const double length = std::sqrt(square);
@@ -179,7 +178,7 @@ void BroadPhase::walk(ToolRange& tool) noexcept
     tool.waited = 0;
 }
 
-/// Objects farther than the second of those that are not listed change nothing.
+/// Searches a group. Objects farther than the second of those that are not listed change nothing.
 void BroadPhase::search(const Group& group, std::uint32_t first, const ToolRange& tool,
                         Findings& found) noexcept
 {
@@ -219,7 +218,7 @@ void BroadPhase::search(const Group& group, std::uint32_t first, const ToolRange
     looked_at_ += kGroup;
 }
 
-/// The nearest ones are listed, by their numbers; one at least, if there is any.
+/// Lists the nearest objects by their numbers; at least one if there is any.
 void BroadPhase::keep_nearest(ToolRange& tool, Findings& found) noexcept
 {
     const std::span<Candidate> listed = scratch_.first(found.listed);

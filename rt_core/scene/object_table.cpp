@@ -13,7 +13,7 @@ namespace tactus
 namespace
 {
 
-/// A rotation that is as exact as kPoseRounding takes it to be stays as it is, to the last bit.
+/// Deviation up to which a rotation keeps its bits: as exact as kPoseRounding assumes.
 constexpr double kRounded = 2e-15;
 
 } // namespace

@@ -13,23 +13,23 @@
 namespace tactus
 {
 
-/// Whether an object can stand so; false for what is no number, too.
+/// True if an object can have this pose; false for NaN.
 [[nodiscard]] bool is_sound(const ObjectPose& pose) noexcept TACTUS_NONBLOCKING;
 
 /// An object of the scene.
 struct Object
 {
     ObjectSpec spec;
-    ObjectPose pose; ///< Of the model's frame.
+    ObjectPose pose; ///< Pose of the model's frame.
     std::uint32_t generation{0};
-    std::uint32_t came_frame{0};  ///< In which it came; 0 of those that a frame starts with.
-    std::uint32_t moved_frame{0}; ///< In which it came or moved last.
+    std::uint32_t came_frame{0};  ///< Frame in which it was added; 0 at start.
+    std::uint32_t moved_frame{0}; ///< Frame in which it was last added or moved.
     bool is_here{false};
-    bool was_here{false}; ///< The number has been used, and `generation` was the last.
+    bool was_here{false}; ///< The number has been used, last with `generation`.
 };
 
-/// The objects of a scene by their numbers, and the check of what is to become of them. Haptic
-/// thread; a change costs some 0.05 us, all that follows from it in a frame included.
+/// The objects of a scene by their numbers, and the checks of their changes. Haptic thread; a
+/// change costs about 0.05 us, including all consequences in a frame.
 class ObjectTable
 {
 public:
@@ -39,13 +39,13 @@ public:
     {
     }
 
-    /// Why the change of an object can't be made; none where it can. Of the models it may show each
-    /// has a true in `is_shown`.
+    /// Reason why an object's change is refused; none if it can be made. `is_shown` is true for
+    /// each model that an object may show.
     [[nodiscard]] std::optional<ChangeRefusal>
     find_refusal(const SceneChange& change,
                  std::span<const bool> is_shown) const noexcept TACTUS_NONBLOCKING;
 
-    /// Makes a change that was not refused; `origin_m` is that of the object's model.
+    /// Applies a change that was not refused; `origin_m` is that of the object's model.
     void make(const SceneChange& change, const Vec3& origin_m,
               std::uint32_t frame) noexcept TACTUS_NONBLOCKING;
 

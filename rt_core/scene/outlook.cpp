@@ -12,7 +12,7 @@ namespace tactus
 namespace
 {
 
-/// An approach that is a smaller share of the reach is not worth a second place.
+/// Share of the reach below which an approach needs no second place.
 constexpr double kLeastApproach = 0.1;
 
 } // namespace

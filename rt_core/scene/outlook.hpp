@@ -10,52 +10,53 @@
 namespace tactus
 {
 
-/// Where a tool is in this frame, and how far it looks. World frame, SI.
+/// Pose and range of a tool in this frame. World frame, SI.
 struct ToolStance
 {
-    Similarity place;               ///< Of the tool's frame.
-    double reach_m{0.0};            ///< From the core: what has to be exact for this frame's force.
-    Vec3 approach_m{0.0, 0.0, 0.0}; ///< Expected way until a front would be refined, 10 ms.
+    Similarity place; ///< Pose of the tool's frame.
+    /// Distance from the core within which the surface must be exact for this frame's force.
+    double reach_m{0.0};
+    Vec3 approach_m{0.0, 0.0, 0.0}; ///< Expected displacement until a front is refined, 10 ms.
 };
 
-/// Where a pair's tool is before its object, and how far the pair looks: what its refinement, its
-/// prefetching and its query ask by. In the model's frame.
+/// Pose of a pair's tool before its object, and the pair's range: the basis of its refinement,
+/// prefetching and query. Model frame.
 ///
 /// The distance from a tool to a surface changes by no more than the tool moves, so a proven L
-/// stays of use: while L minus the motion is beyond what the tool asks for, the pair is asleep and
-/// nothing has to be looked at. Haptic thread.
+/// stays useful: while L minus the motion is beyond the pair's range, the pair is asleep and no
+/// stage has to check it. Haptic thread.
 class Outlook
 {
 public:
-    /// Records are merged when they are this much farther than the reach: between the two, nothing
-    /// changes when a tool goes back and forth.
+    /// Distance, in reaches, beyond which records are merged: up to it, a tool that moves back and
+    /// forth changes nothing.
     static constexpr double kKeepFactor = 1.25;
 
     /// Places the tool for this frame.
     void look(const ToolSpec& tool, const ToolStance& stance,
               const ObjectPose& pose) noexcept TACTUS_NONBLOCKING;
-    /// Looks even where the last distance proves that there is nothing to see.
+    /// Keeps the pair awake even if the last distance proves that nothing is in range.
     void wake() noexcept { is_asleep_ = false; }
-    /// Keeps what a query found at the present place.
+    /// Keeps a query's answer for the present place.
     void remember(const DistanceAnswer& answer) noexcept TACTUS_NONBLOCKING;
 
-    /// The tool's, at its proxy now.
+    /// Core of the tool at its proxy.
     [[nodiscard]] const PlacedCore& core() const noexcept { return core_; }
     [[nodiscard]] const CoreCover& cover() const noexcept { return cover_; }
     [[nodiscard]] double reach_m() const noexcept { return reach_m_; }
     [[nodiscard]] const Vec3& approach_m() const noexcept { return approach_m_; }
-    /// Proven out of reach; no stage needs to look.
+    /// Proven out of range; no stage needs to check the pair.
     [[nodiscard]] bool is_asleep() const noexcept { return is_asleep_; }
-    /// Whether the place that the tool comes to is worth refining beside the one where it is.
+    /// True if the place that the tool approaches is worth refining beside its present one.
     [[nodiscard]] bool looks_ahead() const noexcept TACTUS_NONBLOCKING;
-    /// Whether a surface is surely so near that the front goes along with the tool: what lies ahead
-    /// then comes bit by bit. The first contact needs all at once.
+    /// True if a surface is certainly so near that the front moves along with the tool, so that
+    /// needs ahead arrive gradually. A first contact needs all at once.
     [[nodiscard]] bool is_near_surface() const noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] bool has_known() const noexcept { return has_known_; }
-    /// The last answer, taken where the tool was then.
+    /// The last answer, for the tool's place at that time.
     [[nodiscard]] const DistanceAnswer& known() const noexcept { return known_; }
-    /// What the last answer says of the present place, without looking: a valid bracket.
+    /// Bounds for the present place from the last answer and the motion since.
     [[nodiscard]] DistanceAnswer from_motion() const noexcept TACTUS_NONBLOCKING;
 
 private:
@@ -65,8 +66,8 @@ private:
     Vec3 approach_m_{0.0, 0.0, 0.0};
     bool is_asleep_{false};
     bool has_known_{false};
-    PlacedCore known_core_; ///< Where `known_` was taken, and
-    double motion_m_{0.0};  ///< how far it has moved since.
+    PlacedCore known_core_; ///< Core for which `known_` was answered.
+    double motion_m_{0.0};  ///< Motion since then.
     DistanceAnswer known_;
 };
 
