@@ -16,37 +16,37 @@
 namespace tactus
 {
 
-/// The pairs of tools and objects that are near each other, their outputs, and where the next ones
-/// have room. Haptic thread.
+/// The pairs of tools and objects that are near each other, their outputs, and free places for new
+/// pairs. Haptic thread.
 class AwakePairs
 {
 public:
-    /// Room for `most` pairs of such tools.
+    /// Capacity for `most` pairs of such tools.
     AwakePairs(Arena& arena, std::span<const ToolSpec> tools, std::uint32_t most) noexcept;
 
     [[nodiscard]] std::uint32_t capacity() const noexcept
     {
         return static_cast<std::uint32_t>(pairs_.size());
     }
-    /// Tool by tool, in each the objects by their numbers.
+    /// Tool by tool; the pairs of a tool in order of the objects' numbers.
     [[nodiscard]] std::span<Pair* const> all() const noexcept { return awake_.view(); }
     [[nodiscard]] std::span<Pair* const> of(std::uint32_t tool) const noexcept
     {
         return all().subspan(first_of_tool_[tool], first_of_tool_[tool + 1] - first_of_tool_[tool]);
     }
-    /// As order() left them, the most urgent first.
+    /// The pairs as order() sorted them, the most urgent first.
     [[nodiscard]] std::span<Pair* const> by_urgency() const noexcept { return order_.view(); }
-    /// After Pair::place() of each.
+    /// Sorts the pairs; called after Pair::place() of each.
     void order() noexcept TACTUS_NONBLOCKING;
 
-    /// There must be room.
+    /// Begins a pair; there must be room.
     void begin(const PairParts& parts) noexcept TACTUS_NONBLOCKING;
-    /// Releases what is open for the pair in its models.
+    /// Ends a pair and releases its closures in its models.
     void end(Pair& pair, ModelSet& models) noexcept TACTUS_NONBLOCKING;
 
-    /// The frame ends: takes what each pair found into outputs().
+    /// Copies the results of each pair into outputs() at the end of the frame.
     void report() noexcept TACTUS_NONBLOCKING;
-    /// What report() took, in the order of all().
+    /// Outputs of the last report(), in the order of all().
     [[nodiscard]] std::span<const PairOutput> outputs() const noexcept
     {
         return std::span(outputs_).first(awake_.size());
@@ -61,7 +61,7 @@ private:
     StaticVector<std::uint32_t, kMaxPairs> free_;
     StaticVector<PairFront*, PairFront::kFronts> free_fronts_;
     StaticVector<Pair*, kMaxPairs> awake_;
-    std::array<std::uint32_t, kMaxTools + 1> first_of_tool_{}; ///< Where each tool's begin.
+    std::array<std::uint32_t, kMaxTools + 1> first_of_tool_{}; ///< First pair of each tool.
     StaticVector<Pair*, kMaxPairs> order_;
     std::array<PairOutput, kMaxPairs> outputs_{};
 };

@@ -9,10 +9,10 @@
 namespace tactus
 {
 
-/// A frame's last stage: each tool that is here and does not rest goes towards its hand and answers
-/// with a force, into ToolSet::outputs(). A tool that has farther to go than its queries prove goes
-/// in up to RigidProxy::kStepsPerFrame steps, with its queries asked again before each. Haptic
-/// thread.
+/// Last stage of a frame: moves each present tool that does not rest towards its device and
+/// computes its force, into ToolSet::outputs(). A tool that has farther to go than its queries
+/// prove moves in up to RigidProxy::kStepsPerFrame steps, with its queries repeated before each.
+/// Haptic thread.
 void render_forces(FrameParts& parts, NarrowPhase& narrow,
                    FrameAccount& account) noexcept TACTUS_NONBLOCKING;
 

@@ -26,18 +26,18 @@ namespace tactus
 
 /// The controller's frame: all stages in order, every period, on the haptic thread.
 ///
-/// Takes all its memory from the arena at start. `run` makes no allocation, lock, system call,
-/// log or exception, reads no clock, and every loop in it is bounded by the budgets and by
-/// limits.hpp. The same inputs, arrivals included, give the same bits.
+/// Takes all its memory from the arena at start. `run` does not allocate, lock, call the system,
+/// log or throw and reads no clock; every loop in it is bounded by the budgets and by limits.hpp.
+/// The same inputs, including arrivals, give the same bits.
 class Frame
 {
 public:
-    /// Reads headers and base meshes and lays out all pools. Not on the haptic thread. Refused with
-    /// nothing changed, but base_refused: then there is no frame, and the memory is used up. The
-    /// arena's memory outlives the frame.
+    /// Reads headers and base meshes and lays out all pools. Not on the haptic thread. A refusal
+    /// changes nothing, except base_refused, which leaves no frame and uses up the memory. The
+    /// arena's memory must outlive the frame.
     [[nodiscard]] static Result<Done, FrameRefusal> start(std::optional<Frame>& frame, Arena& arena,
                                                           const FrameSetup& setup) noexcept;
-    /// Bytes that start() takes from the arena for headers that parse (asserted).
+    /// Bytes that start() takes from the arena, for headers that parse (asserted).
     [[nodiscard]] static std::size_t required_bytes(const FrameSetup& setup) noexcept;
 
     Frame(const Frame&) = delete;
@@ -46,33 +46,32 @@ public:
     Frame& operator=(Frame&&) = delete;
     ~Frame() = default;
 
-    /// One period, on the haptic thread. A change that can't be made is refused, counted by its
-    /// reason, and changes nothing. The output is valid until the next run.
+    /// Runs one period, on the haptic thread. A change that can't be made is refused, counted by
+    /// its reason, and changes nothing. The output is valid until the next run.
     [[nodiscard]] FrameOutput run(const FrameInput& input,
                                   StageMark mark = {}) noexcept TACTUS_NONBLOCKING;
 
-    /// Runs last frame's queries again, into scratch memory, with the same machine code: called in
-    /// the wait before the deadline it brings code and data back into the caches. No effect on any
-    /// result.
+    /// Warms caches: repeats the last frame's queries, into scratch memory, with the same machine
+    /// code. Called in the wait before the deadline. No effect on any result.
     void rehearse() noexcept TACTUS_NONBLOCKING;
 
-    /// In set-up order; there must be such a tool, which nothing checks. Likewise with models.
+    /// Tool, in set-up order; it must exist, which is not checked. The same holds for models.
     [[nodiscard]] const Tool& tool(std::uint32_t index) const noexcept
     {
         return parts_.tools[index];
     }
-    /// The scene's objects by their numbers, as the last frame left them.
+    /// The scene's objects by their numbers, after the last frame.
     [[nodiscard]] const ObjectTable& objects() const noexcept { return parts_.objects; }
-    /// What tools may touch, most urgent first: where pages were looked for last.
+    /// Regions that tools may touch, most urgent first: the last ones searched for pages.
     [[nodiscard]] std::span<const RankedRegion> regions() const noexcept
     {
         return loading_.regions();
     }
-    /// The transport thread's parts of a model: its inbox, linker and slots.
+    /// A model with its inbox, linker and slots, which are the transport thread's.
     [[nodiscard]] Model& model(ModelId id) noexcept { return parts_.models[id]; }
     [[nodiscard]] const Model& model(ModelId id) const noexcept { return parts_.models[id]; }
     [[nodiscard]] std::uint32_t model_count() const noexcept { return parts_.models.size(); }
-    /// What the models share; slots, door and links are for the transport thread, too.
+    /// Shared data of the models; slots, door and links are used by the transport thread, too.
     [[nodiscard]] ModelPools& pools() noexcept { return parts_.pools; }
 
     struct PassKey

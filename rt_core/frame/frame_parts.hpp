@@ -15,12 +15,12 @@
 namespace tactus
 {
 
-/// What a frame's stages work on: tools, objects, their models, and the pairs of both. Does not
-/// move, for pairs point at the rest. Haptic thread.
+/// Data of a frame's stages: tools, objects, their models, and the pairs of both. Does not move,
+/// since pairs point at the other parts. Haptic thread.
 struct FrameParts
 {
-    /// Reads base meshes and takes memory for all parts; the set-up was not refused. `models` has
-    /// fewer than the set-up where a base mesh is damaged, and none when the arena only measures.
+    /// Reads base meshes and takes memory for all parts; the set-up must be valid. `models` has
+    /// fewer models than the set-up if a base mesh is damaged, and none if the arena only measures.
     FrameParts(Arena& arena, const FrameSetup& setup) noexcept;
 
     PairRules rules;
@@ -31,14 +31,14 @@ struct FrameParts
     AwakePairs pairs;
 };
 
-/// What one frame may do, and what it has done and found so far. Haptic thread.
+/// Limits, work and results of one frame so far. Haptic thread.
 struct FrameAccount
 {
     Budgets budgets;
     WorkShares shares;
     WorkCounters work;
     FrameFault faults{FrameFault::none};
-    SceneOutput scene; ///< What a frame at rest does not count again is the last one's.
+    SceneOutput scene; ///< Starts with the last frame's values, which a frame at rest keeps.
 
     void begin(const Budgets& given) noexcept TACTUS_NONBLOCKING
     {

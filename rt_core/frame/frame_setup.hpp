@@ -20,55 +20,58 @@ namespace tactus
 /// One model: bytes of its header and base mesh, and its pool sizes.
 struct ModelSource
 {
-    std::span<const std::byte> header; ///< Copied. Hashes are not verified.
-    /// Coded; read once. Empty, where there is room for guests: the model is one, which comes when
-    /// a tool is near and goes again.
+    std::span<const std::byte> header; ///< Copied; hashes are not verified.
+    /// Coded; read once. Empty for a streamed model, which is loaded when a tool is near and
+    /// removed again; needs `for_guests`.
     std::span<const std::byte> base;
-    ModelCapacities capacities; ///< A guest brings nothing.
+    ModelCapacities capacities; ///< Unused for a streamed model.
 };
 
-/// What a scene may come to. 0: what the set-up has.
+/// Capacities of a scene. 0: the size of the set-up.
 struct SceneCapacities
 {
-    std::uint32_t objects{0}; ///< At once; at most kMaxObjects, at least those of the set-up.
-    std::uint32_t pairs{0};   ///< At most kMaxPairs; 0: each tool with each object, or kMaxPairs.
+    /// Objects at once; at most kMaxObjects, at least those of the set-up.
+    std::uint32_t objects{0};
+    /// Pairs, at most kMaxPairs; 0: each tool with each object, up to kMaxPairs.
+    std::uint32_t pairs{0};
 };
 
-/// What a frame is made of. `models[object.model]` must exist for every object, and for every tool
-/// that is a mesh one that no object shows: FrameRefusal. Materials, poses and tools are not
-/// checked here: theirs are the ranges of a SceneChange and of ToolSpec. The spans are read during
+/// Parts of a frame. `models[object.model]` must exist for every object; a tool that is a mesh
+/// needs a model that no object shows: FrameRefusal. Materials, poses and tools are not checked
+/// here; they must be in the ranges of a SceneChange and of ToolSpec. The spans are read during
 /// Frame::start() only.
 struct FrameSetup
 {
     std::span<const ModelSource> models;
-    /// Those that are there at first, by their numbers and of generation 0.
+    /// Objects at start, by their numbers, with generation 0.
     std::span<const ObjectSpec> objects;
-    /// Where each of them stands; of later ones where its source stood.
+    /// Pose of each of them; missing ones are those of the source mesh.
     std::span<const ObjectPose> poses;
-    std::span<const ToolSpec> tools; ///< All that there can be, and are at first.
+    std::span<const ToolSpec> tools; ///< All tools that can exist; all are present at start.
     SceneCapacities capacities;
-    /// Of the pools, beside what models bring: in it guests come and go.
+    /// Additional pool capacities, for streamed models.
     ModelCapacities for_guests;
-    std::int64_t period_ns{1'000'000};         ///< Above 0, which run() asserts.
+    std::int64_t period_ns{1'000'000};         ///< Above 0, asserted by run().
     std::int64_t pose_age_max_ns{100'000'000}; ///< Older poses make answers stale.
-    /// A model that fits its pools is loaded and refined fully, once (static mode).
+    /// Load and refine a model fully, once, if it fits its pools (static mode).
     bool static_when_it_fits{false};
     Prediction prediction{Prediction::automatic};
-    /// Coarse faces count as the surface where that changes a force by no more than this, and by no
-    /// more than a quarter of a quantum; and farther where pools or budgets don't suffice for that
-    /// (SurfaceTolerance). 0: only exact faces do. For tools that are no meshes.
+    /// Coarse faces count as the surface if that changes a force by no more than this, with an
+    /// error of no more than a quarter of a quantum; more if pools or budgets don't suffice
+    /// (SurfaceTolerance). 0: exact faces only. Not for tools that are meshes.
     double force_tolerance_n{0.0};
-    FrameVariant variant;            ///< As it is: the frame that ships.
-    const Kernels* kernels{nullptr}; ///< Null: best_kernels(). Outlive the frame.
+    FrameVariant variant;            ///< Default: the shipped frame.
+    const Kernels* kernels{nullptr}; ///< Null: best_kernels(). Must outlive the frame.
 };
 
-/// Why there is no frame.
+/// Reasons for which a frame is refused.
 enum class FrameRefusal : std::uint8_t
 {
-    too_many,         ///< More tools, objects, pairs or models than limits.hpp allows, no tool or
-                      ///< no model, or more objects than SceneCapacities has room for.
-    too_many_faces,   ///< The models bring more than kMaxPoolFaces.
-    unknown_model,    ///< An object or a tool names a model that isn't there, a tool a guest.
+    too_many,       ///< More tools, objects, pairs or models than limits.hpp allows, no tool or
+                    ///< no model, or more objects than SceneCapacities allows.
+    too_many_faces, ///< The models bring more than kMaxPoolFaces.
+    /// An object or a tool names a model that does not exist, or a tool names a streamed one.
+    unknown_model,
     shared_model,     ///< A tool names a model that an object shows.
     header_refused,   ///< A model's header did not pass its checks.
     base_refused,     ///< A model's base mesh did not pass its checks.
@@ -79,19 +82,19 @@ enum class FrameRefusal : std::uint8_t
 /// One line for the user; static.
 [[nodiscard]] const char* refusal_text(FrameRefusal refusal) noexcept;
 
-/// Whether a model of the set-up comes and goes.
+/// True if a model of the set-up is streamed.
 [[nodiscard]] inline bool is_guest(const FrameSetup& setup, std::size_t model) noexcept
 {
     return setup.models[model].base.empty() && setup.for_guests.base_cells > 0;
 }
 
-/// What all models together bring to the pools, and what is for guests.
+/// Sum of all models' capacities and those for streamed models.
 [[nodiscard]] ModelCapacities pool_capacities(const FrameSetup& setup) noexcept;
 
-/// As they will be.
+/// Capacities with defaults replaced.
 [[nodiscard]] SceneCapacities capacities_of(const FrameSetup& setup) noexcept;
 
-/// Why there can be no frame of this, as far as that shows before it is made.
+/// Reason for a refusal that shows before the frame is made; none if there is none.
 [[nodiscard]] std::optional<FrameRefusal> find_refusal(const FrameSetup& setup) noexcept;
 
 } // namespace tactus

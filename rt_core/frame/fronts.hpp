@@ -14,24 +14,24 @@ namespace tactus
 /// The paper's two fronts, region by region, for reports and tests. A record belongs to the region
 /// of the header's regular partition that holds its vertex, so each record has exactly one.
 ///
-/// Every function looks once at each record of each adopted page: about 10 ns a record, 1 ms for
-/// 1,600 pages. Not for the frame. Haptic thread, or any thread while no frame runs.
+/// Every function visits each record of each adopted page once: about 10 ns a record, 1 ms for
+/// 1,600 pages. Not for use within a frame. Haptic thread, or any thread while no frame runs.
 struct FrontCount
 {
     std::uint32_t loaded{0};  ///< Linked records of adopted pages.
     std::uint32_t refined{0}; ///< Records that are split; all of them are loaded.
 };
 
-/// Both fronts over the whole model.
+/// Counts of both fronts over the whole model.
 [[nodiscard]] FrontCount count_fronts(const Model& model) noexcept;
 [[nodiscard]] FrontCount count_fronts(const Model& model, RegionId region) noexcept;
 
 /// Writes the region's split records into `out`, as many as fit, in the order of page slots.
-/// Returns how many there are; more than `out.size()` means that the list is cut short.
+/// Returns their total; more than `out.size()` means that the list is truncated.
 std::uint32_t list_refined_front(const Model& model, RegionId region,
                                  std::span<RecordId> out) noexcept;
 
-/// The same for the records that are loaded.
+/// The same for loaded records.
 std::uint32_t list_loaded_front(const Model& model, RegionId region,
                                 std::span<RecordId> out) noexcept;
 

@@ -12,9 +12,9 @@
 namespace tactus
 {
 
-/// Objects that tools may touch within BelievedSpeed::kPatience_s, or by a leap that is no jump yet
-/// (Tool::leap_m()), as the last frame left both, those in reach first. Tools without a force are
-/// left out. `pairs`: of that frame's output. Haptic thread, between frames.
+/// Lists objects that tools may touch within BelievedSpeed::kPatience_s, or by a displacement that
+/// is not yet a jump (Tool::leap_m()), as the last frame left both, objects in reach first. Tools
+/// without a force are skipped. `pairs` are that frame's output. Haptic thread, between frames.
 void list_touches(const Frame& frame, std::span<const PairOutput> pairs,
                   const BelievedSpeed& belief, ObjectTouches& touches) noexcept TACTUS_NONBLOCKING;
 

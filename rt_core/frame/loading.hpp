@@ -13,14 +13,14 @@
 namespace tactus
 {
 
-/// A frame's first stage: ranks the regions that tools may touch, adopts what has arrived, lets
-/// guests come and go, and requests what the regions lack. Haptic thread.
+/// First stage of a frame: ranks the regions that tools may touch, adopts arrivals, loads and
+/// removes streamed models, and requests what the regions lack. Haptic thread.
 class Loading
 {
 public:
     explicit Loading(const FrameSetup& setup) noexcept;
 
-    /// After the pairs were placed and ordered.
+    /// Runs the stage; the pairs must be placed and ordered.
     void run(FrameParts& parts, FrameAccount& account) noexcept TACTUS_NONBLOCKING;
 
     /// The regions of the last run, most urgent first.
@@ -30,7 +30,7 @@ private:
     void rank(std::span<Pair* const> order) noexcept;
 
     RegionRanking ranking_;
-    std::optional<ModelLife> life_; ///< None where there is no room for guests.
+    std::optional<ModelLife> life_; ///< None without capacity for streamed models.
 };
 
 } // namespace tactus

@@ -13,38 +13,39 @@
 namespace tactus
 {
 
-/// Lets guests come and go: models of which a frame starts with the header alone.
+/// Loads and removes streamed models, of which a frame starts with the header alone.
 ///
 ///     known -> wanted -> arriving -> resident -> leaving -> known
 ///
-/// One that is wanted and whose base mesh doesn't come is known again: the transport thread gives
-/// its room back. While a pair is of it it is wanted again after a while.
+/// A wanted model whose base mesh doesn't arrive is known again: the transport thread returns its
+/// cells. While it has a pair it is wanted again after a while.
 ///
-/// A guest is wanted as soon as a pair is of it, which is as far ahead as the hand comes in 150 ms
-/// or as kGuestLead_m. Room for its base mesh is kept then, the mesh is asked for, and its faces
+/// A model is wanted as soon as it has a pair, which is as far ahead as the device moves in 150 ms,
+/// or kGuestLead_m. Memory for its base mesh is then reserved, the mesh is requested, and its faces
 /// enter in slices, those of the most urgent pair first. Until it is resident its pairs answer from
-/// its box. It leaves when no pair has been of it for 2 s, or before that where one that is wanted
-/// has no room: then the one that was left longest ago, or else, of those whose pairs can spare
-/// them, that of the least urgent one, if that is twice as far from a touch. Haptic thread.
+/// its box. It leaves after 2 s without a pair, or earlier if a wanted model has no room: then the
+/// model that has been without a pair for longest leaves, or else, of those whose pairs can spare
+/// them, that of the least urgent pair, if it is twice as far from contact. Haptic thread.
 class ModelLife
 {
 public:
     explicit ModelLife(std::int64_t period_ns) noexcept;
 
-    /// One frame, after what has arrived was adopted; `pairs` by urgency. A pair sees what comes of
-    /// it in the next frame.
+    /// Runs one frame, after arrivals were adopted; `pairs` by urgency. Pairs see the changes in
+    /// the next frame.
     void go_on(ModelSet& models, std::span<Pair* const> pairs, std::uint32_t frame,
                WorkCounters& work) noexcept TACTUS_NONBLOCKING;
 
 private:
-    /// One frame of one model.
+    /// State of one frame.
     struct Turn
     {
-        std::uint32_t entering{0};  ///< Faces that may still go in in this frame,
-        std::uint32_t leaving{0};   ///< and out.
-        const Pair* waits{nullptr}; ///< The most urgent one whose model has no room; may be none.
-        /// A model gave its room back, which the one that waits finds in the next frame; before
-        /// that no other one has to go.
+        std::uint32_t entering{0}; ///< Faces that may still enter in this frame.
+        std::uint32_t leaving{0};  ///< Faces that may still leave.
+        /// Most urgent pair whose model has no room; null if none.
+        const Pair* waits{nullptr};
+        /// A model returned its room, which the waiting pair finds in the next frame; no other
+        /// model has to leave before that.
         bool gave_room{false};
     };
     static void want(ModelSet& models, const Pair& pair, std::uint32_t frame, Turn& turn) noexcept;

@@ -13,31 +13,32 @@
 namespace tactus
 {
 
-/// A frame's query stage: each pair's distance and the surface that its tool may touch.
+/// Query stage of a frame: each pair's distance, and the surface that its tool may touch.
 ///
-/// The most urgent pairs come first; the others have what these leave of the frame's walks and of
-/// the room for triangles. Pairs of tools that are meshes have an allowance of their own
-/// (kMeshBudgetFactor) and use none of it. Haptic thread.
+/// The most urgent pairs come first; the others share the rest of the frame's walks and of the room
+/// for triangles. Pairs of tools that are meshes have a separate allowance (kMeshBudgetFactor) and
+/// use none of that. Haptic thread.
 class NarrowPhase
 {
 public:
-    /// Room for the triangles of the set-up's pairs.
+    /// Takes memory for the triangles of the set-up's pairs.
     NarrowPhase(Arena& arena, const FrameSetup& setup) noexcept;
 
-    /// The queries of all tools but those that rest.
+    /// Queries of all tools except resting ones.
     void run(FrameParts& parts, FrameAccount& account) noexcept TACTUS_NONBLOCKING;
 
-    /// The queries of one tool again, from where it has come to since. False where one of them has
-    /// no whole budget left: its answer could prove less than the last one's.
+    /// Repeats the queries of one tool from its new place. False if one of them lacks a whole
+    /// budget: its answer could prove less than the last one.
     [[nodiscard]] bool try_again(FrameParts& parts, std::uint32_t tool,
                                  FrameAccount& account) noexcept TACTUS_NONBLOCKING;
 
-    /// Frame::rehearse(), in the room of the last frame's surfaces, which are of no use any more.
+    /// Frame::rehearse(), in the memory of the last frame's surfaces, which are not needed any
+    /// more.
     void rehearse(const FrameParts& parts,
                   const FrameAccount& account) const noexcept TACTUS_NONBLOCKING;
 
 private:
-    /// What the queries have visited and tested.
+    /// Nodes visited and triangles tested by queries.
     struct Walked
     {
         std::uint32_t nodes{0};
@@ -48,9 +49,10 @@ private:
     void count(const Walked& before, const WorkCounters& now) noexcept;
 
     SurfaceRoom room_;
-    SurfaceRoom room_left_;                             ///< After the queries of this frame.
-    Walked walked_;                                     ///< In this frame.
-    std::array<std::uint32_t, kMaxTools> query_work_{}; ///< By tool: of its pairs in this frame.
+    SurfaceRoom room_left_;                             ///< Left after the queries of this frame.
+    Walked walked_;                                     ///< Total of this frame.
+    std::array<std::uint32_t, kMaxTools> query_work_{}; ///< Work of each tool's pairs in this
+                                                        ///< frame.
 };
 
 } // namespace tactus

@@ -16,35 +16,37 @@
 namespace tactus
 {
 
-/// Pairs each tool with its nearby objects until pairs run out. To all other objects the tool keeps
-/// a proven clearance (ToolStatus::clear_m).
+/// Pairs each tool with its nearby objects until pairs run out. For all other objects the tool
+/// keeps a proven clearance (ToolStatus::clear_m).
 ///
 /// A pair lasts as long as its object is on the tool's list (BroadPhase) and among the nearest that
-/// pairs are enough for. An object that was out of a tool's sight may have come round it: a pair
-/// begins apart, without a force, unless both were proven apart in the last frame by more than the
-/// two have moved since. Haptic thread.
+/// pairs suffice for. An object beyond the list may have passed round the tool: a pair begins
+/// apart, without a force, unless both were proven apart in the last frame by more than their
+/// motion since. Haptic thread.
 class Neighbours
 {
 public:
     Neighbours(Arena& arena, const FrameSetup& setup) noexcept;
 
-    /// Changes of the scene, before find(). The object has come or moved.
+    /// Adds or moves an object, before find().
     void place(const FrameParts& parts, std::uint32_t object) noexcept TACTUS_NONBLOCKING;
-    /// The object stood at `before`: tools without a pair of it may have been leapt by.
+    /// Handles an object's motion from `before`: it may have passed over tools without a pair of
+    /// it.
     void look_for_leap(FrameParts& parts, std::uint32_t object,
                        const ObjectPose& before) noexcept TACTUS_NONBLOCKING;
-    /// The object goes: its pairs end.
+    /// Removes an object and ends its pairs.
     void remove(FrameParts& parts, std::uint32_t object) noexcept TACTUS_NONBLOCKING;
-    /// The tool comes or goes: its pairs end, and nothing is known of what is near it.
+    /// Ends the pairs of an added or removed tool, and drops its neighbours.
     void forget(FrameParts& parts, std::uint32_t tool) noexcept TACTUS_NONBLOCKING;
 
-    /// The pairs of this frame, and the clearances to all else; after the tools have begun.
+    /// Finds the pairs of this frame and the clearances to all other objects; the tools must have
+    /// begun.
     void find(FrameParts& parts, FrameAccount& account) noexcept TACTUS_NONBLOCKING;
 
 private:
-    /// Metres, then a number of the tool and the object.
+    /// Metres, then a unique number of tool and object, which orders equal distances.
     using Nearness = std::pair<double, std::uint32_t>;
-    /// Farther than anything: there is room for all.
+    /// Farther than anything: all pairs fit.
     static constexpr Nearness kNothing{kInfinity, 0xFFFF'FFFFU};
 
     void look(const FrameParts& parts) noexcept;
@@ -59,8 +61,9 @@ private:
                          FrameAccount& account) noexcept;
 
     BroadPhase broad_;
-    std::uint32_t paired_lists_{0}; ///< BroadPhase::lists() that all are pairs of; 0: not all.
-    /// By tool: the farthest way in this frame of an object that it has no pair of.
+    std::uint32_t paired_lists_{0}; ///< BroadPhase::lists() for which all pairs exist; 0: some are
+                                    ///< missing.
+    /// By tool: largest displacement in this frame of an object without a pair of it.
     std::array<double, kMaxTools> leap_m_{};
     bool has_guests_{false};
 };

@@ -24,7 +24,7 @@
 namespace tactus
 {
 
-/// What all pairs of a frame go by.
+/// Common settings of all pairs of a frame.
 struct PairRules
 {
     std::int64_t period_ns{1'000'000};
@@ -32,39 +32,39 @@ struct PairRules
     Prediction prediction{Prediction::automatic};
     double force_tolerance_n{0.0};
     FrameVariant variant;
-    std::int64_t now_ns{0}; ///< This frame's.
+    std::int64_t now_ns{0}; ///< Time of this frame.
     std::uint32_t frame{0};
-    WorkBudget* work{nullptr}; ///< This frame's.
+    WorkBudget* work{nullptr}; ///< Work of this frame.
 };
 
-/// A model and its name in the frame.
+/// A model and its id in the frame.
 struct NamedModel
 {
     ModelId id{};
     const Model* model{nullptr};
 };
 
-/// Whom a pair brings together; all of it outlives the pair.
+/// Parts of a pair, which outlive it.
 struct PairParts
 {
     std::uint32_t tool_index{0};
     std::uint32_t object_number{0};
     const PairRules* rules{nullptr};
     const Tool* tool{nullptr};
-    const Object* object{nullptr}; ///< As it is in this frame, whenever a function is called.
-    /// One of them has come round the other: no force until they are proven apart.
+    const Object* object{nullptr}; ///< Always in its present state.
+    /// One passed round the other: no force until they are proven apart.
     bool begins_apart{false};
-    NamedModel model;      ///< Of the object.
-    NamedModel tool_model; ///< Of a tool that is a mesh; none for other tools.
+    NamedModel model;      ///< Model of the object.
+    NamedModel tool_model; ///< Model of a tool that is a mesh; none for others.
 };
 
-/// Where a frame's pairs put the triangles of their surfaces.
+/// Memory for the triangles of pairs' surfaces.
 struct SurfaceRoom
 {
     std::span<LocalTriangle> triangles;
     std::span<double> distances_m;
 
-    /// A surface with as much room as is left for one.
+    /// A surface with the largest room left for one.
     [[nodiscard]] LocalSurface surface() const noexcept
     {
         LocalSurface surface;
@@ -79,27 +79,27 @@ struct SurfaceRoom
     }
 };
 
-/// What pairs keep beside themselves, each at its own index. Empty where no tool needs it.
+/// Memory of pairs outside of them, by their index. Empty if no tool needs it.
 struct PairMemory
 {
-    std::span<ContactReport> contacts; ///< For tools that want them or are meshes.
-    std::span<TouchReport> touches;    ///< For tools that are held as bodies.
-    std::span<MeshPair> meshes;        ///< For tools that are meshes.
-    std::span<PairFront> fronts;       ///< For the most urgent of these.
+    std::span<ContactReport> contacts; ///< Used by tools that want contacts or are meshes.
+    std::span<TouchReport> touches;    ///< Used by rigid tools.
+    std::span<MeshPair> meshes;        ///< Used by tools that are meshes.
+    std::span<PairFront> fronts;       ///< Used by the most urgent of these.
 
     [[nodiscard]] static PairMemory take(Arena& arena, std::span<const ToolSpec> tools,
                                          std::size_t pairs) noexcept;
 };
 
-/// What a pair asks of its object's model in a frame: of each ball where it is and where it will
-/// be, and once for the distance.
+/// Questions of a pair to its object's model in a frame: for each sphere its present and its
+/// predicted place, and one for the distance.
 inline constexpr std::size_t kPairQuestions = std::size_t{2} * kMaxCoverBalls + 1;
-/// One a pair, and one more of a tool that is a mesh.
+/// One per pair, and one more for a tool that is a mesh.
 inline constexpr std::size_t kMaxRequests = std::size_t{2} * kMaxPairs;
 using RefineRequests = StaticVector<RefineRequest, kMaxRequests>;
 
-/// One tool and one object: where they are to each other, and what is known of it from frame to
-/// frame. Haptic thread; the functions in the frame's order. 5.3 KiB beside its parts.
+/// State of one tool and one object that is kept from frame to frame. Haptic thread; the functions
+/// in the frame's order. 5.3 KiB besides its parts.
 class Pair
 {
 public:
@@ -111,76 +111,77 @@ public:
     [[nodiscard]] std::uint32_t tool() const noexcept { return parts_.tool_index; }
     [[nodiscard]] std::uint32_t object() const noexcept { return parts_.object_number; }
 
-    /// Fits the pair to where tool and object are in this frame.
+    /// Updates the pair for the poses of tool and object in this frame.
     void place(const Budgets& budgets) noexcept TACTUS_NONBLOCKING;
-    /// As place() found it.
+    /// Urgency found by place().
     [[nodiscard]] const Urgency& urgency() const noexcept { return urgency_; }
 
-    /// From now on nothing is loaded or refined for the pair, or something again.
+    /// Enables or disables loading and refinement for this pair.
     void shed(bool is_shed) noexcept { is_shed_ = is_shed; }
-    /// Whether it has something to give up.
+    /// True if shedding the pair would save anything.
     [[nodiscard]] bool is_awake() const noexcept { return !outlook_.is_asleep(); }
     [[nodiscard]] bool is_of_mesh() const noexcept { return mesh_ != nullptr; }
-    /// MeshPair::exchange_front(), of a tool that is a mesh.
+    /// MeshPair::exchange_front(), for a tool that is a mesh.
     PairFront* exchange_front(PairFront* front) noexcept TACTUS_NONBLOCKING
     {
         TACTUS_ASSERT(mesh_ != nullptr);
         return mesh_->exchange_front(front);
     }
 
-    /// Adds what the pair may touch soon to the ranking, unless its models are here as a whole.
+    /// Adds the regions that the pair may touch soon to the ranking, unless its models are resident
+    /// as a whole.
     void rank(RegionRanking& ranking) noexcept TACTUS_NONBLOCKING;
-    /// And, behind what all pairs may touch, what its distance needs (ToolSpec::wants_distance).
+    /// Adds the regions that its distance needs (ToolSpec::wants_distance), behind those that all
+    /// pairs may touch.
     void rank_distance(RegionRanking& ranking) const noexcept TACTUS_NONBLOCKING;
 
-    /// Adds what the pair asks of its models: where the tool is and, coming nearer, where it will
-    /// be. Certificates of questions that it does not ask are forgotten: a model may coarsen there.
+    /// Adds the pair's questions to its models: for the tool's place and, if it approaches, for its
+    /// future place. Certificates of unasked questions are dropped: a model may coarsen there.
     void ask(RefineRequests& requests) noexcept TACTUS_NONBLOCKING;
 
-    /// After ask(): whether there is too much of the surface in reach, which merges help against;
+    /// True, after ask(), if too much surface is in reach, which merges reduce.
     [[nodiscard]] bool is_short() const noexcept
     {
         return room_ == SurfaceTolerance::Room::short_ && tolerance_.code() != 0;
     }
-    /// and whether it is of a model that is, or will be, here as a whole.
+    /// True if the pair's model is, or will be, resident as a whole.
     [[nodiscard]] bool needs_coarser_model() const noexcept TACTUS_NONBLOCKING;
 
-    /// The distance, and what the tool's force needs of the surface: triangles are kept where the
-    /// room begins. Returns the room that is left.
+    /// Queries the distance and the surface that the tool's force needs: triangles are stored from
+    /// the room's beginning on. Returns the remaining room.
     [[nodiscard]] SurfaceRoom query(const SurfaceRoom& room, const Budgets& budgets,
                                     WorkCounters& work,
                                     FrameFault& faults) noexcept TACTUS_NONBLOCKING;
 
-    /// Once more in the same frame, from where the tool has come to; nothing is refined between. A
-    /// proxy's triangles need a room of their own: what it had before, or the one given. Returns
-    /// what is left of that.
+    /// Repeats the query in the same frame, from the tool's new place; nothing is refined between.
+    /// A proxy's triangles need a separate room: its previous one, or the one given. Returns what
+    /// is left of that.
     [[nodiscard]] SurfaceRoom query_again(const SurfaceRoom& room, const Budgets& budgets,
                                           WorkCounters& work,
                                           FrameFault& faults) noexcept TACTUS_NONBLOCKING;
 
-    /// The last frame's query again, over what it kept; see Frame::rehearse().
+    /// Repeats the last frame's query with its stored state; see Frame::rehearse().
     void rehearse(const SurfaceRoom& room, const Budgets& budgets,
                   WorkBudget& work) const noexcept TACTUS_NONBLOCKING;
 
-    /// Whether, in this frame, the object's model isn't resident and its box is in the tool's
+    /// True if, in this frame, the object's model isn't resident and its box is in the tool's
     /// reach: the tool stops there.
     [[nodiscard]] bool is_wall() const noexcept
     {
         return !is_model_here_ && lower_m_ <= parts_.tool->stance().reach_m;
     }
 
-    /// Whether the object's model may go though the pair is of it: no touch is near, and the tool
-    /// has nothing of its box in reach.
+    /// True if the object's model may be removed in spite of the pair: no contact is near, and its
+    /// box is not in the tool's reach.
     [[nodiscard]] bool can_spare_model() const noexcept TACTUS_NONBLOCKING;
-    /// It goes in this frame, and what was open in it has been released: the pair answers from the
-    /// box.
+    /// Removes the model from the pair, whose closures have been released: it answers from the box.
     void lose_model() noexcept TACTUS_NONBLOCKING;
 
-    /// Whether the tool's body knows of the object.
+    /// True if the tool takes the object into account.
     [[nodiscard]] bool is_joined() const noexcept { return is_joined_; }
-    /// What query() found, for the tool.
+    /// Result of query(), for the tool.
     [[nodiscard]] PlacedSurface placed() noexcept TACTUS_NONBLOCKING;
-    /// Whether the object has come or moved in this frame.
+    /// True if the object was added or moved in this frame.
     [[nodiscard]] bool has_moved() const noexcept
     {
         return parts_.object->moved_frame == parts_.rules->frame;
@@ -191,15 +192,15 @@ public:
         const ObjectPose& now = parts_.object->pose;
         return {parts_.object_number, has_moved() ? &stood_ : &now, &now, &body_, lower_m_};
     }
-    /// The same of one that stands still.
+    /// Clears the velocities of an object at rest.
     void stand() noexcept
     {
         body_.velocity_m_per_s = Vec3(0.0, 0.0, 0.0);
         body_.spin_rad_per_s = Vec3(0.0, 0.0, 0.0);
     }
-    /// Where a tool stands as in the last frame, query() would find what it found then.
+    /// True if query() would repeat its last result for a tool at the same place.
     [[nodiscard]] bool is_unchanged() const noexcept TACTUS_NONBLOCKING;
-    /// The frame ends: where the object stands is where it stood.
+    /// Ends the frame: keeps the object's pose as the previous one.
     void remember() noexcept
     {
         if (has_moved())
@@ -207,14 +208,14 @@ public:
             stood_ = parts_.object->pose;
         }
     }
-    /// What is open in its models must be released before the pair ends.
+    /// Closures that must be released before the pair ends.
     [[nodiscard]] Closure& object_closure() noexcept { return of_object_.closure; }
     [[nodiscard]] Closure& tool_closure() noexcept { return of_tool_.closure; }
-    /// What query() found, for the caller of the frame.
+    /// Result of query(), for the frame's output.
     [[nodiscard]] PairOutput output() const noexcept TACTUS_NONBLOCKING;
 
 private:
-    /// What the pair asks of one of its models.
+    /// Questions of the pair to one of its models.
     template <std::size_t Capacity>
     struct Inquiry
     {
@@ -250,7 +251,7 @@ private:
     template <std::size_t Capacity>
     void request(const NamedModel& model, Inquiry<Capacity>& inquiry,
                  RefineRequests& requests) const noexcept;
-    /// Of the tool's core from the model's box, of its frame: nearest and farthest.
+    /// Distances of the tool's core from the model's box, in its frame: nearest and farthest.
     struct BoxGap
     {
         double lower_m{0.0};
@@ -265,32 +266,33 @@ private:
     [[nodiscard]] double rounding_m() const noexcept;
 
     PairParts parts_;
-    LocalSurface surface_;             ///< In the frame's room, for this frame.
+    LocalSurface surface_;             ///< Stored in the frame's room, for this frame.
     ContactReport* contacts_{nullptr}; ///< Null unless the tool wants them or is a mesh.
-    TouchReport* touches_{nullptr};    ///< Null unless the tool is held as a body.
+    TouchReport* touches_{nullptr};    ///< Null unless the tool is rigid.
     MeshPair* mesh_{nullptr};          ///< Null unless the tool is a mesh.
     Outlook outlook_;
-    Similarity asked_;           ///< Where the tool was when it was asked about last, in the world.
-    Vec3 hand_m_{0.0, 0.0, 0.0}; ///< In the model's frame, in the last frame.
+    Similarity asked_;           ///< Pose of the tool at the last query, in the world.
+    Vec3 hand_m_{0.0, 0.0, 0.0}; ///< Device goal in the model's frame, in the last frame.
     Urgency urgency_;
     bool is_shed_{false};
     bool is_joined_{true};
-    bool is_model_here_{true}; ///< In this frame.
-    ObjectPose stood_;         ///< The object's, in the last frame.
+    bool is_model_here_{true}; ///< State of this frame.
+    ObjectPose stood_;         ///< Object's pose in the last frame.
     ProxyMemory body_;
     MaterialGlide feel_;
-    bool feels_otherwise_{false}; ///< Than in the last frame.
+    bool feels_otherwise_{false}; ///< Differs from the last frame.
     SurfaceTolerance tolerance_;
-    SurfaceTolerance::Room room_{SurfaceTolerance::Room::fitting}; ///< In the last frame.
-    bool had_work_left_{true};           ///< After it for half as much again as the frame had done.
-    bool was_answered_{false};           ///< By the last query, and within its budgets.
-    std::uint32_t answered_revision_{0}; ///< Of its models, at that time.
+    SurfaceTolerance::Room room_{SurfaceTolerance::Room::fitting}; ///< Result of the last frame.
+    /// The frame had work left for half as much again as it had used when this query ended.
+    bool had_work_left_{true};
+    bool was_answered_{false};           ///< Answered by the last query, within its budgets.
+    std::uint32_t answered_revision_{0}; ///< Revision of its models at that time.
     RegionPredictor predictor_;
     std::array<RefineMemory, kPairQuestions> refine_memories_{};
     Inquiry<kPairQuestions> of_object_;
-    Inquiry<MeshPair::kPlaces> of_tool_; ///< Of a tool that is a mesh.
+    Inquiry<MeshPair::kPlaces> of_tool_; ///< Used if the tool is a mesh.
     QueryMemory query_memory_;
-    /// The answer's bounds in the world, wider by what the way there may round.
+    /// Bounds of the answer in the world, widened by the rounding of the conversion.
     double lower_m_{0.0};
     double upper_m_{0.0};
 };

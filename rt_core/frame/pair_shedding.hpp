@@ -12,30 +12,30 @@
 namespace tactus
 {
 
-/// Takes from the least urgent pairs what more urgent ones had no room for, while there are such.
+/// Takes resources from the least urgent pairs while more urgent ones lack them.
 ///
-/// A pair that waits gets its room back after kCalmFrames in which no touch lacked any, and after
-/// twice as many each time that this was too soon.
+/// A waiting pair gets its resources back after kCalmFrames without a refusal for a contact, and
+/// after twice as many each time that this was too soon.
 class PairShedding
 {
 public:
-    /// Lets so many of the pairs wait as are needed; `order`: the most urgent first. Whether there
-    /// are any.
+    /// Lets as many pairs wait as needed; `order`: the most urgent first. True if there are any.
     [[nodiscard]] bool shed(std::span<Pair* const> order) noexcept TACTUS_NONBLOCKING;
-    /// After the refinement. `refused` is the most urgent class of those that found no room for a
-    /// page or a face, kUrgencyClasses where none was refused: one pair more waits when it was a
-    /// touch, or what will be one soon.
+    /// Learns from the refinement. `refused` is the most urgent class with a refused page or face,
+    /// kUrgencyClasses if none: one pair more waits if it was a contact or an imminent one.
     void learn(std::uint32_t refused) noexcept TACTUS_NONBLOCKING;
 
 private:
     static constexpr std::uint32_t kCalmFrames = 64;
     static constexpr std::uint32_t kCalmFramesMost = 64 * kCalmFrames;
 
-    std::uint32_t count_{0}; ///< So many pairs of classes below below_ wait.
+    /// Waiting pairs, of classes below below_.
+    std::uint32_t count_{0};
     UrgencyClass below_{UrgencyClass::touching};
-    std::uint32_t calm_frames_{0}; ///< Since a touch was last refused room, or a pair came back.
-    std::uint32_t patience_{kCalmFrames}; ///< Calm frames until the next one comes back.
-    bool has_come_back_{false};           ///< One has, since the last was shed.
+    /// Frames since a contact was last refused, or a pair resumed.
+    std::uint32_t calm_frames_{0};
+    std::uint32_t patience_{kCalmFrames}; ///< Calm frames until the next pair resumes.
+    bool has_come_back_{false};           ///< A pair has resumed since the last was shed.
 };
 
 } // namespace tactus

@@ -13,17 +13,17 @@
 namespace tactus
 {
 
-/// A frame's second stage: gathers what its pairs ask of their models, merges what all left behind,
-/// and shares the frame's splits among those that wait (SplitShares). What may wait, merges and
-/// splits ahead of the tools, goes on at a steady pace (WorkPace). Haptic thread.
+/// Second stage of a frame: gathers the pairs' requests to their models, merges records that all
+/// left behind, and shares the frame's splits among waiting requests (SplitShares). Work that may
+/// wait, merges and splits ahead of the tools, has a steady pace (WorkPace). Haptic thread.
 class Refinement
 {
 public:
-    /// Where tools are meshes others ask how near their surface is, so trees are refitted at once.
+    /// If tools are meshes, trees are refitted at once, since others query their surfaces.
     explicit Refinement(bool has_meshes) noexcept : has_meshes_(has_meshes) {}
 
-    /// Returns the most urgent class of the pairs that found no room for a face, kUrgencyClasses
-    /// where all did.
+    /// Returns the most urgent class of pairs that found no room for a face, kUrgencyClasses if all
+    /// did.
     [[nodiscard]] std::uint32_t run(FrameParts& parts,
                                     FrameAccount& account) noexcept TACTUS_NONBLOCKING;
 
@@ -40,14 +40,14 @@ private:
 
     bool has_meshes_{false};
     WorkPace pace_;
-    bool had_no_room_{false}; ///< The last frame, for something that it wanted.
-    RefineRequests requests_; ///< In the order of their pairs.
-    RefineRequests by_model_; ///< The same, model by model.
-    /// How a request was served last in this frame.
+    bool had_no_room_{false}; ///< The last frame lacked capacity for a need.
+    RefineRequests requests_; ///< Requests in the order of their pairs.
+    RefineRequests by_model_; ///< The same, grouped by model.
+    /// Last service of a request in this frame.
     struct Service
     {
-        SplitLimits limits;      ///< Splits that the frame might have done after it,
-        std::uint32_t splits{0}; ///< and that it had done.
+        SplitLimits limits;      ///< Limits at that time.
+        std::uint32_t splits{0}; ///< Splits of the frame by then.
         FrameFault found{FrameFault::none};
     };
     std::array<Service, kMaxRequests> services_{};

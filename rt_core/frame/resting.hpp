@@ -8,20 +8,20 @@
 namespace tactus
 {
 
-/// Leaves out what would only repeat the last frame: all of a frame, the answer of a tool, the care
-/// for a model. Haptic thread.
+/// Skips work that would only repeat the last frame: a whole frame, the answer of a tool, the
+/// update of a model. Haptic thread.
 class Resting
 {
 public:
-    /// True if this frame would repeat the last one, so every stage can be skipped: its outputs
-    /// stay, and so do its faults. After the tools have begun in a scene without changes.
+    /// True if this frame would repeat the last one, so every stage can be skipped: its outputs and
+    /// faults stay. Called after the tools have begun, in a scene without changes.
     [[nodiscard]] bool try_rest(const FrameParts& parts,
                                 FrameAccount& account) const noexcept TACTUS_NONBLOCKING;
 
-    /// Before the queries: which tools answer as in the last frame (ToolStatus::rests).
+    /// Finds, before the queries, the tools that answer as in the last frame (ToolStatus::rests).
     static void find_tools(FrameParts& parts, FrameAccount& account) noexcept TACTUS_NONBLOCKING;
 
-    /// The frame ends: whether the next one may rest, and which models do.
+    /// Ends the frame: finds whether the next one may rest, and which models do.
     void end_frame(FrameParts& parts) noexcept TACTUS_NONBLOCKING;
 
 private:

@@ -13,40 +13,41 @@
 namespace tactus
 {
 
-/// Stands between one tool's device and the frame: which samples are taken, and what is wrong when
-/// they can't be trusted, so that SafeState takes the force away.
+/// Checks the samples of one tool's device: decides which are taken, and reports a fault if they
+/// can't be trusted, so that SafeState fades the force.
 ///
 /// A sample that is not finite, out of range, no rotation or older than the one before is not
-/// taken; the goal stays. Neither is one with the time of the one before: a device may be slower
-/// than the frame. The last sample stands in for what doesn't come during kSampleHold_s; then the
-/// device is stuck. A goal that jumps or turns farther than any hand does is taken, but it is told
-/// as a jump until it is so near the proxy that the springs between them are within the device's
-/// range: a device that has lost its place must not pull towards where it was. A ball's rotation is
-/// nobody's business. Haptic thread.
+/// taken; the goal stays. A sample with the time of the one before is not taken either: a device
+/// may be slower than the frame. The last sample replaces missing ones for kSampleHold_s; then the
+/// device is stuck. A goal that jumps or rotates farther than a user can is taken, but reported as
+/// a jump until it is so near the proxy that the springs between them are within the device's
+/// range: a device that lost its place must not pull towards the old one. A sphere's rotation is
+/// ignored. Haptic thread.
 class SampleWatch
 {
 public:
     struct Verdict
     {
         bool is_taken{false};
-        bool is_first{false}; ///< Nothing is known from before.
-        double since_s{0.0};  ///< Since the last sample that was taken; unless it is the first.
+        bool is_first{false}; ///< No earlier sample exists.
+        /// Time since the last sample taken; undefined for the first.
+        double since_s{0.0};
         FrameFault fault{FrameFault::none};
     };
 
-    /// Once a frame and tool. `elapsed_s` since the last frame, `goal` of the last taken sample.
-    /// After kSampleHold_s + kFadeTime_s without a sample the clock may have begun anew: then an
-    /// earlier time is taken.
+    /// Judges a sample, once per frame and tool. `elapsed_s` is the time since the last frame,
+    /// `goal` that of the last sample taken. After kSampleHold_s + kFadeTime_s without a sample the
+    /// device's clock may have restarted: then an earlier time is taken.
     [[nodiscard]] Verdict judge(const ToolState& sample, const ToolSpec& spec, const ToolGoal& goal,
                                 double elapsed_s) noexcept TACTUS_NONBLOCKING;
 
-    /// After the frame's force is known: a goal that had jumped is back where the springs between
-    /// proxy and goal are within the device's range.
+    /// Ends a jump if the springs between proxy and goal are within the device's range; called once
+    /// the frame's force is known.
     void look_for_return(const ToolOutput& output, const ToolSpec& spec,
                          const ToolGoal& goal) noexcept TACTUS_NONBLOCKING;
 
-    /// What is wrong with the device after this frame: the last verdict's fault, and tool_jumped
-    /// until the goal is back where a force may follow it.
+    /// Fault of the device after this frame: that of the last verdict, and tool_jumped until a
+    /// force may follow the goal.
     [[nodiscard]] FrameFault fault() const noexcept TACTUS_NONBLOCKING
     {
         return has_lost_place_ ? fault_ | FrameFault::tool_jumped : fault_;
@@ -59,10 +60,10 @@ private:
                                const ToolGoal& goal) const noexcept;
     [[nodiscard]] FrameFault find_fault(const ToolState& sample) const noexcept;
 
-    double blind_s_{kInfinity}; ///< Since the last taken sample.
+    double blind_s_{kInfinity}; ///< Time since the last sample taken.
     std::int64_t time_ns_{0};
     bool has_lost_place_{false};
-    FrameFault fault_{FrameFault::none}; ///< Of the last verdict.
+    FrameFault fault_{FrameFault::none}; ///< Fault of the last verdict.
 };
 
 } // namespace tactus

@@ -14,18 +14,18 @@
 namespace tactus
 {
 
-/// Makes the changes of a frame's scene before anything else, so that all of the frame sees one
+/// Applies the changes of a frame's scene before anything else, so that the whole frame sees one
 /// scene. A change that can't be made is refused and changes nothing. Haptic thread.
 class SceneChanges
 {
 public:
     SceneChanges(Arena& arena, const FrameSetup& setup) noexcept;
 
-    /// Places the objects with which a frame starts; their models are there.
+    /// Places the objects with which a frame starts; their models must exist.
     static void place_first(const FrameSetup& setup, FrameParts& parts,
                             Neighbours& neighbours) noexcept;
-    /// Makes the changes in their order, kMaxSceneChanges at most, and counts those that are
-    /// refused by their reasons.
+    /// Applies the changes in order, at most kMaxSceneChanges, and counts refused ones by their
+    /// reasons.
     void make(std::span<const SceneChange> changes, FrameParts& parts, Neighbours& neighbours,
               SceneOutput& scene) const noexcept TACTUS_NONBLOCKING;
 
@@ -37,7 +37,8 @@ private:
     [[nodiscard]] static Refusal try_change_tool(const SceneChange& change, FrameParts& parts,
                                                  Neighbours& neighbours) noexcept;
 
-    std::span<bool> is_shown_; ///< By model: whether objects may show it, for no tool is it.
+    std::span<bool>
+        is_shown_; ///< Entry of each model: true if objects may show it, since no tool is it.
 };
 
 } // namespace tactus

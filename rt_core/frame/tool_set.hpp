@@ -16,20 +16,22 @@
 namespace tactus
 {
 
-/// A tool's part in a frame: what one stage finds of it and a later one needs.
+/// State of a tool that one stage of a frame passes to later ones.
 struct ToolStatus
 {
     bool is_here{true};
-    double clear_m{0.0};    ///< ToolOutput::clear_m, or below zero where nothing is known yet.
-    bool is_crowded{false}; ///< In this frame the tool asks for more than clear_m.
-    bool rests{false};      ///< In this frame the tool answers as in the last one.
+    /// ToolOutput::clear_m, or below zero if nothing is known yet.
+    double clear_m{0.0};
+    bool is_crowded{false}; ///< The tool needs more than clear_m in this frame.
+    /// The tool repeats its last answer in this frame.
+    bool rests{false};
 };
 
-/// A frame's tools, which of them are here, and their outputs. Haptic thread.
+/// A frame's tools, which of them are present, and their outputs. Haptic thread.
 class ToolSet
 {
 public:
-    /// The tools of the set-up, whose headers parse; all are here.
+    /// The tools of the set-up, whose headers must parse; all are present.
     ToolSet(Arena& arena, const FrameSetup& setup) noexcept;
 
     [[nodiscard]] std::uint32_t size() const noexcept
@@ -43,7 +45,7 @@ public:
     {
         return status_[tool];
     }
-    /// The last frame's, until the force stage replaces them.
+    /// Outputs of the last frame, until the force stage replaces them.
     [[nodiscard]] std::span<ToolOutput> outputs() noexcept
     {
         return std::span(outputs_).first(tools_.size());
@@ -53,18 +55,19 @@ public:
         return std::span(outputs_).first(tools_.size());
     }
 
-    /// The tool comes or goes. Its pairs have ended, and it knows nothing of what was before.
+    /// Adds or removes a tool without pairs; it starts without history.
     void renew(std::uint32_t tool, bool is_here) noexcept TACTUS_NONBLOCKING;
 
-    /// The frame begins: each tool that is here takes its sample and goes where the objects that
-    /// have moved carry it. `period_ns` > 0 is the loop's. Returns what is wrong with the samples.
+    /// Begins the frame: each present tool takes its sample and moves with the objects that carry
+    /// it. `period_ns` > 0 is the loop's. Returns the samples' faults.
+    ///
     /// - `samples`: one for each tool (asserted).
     [[nodiscard]] FrameFault begin(std::span<const ToolState> samples, const AwakePairs& pairs,
                                    std::int64_t period_ns) noexcept TACTUS_NONBLOCKING;
 
 private:
     std::span<Tool> tools_;
-    RigidProxy::Planes* planes_{nullptr}; ///< Of all tools that are held as bodies.
+    RigidProxy::Planes* planes_{nullptr}; ///< Shared by all rigid tools.
     std::array<ToolStatus, kMaxTools> status_{};
     std::array<ToolOutput, kMaxTools> outputs_{};
 };

@@ -9,14 +9,14 @@
 namespace tactus
 {
 
-/// Holds pages, cache, forest and tree of a model against what they promise at the end of a frame,
-/// those first on which the others rely. Some 50 ns for each face, record and slot in use.
+/// Checks the invariants of a model's pages, cache, forest and tree at the end of a frame, in order
+/// of their dependencies. About 50 ns for each face, record and slot in use.
 [[nodiscard]] Flaw find_flaw(const Model& model) noexcept TACTUS_NONBLOCKING;
 
-/// As a failed assertion, when there is a flaw: what TACTUS_VALIDATE adds to every frame.
+/// Fails an assertion if there is a flaw; TACTUS_VALIDATE adds it to every frame.
 void require_sound(const Model& model) noexcept TACTUS_NONBLOCKING;
 
-/// require_sound() in builds with TACTUS_VALIDATE; nothing in others.
+/// require_sound() in builds with TACTUS_VALIDATE; otherwise nothing.
 inline void validate([[maybe_unused]] const Model& model) noexcept TACTUS_NONBLOCKING
 {
 #ifdef TACTUS_VALIDATE
