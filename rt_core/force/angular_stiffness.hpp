@@ -8,13 +8,13 @@
 namespace tactus
 {
 
-/// Of the spring that turns a tool's proxy and its hand to each other: what ToolSpec sets, or the
-/// stiffness times the square of the arm that core and radius measure. 0 for a sphere, which
-/// nothing turns.
+/// Stiffness of the rotational spring between a tool's proxy and its device: the value of ToolSpec,
+/// or the stiffness times the square of the arm, which is the size of core and radius. 0 for a
+/// sphere, which has no rotation.
 [[nodiscard]] double angular_stiffness_nm_per_rad(const ToolSpec& spec) noexcept TACTUS_NONBLOCKING;
 
-/// How far from the tool's place a surface may touch it, at most; 0 for a sphere. What damps a
-/// surface by B damps the tool's turning by at most B x the square of this.
+/// Bound on the distance from the tool's place at which a surface may touch it; 0 for a sphere. A
+/// surface damping of B damps the tool's rotation by at most B x the square of this.
 [[nodiscard]] double angular_lever_m(const ToolSpec& spec) noexcept TACTUS_NONBLOCKING;
 
 } // namespace tactus

@@ -18,34 +18,36 @@
 namespace tactus
 {
 
-/// Contacts of a body that friction may hold: each takes four planes of kMaxHalfSpaces.
+/// Contacts of a rigid tool that friction may hold: each takes four planes of kMaxHalfSpaces.
 inline constexpr std::size_t kTiltedContacts = kMaxHalfSpaces / 4;
 
-/// Where a body may touch; world frame.
+/// Point where a rigid tool may touch; world frame.
 struct BodyTouch
 {
-    std::uint32_t surface{0}; ///< Of the step's.
+    std::uint32_t surface{0}; ///< Index of the step's surface.
     Vec3 on_tool_m{0.0, 0.0, 0.0};
     Vec3 on_surface_m{0.0, 0.0, 0.0};
-    Vec3 normal{0.0, 0.0, 0.0}; ///< From the surface to the tool.
-    bool is_face{false};        ///< It touches within a face, whose own normal that is.
+    Vec3 normal{0.0, 0.0, 0.0}; ///< Direction from the surface to the tool.
+    /// The touch is within a face, whose own normal `normal` is.
+    bool is_face{false};
 };
 
-/// How the surface at a touch feels.
+/// Material of the surface at a touch.
 struct BodyGrip
 {
     double stiffness_n_per_m{0.0};
     double friction{0.0}; ///< The coefficient that holds now.
-    double dynamic{0.0};  ///< While it slides.
+    double dynamic{0.0};  ///< Coefficient while sliding.
     double damping_n_s_per_m{0.0};
-    /// Of the way along the surface in this frame, as a share of the stretch that holds it back.
+    /// Displacement along the surface in this frame, per stretch that resists it.
     double viscous{0.0};
-    Vec3 velocity_m_per_s{0.0, 0.0, 0.0}; ///< Of the surface.
-    Vec3 way_m{0.0, 0.0, 0.0};            ///< That the surface went, and friction takes along.
-    Vec3 frame_way_m{0.0, 0.0, 0.0};      ///< That it went in all of the frame.
+    Vec3 velocity_m_per_s{0.0, 0.0, 0.0}; ///< Velocity of the surface.
+    /// Displacement of the surface, in which friction carries the tool.
+    Vec3 way_m{0.0, 0.0, 0.0};
+    Vec3 frame_way_m{0.0, 0.0, 0.0}; ///< The same in the whole frame.
 };
 
-/// What pushes a body: `reaction` x `normal` is the motion that it holds back.
+/// A push on a rigid tool: `reaction` x `normal` is the motion that it holds back.
 struct BodyPush
 {
     std::uint32_t touch{0};
@@ -53,48 +55,50 @@ struct BodyPush
     double reaction{0.0};
 };
 
-/// The motion that planes and friction let a body make, and what pushes it there.
+/// The motion of a rigid tool that planes and friction allow, and the pushes at its end.
 struct BodyMotion
 {
     Motion<6> motion{Motion<6>::Zero()};
     StaticVector<BodyPush, 6> pushes;
-    bool slides{false};      ///< Against friction.
-    bool sticks{false};      ///< Friction holds it where it pushes.
+    bool slides{false};      ///< Slides against friction.
+    bool sticks{false};      ///< Friction holds the tool where it pushes.
     bool is_squeezed{false}; ///< No motion was allowed by all planes.
 };
 
-/// The planes of one step of a body, and the motion that they and Coulomb's friction allow.
+/// Planes of one step of a rigid tool, and the motion that they and Coulomb's friction allow.
 ///
-/// Motions are six numbers: a way in metres, and a rotation vector times the arm. Their length is
-/// the coupling's energy, so the nearest motion is where its springs come to rest.
+/// Motions are six numbers: a displacement in metres, and a rotation vector times the arm. Their
+/// length is the coupling's energy, so the nearest motion is where its springs come to rest.
 ///
 /// Friction (Moreau 1966): the plane of a contact is tilted into four, whose normals are the
 /// corners of its friction pyramid: normal +- coefficient x tangent, the first tangent along the
-/// way that the hand wants to go there. The nearest motion that tilted planes allow is none where
-/// the hand's pull lies within the cone that they span, all contacts together, and only there: the
-/// body sticks. Where it slides, tilted planes would lift it; so their friction is added to the
-/// wanted motion and the plain planes answer, once more with the friction that belongs to their
+/// displacement that the device wants there. The nearest motion that tilted planes allow is zero if
+/// the device's pull lies within the cone that they span, all contacts together, and only then: the
+/// tool sticks. While the tool slides, tilted planes would lift it; so their friction is added to
+/// the wanted motion and the plain planes answer, once more with the friction that belongs to their
 /// pressure.
 ///
-/// Viscosity: where the body slides, each contact that presses is a damper, implicit as in Proxy. A
-/// motion then costs what they take of it beside the springs' energy, and the nearest one is found
-/// in that metric: the planes and what is wanted are taken there and back by its Cholesky factor.
+/// Viscosity: while the tool slides, each contact that presses is a damper, implicit as in Proxy. A
+/// motion then costs the dampers' part of it besides the springs' energy, and the nearest one is
+/// found in that metric: the planes and the wanted motion are transformed there and back by its
+/// Cholesky factor.
 ///
-/// Seams: where a tool stands over one face, the next one seems to lean against it, since its
-/// nearest point is the edge that both share. Such a plane would let the tool go half of the way to
-/// the edge at most, and so drag at what slides. It is left out where touches on the first face's
-/// plane hold up that place of the tool from all sides.
+/// Seams: if a tool is over one face, the next one seems to lean against it, since its nearest
+/// point is the edge that both share. Such a plane would let the tool go at most half of the
+/// distance to the edge, and so drag at a sliding tool. It is left out if touches on the first
+/// face's plane support that place of the tool from all sides.
 ///
 /// Scratch, too large for a frame's stack: 23 KiB. Haptic thread. Cost: 0.7 to 5 us without
 /// friction, at most 10 us more with it.
 class BodyPlanes
 {
 public:
-    /// Empties it for a step of a tool that is `place_m` there: `arm_m` is the metric's, `size_m`
-    /// the tool's own. `gone` is the motion that it has made in the frame's steps before.
+    /// Clears the planes for a step of a tool at `place_m`: `arm_m` is the metric's, `size_m` the
+    /// tool's own. `gone` is its motion in the frame's earlier steps.
     void begin(const Vec3& place_m, double arm_m, double size_m, double radius_m,
                const Motion<6>& gone) noexcept TACTUS_NONBLOCKING;
-    /// Where there is no room, what holds back least goes; then it is crowded.
+    /// Adds the planes of a touch. If full, the plane that restrains least is dropped, and the
+    /// planes are crowded.
     void add(const BodyTouch& touch, const BodyGrip& grip) noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] BodyMotion nearest(const Motion<6>& wanted) noexcept TACTUS_NONBLOCKING;
@@ -102,11 +106,11 @@ public:
     [[nodiscard]] bool is_crowded() const noexcept { return is_crowded_; }
     [[nodiscard]] const BodyTouch& touch(std::uint32_t i) const noexcept { return touches_[i]; }
     [[nodiscard]] const BodyGrip& grip(std::uint32_t i) const noexcept { return grips_[i]; }
-    /// Of a touch: from the tool's place to where its outside meets the surface.
+    /// Lever of a touch: from the tool's place to the point where its outside meets the surface.
     [[nodiscard]] Vec3 lever_m(std::uint32_t i) const noexcept TACTUS_NONBLOCKING;
 
 private:
-    /// One corner of a contact's pyramid.
+    /// One corner of a contact's friction pyramid.
     struct Tilt
     {
         std::uint32_t touch{0};
@@ -114,23 +118,24 @@ private:
     };
     using Chosen = StaticVector<std::uint32_t, kTiltedContacts>;
 
-    /// A plane of faces that the tool touches, and where it does: a mesh has many faces in one.
+    /// A plane of faces that the tool touches, and the touching part of the tool; a mesh has many
+    /// faces in one plane.
     struct Ground
     {
-        using Heights = std::array<double, 8>; ///< Along directions in the plane.
+        using Heights = std::array<double, 8>; ///< Heights along directions in the plane.
 
-        std::uint32_t face; ///< The touch of the nearest of these faces.
+        std::uint32_t face; ///< Touch of the nearest of these faces.
         Vec3 first;         ///< An axis in the plane.
         Vec3 second;        ///< The other one.
-        Heights high_m{};   ///< Where the tool points that touch it end, from the tool's place,
-        Heights low_m{};    ///< and where they begin.
+        Heights high_m{};   ///< Ends of the touching points of the tool, from its place.
+        Heights low_m{};    ///< Beginnings of the same.
 
         Ground(std::uint32_t nearest, const Vec3& normal) noexcept;
         [[nodiscard]] Heights heights(const Vec3& point_m) const noexcept;
         void support(const Vec3& point_m) noexcept;
         [[nodiscard]] bool is_among_supports(const Vec3& point_m, double off_m) const noexcept;
     };
-    /// The tool catches on the seams of further ones.
+    /// Seams of further ones are not left out.
     static constexpr std::size_t kMaxGrounds = 8;
     using Grounds = StaticVector<Ground, kMaxGrounds>;
 
@@ -148,10 +153,10 @@ private:
     [[nodiscard]] BodyMotion stuck(const NearestMotion<6>& tilted) noexcept;
     [[nodiscard]] BodyMotion sliding(const NearestMotion<6>& tilted,
                                      const Motion<6>& wanted) noexcept;
-    /// What dampers take of a motion: metric - 1 of it, and what they take of the way before.
+    /// Dampers' share of a motion, (metric - 1) x motion, and their share of the earlier motion.
     struct Viscosity
     {
-        SymmetricFactor factor; ///< Of the metric.
+        SymmetricFactor factor; ///< Factor of the metric.
         Motion<6> gone{Motion<6>::Zero()};
     };
 
@@ -166,12 +171,13 @@ private:
     StaticVector<BodyTouch, kMaxHalfSpaces> touches_;
     StaticVector<BodyGrip, kMaxHalfSpaces> grips_;
     StaticVector<HalfSpace<6>, kMaxHalfSpaces> tilted_; ///< Corners of pyramids, then plain ones.
-    StaticVector<Tilt, kMaxHalfSpaces> tilts_;          ///< Of the first of those.
-    StaticVector<std::uint32_t, kMaxHalfSpaces> untilted_; ///< Touches of the others.
+    StaticVector<Tilt, kMaxHalfSpaces> tilts_;          ///< Tilts of the corners in tilted_.
+    StaticVector<std::uint32_t, kMaxHalfSpaces> untilted_; ///< Touches of the plain ones.
     Vec3 place_m_{0.0, 0.0, 0.0};
     Motion<6> gone_{Motion<6>::Zero()};
     double arm_m_{1.0};
-    double turn_weight_{1.0}; ///< Of turns where planes are compared: the tool's size is the arm.
+    /// Weight of rotations when planes are compared: the tool's size is the arm.
+    double turn_weight_{1.0};
     double radius_m_{0.0};
     bool is_crowded_{false};
 };

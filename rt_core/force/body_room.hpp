@@ -11,22 +11,22 @@
 namespace tactus
 {
 
-/// A body's way in one step: the centre of its core's ball goes straight while it turns round one
-/// axis. World frame.
+/// Motion of a rigid tool in one step: the centre of its core's sphere moves straight while the
+/// tool rotates about one axis. World frame.
 struct BodyWay
 {
-    Vec3 center_m{0.0, 0.0, 0.0}; ///< Of the centre.
-    Vec3 turn_rad{0.0, 0.0, 0.0}; ///< A rotation vector, about the centre.
-    double core_radius_m{0.0};    ///< Of the ball.
+    Vec3 center_m{0.0, 0.0, 0.0}; ///< Displacement of the centre.
+    Vec3 turn_rad{0.0, 0.0, 0.0}; ///< Rotation vector, about the centre.
+    double core_radius_m{0.0};    ///< Radius of the sphere.
 
-    /// No point of the core goes farther: chords are shorter than arcs.
+    /// Bound on the displacement of the core's points: chords are shorter than arcs.
     [[nodiscard]] double length_m() const noexcept
     {
         return center_m.norm() + turn_rad.norm() * core_radius_m;
     }
-    /// No point of the core comes nearer, by more than this, to what lies behind a plane of this
-    /// normal, or of one within `spread` of it. A turn R changes normal . (R - 1) q by no more than
-    /// |q| x |(R^T - 1) normal|, and that by no more than |turn x normal|.
+    /// Bound on the approach of the core's points to the space behind a plane with this normal, or
+    /// with one within `spread` of it. A rotation R changes normal . (R - 1) q by no more than |q|
+    /// x |(R^T - 1) normal|, and that by no more than |turn x normal|.
     [[nodiscard]] double approach_m(const Vec3& normal, double spread) const noexcept
     {
         const double straight_m =
@@ -36,34 +36,35 @@ struct BodyWay
     }
 };
 
-/// How far a body may go in one step so that its core never meets a surface, over the whole way.
+/// Largest motion of a rigid tool in one step for which its core never meets a surface, at any time
+/// of the step.
 ///
-/// Two proofs, of which the better one counts. No surface is nearer than L, so no way that is
-/// shorter meets one. And where all faces near are exact, each lies behind a plane that the core is
-/// before (ContactSlab): a way along those planes may be as long as everything within it is known.
-/// A share of each distance is never gone, and of the radius half is kept, so that there is room to
-/// come back. A turn is kept shorter than L in any case: a body that rocks on points that it learns
-/// of one by one would forget those that it turns away from.
+/// Two proofs, of which the better one counts. No surface is nearer than L, so no shorter motion
+/// meets one. And if all near faces are exact, each lies behind a plane with the core in front of
+/// it (ContactSlab): a motion along those planes may be as long as the range within which
+/// everything is known. A share of each distance is never used, and half of the radius is kept, so
+/// that there is room to come back. A rotation is kept shorter than L in any case: a tool that
+/// rocks on points that it learns one by one would forget those that it rotates away from.
 ///
-/// Haptic thread; refers to `surfaces`.
+/// Haptic thread; keeps a reference to `surfaces`.
 class BodyRoom
 {
 public:
-    /// From everything but the surfaces the core is at least `clear_m` away.
+    /// The core is at least `clear_m` away from everything except the surfaces.
     BodyRoom(std::span<const PlacedSurface> surfaces, double clear_m,
              double radius_m) noexcept TACTUS_NONBLOCKING;
 
-    /// Some way is free.
+    /// True if some motion is free.
     [[nodiscard]] bool is_free() const noexcept { return free_m_ > 0.0; }
-    /// The core is proven to touch nothing.
+    /// True if the core is proven to touch nothing.
     [[nodiscard]] bool is_clear() const noexcept { return is_clear_; }
-    /// The core is known to touch something.
+    /// True if the core is known to touch something.
     [[nodiscard]] bool is_crossed() const noexcept { return is_crossed_; }
-    /// The core is known to be so near to something that all but the last tenth of the radius is
-    /// used up.
+    /// True if the core is known to be so near to something that all except the last tenth of the
+    /// radius is used up.
     [[nodiscard]] bool is_scarce() const noexcept { return is_scarce_; }
 
-    /// The share of the way that is proven free, 0 .. 1.
+    /// Share of the motion that is proven free, 0 .. 1.
     [[nodiscard]] double share_of(const BodyWay& way) const noexcept TACTUS_NONBLOCKING;
 
 private:
@@ -72,7 +73,7 @@ private:
 
     std::span<const PlacedSurface> surfaces_;
     double radius_m_;
-    double elsewhere_m_; ///< Free of what is no surface here.
+    double elsewhere_m_; ///< Free distance from everything except the surfaces.
     double free_m_;
     bool is_clear_;
     bool is_crossed_{false};

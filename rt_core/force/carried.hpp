@@ -10,24 +10,26 @@
 namespace tactus
 {
 
-/// The number of no object.
+/// Number that no object has.
 inline constexpr std::uint32_t kNoObject = 0xFFFF'FFFFU;
 
-/// Where a proxy is when the objects near it have moved.
+/// Place of a proxy after the objects near it have moved.
 template <typename Place>
 struct Carried
 {
     Place place;
-    const NearObject* by{nullptr}; ///< The object that it went along with; null where it stayed.
-    bool is_overrun{false};        ///< Wherever it is, some object may have come over it.
+    /// The object that carried it; null if it stayed.
+    const NearObject* by{nullptr};
+    /// An object may have passed over it at any of the places tried.
+    bool is_overrun{false};
 };
 
-/// A proxy goes along with the object that holds it, or else with one that would run over it, so
-/// that it is before that one's surface as it was; where neither is called for it stays. Where some
-/// object runs over it whatever it does, that is said.
+/// Carries a proxy along with the object that holds it, or else with one that would pass over it,
+/// so that the proxy keeps its place before that object's surface; otherwise it stays. Reports
+/// is_overrun if an object passes over it in each case.
 ///
-/// `along(object)` is its place when it goes along with an object, `is_overrun(place)` whether it
-/// may have come to another side of some surface when it is there. Haptic thread.
+/// `along(object)` is its place when carried by an object; `is_overrun(place)` is true if the proxy
+/// may be on another side of some surface there. Haptic thread.
 template <typename Place, typename Along, typename Overrun>
 [[nodiscard]] Carried<Place> carried(const Place& stays, std::span<const NearObject> objects,
                                      std::uint32_t held_by, const Along& along,

@@ -8,37 +8,38 @@
 namespace tactus
 {
 
-/// The force of a proxy that had to wait for data, and then is somewhere else at once: it goes on
-/// from what it was and catches up.
+/// Force of a proxy that waited for data and then moves at once: it continues from its old value
+/// and catches up.
 ///
 ///     wanted     ________----------
 ///                       |      __--
 ///     sent       _______|__----
 ///                 waits | free again
 ///
-/// After a frame in which the proxy waited, the force goes towards the wanted one by no more than
-/// the hand's own way may have changed it, and the rate. What it then lags behind goes by the rate.
-/// Else it is the wanted one to the last bit. A force that lags may for some moments point into a
-/// surface that has turned meanwhile. For torques the same with newton metres. Haptic thread; some
-/// 10 ns.
+/// After a frame in which the proxy waited, the force approaches the wanted one by no more than the
+/// device's displacement may have changed it, plus the rate. The remaining lag decreases by the
+/// rate. Otherwise the force is the wanted one to the last bit. A lagging force may briefly point
+/// into a surface that has rotated meanwhile. For torques the same with newton metres. Haptic
+/// thread; about 10 ns.
 class CatchUp
 {
 public:
-    /// What goes out.
+    /// Next force to send.
     /// - `wanted` is no longer than `longest`.
     /// - `rate_per_s` > 0.
     struct Wish
     {
         Vec3 wanted{0.0, 0.0, 0.0};
-        double by_hand{0.0}; ///< What the hand's way since the last frame may change, at most.
-        double longest{0.0}; ///< Norm of what goes out.
+        /// Largest change by the device's displacement since the last frame.
+        double by_hand{0.0};
+        double longest{0.0}; ///< Largest norm of the result.
         double rate_per_s{0.0};
         double elapsed_s{0.0};
-        bool has_waited{false}; ///< In the last frame.
+        bool has_waited{false}; ///< The last frame's proxy waited.
     };
     [[nodiscard]] Vec3 next(const Wish& wish) noexcept TACTUS_NONBLOCKING;
 
-    /// This went out instead.
+    /// Continues from `sent`, which replaced the last result.
     void follow(const Vec3& sent) noexcept
     {
         sent_ = sent;
@@ -47,7 +48,7 @@ public:
 
 private:
     Vec3 sent_{0.0, 0.0, 0.0};
-    Vec3 lag_{0.0, 0.0, 0.0}; ///< Sent less wanted.
+    Vec3 lag_{0.0, 0.0, 0.0}; ///< Sent minus wanted.
 };
 
 } // namespace tactus

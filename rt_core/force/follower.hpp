@@ -13,7 +13,7 @@
 namespace tactus
 {
 
-/// A tool that measures: it is where the hand is, in surfaces too, and has no force.
+/// Query-only tool: it is at the device pose, in surfaces too, and has no force.
 ///
 /// Has the functions of Proxy and RigidProxy. Haptic thread.
 class Follower
@@ -22,7 +22,7 @@ public:
     explicit Follower(const ToolSpec& spec) noexcept : radius_m_(spec.radius_m), core_(spec.core) {}
 
     void see(const ToolGoal& goal) noexcept TACTUS_NONBLOCKING;
-    /// Objects do not move it.
+    /// No effect: objects do not move the tool.
     void carry(std::span<const NearObject> /*objects*/,
                double /*elapsed_s*/) noexcept TACTUS_NONBLOCKING
     {
@@ -30,17 +30,17 @@ public:
     void forget(std::uint32_t /*object*/) noexcept TACTUS_NONBLOCKING {}
     [[nodiscard]] const Similarity& place() const noexcept { return place_; }
     [[nodiscard]] double radius_m() const noexcept { return radius_m_; }
-    /// How far the core's farthest point went since the last frame.
+    /// Displacement of the core's farthest point since the last frame.
     [[nodiscard]] double way_to_m(const ToolGoal& /*goal*/) const noexcept { return way_m_; }
 
-    /// In contact where an upper bound proves that the tool touches.
+    /// Reports contact if an upper bound proves that the tool touches.
     [[nodiscard]] ToolOutput respond(const ToolGoal& goal, std::span<const PlacedSurface> surfaces,
                                      double clear_m) const noexcept TACTUS_NONBLOCKING;
 
 private:
     double radius_m_;
     ToolCore core_;
-    Similarity place_; ///< In the world.
+    Similarity place_; ///< Pose in the world.
     double way_m_{0.0};
 };
 

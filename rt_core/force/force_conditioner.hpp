@@ -15,56 +15,57 @@
 namespace tactus
 {
 
-/// Fixed while the loop runs.
+/// Settings that are fixed while the loop runs.
 struct ConditionerSetup
 {
-    DeviceLimits device;   ///< In world coordinates, as DeviceInfo has them.
-    double period_s{1e-3}; ///< Of the loop; above 0.
-    /// How far from the device's position a surface may touch the tool: it damps turning by at most
-    /// its damping x the square of this, which lowers the cap of the torque's stiffness. No more
-    /// than half of the device's own is counted; beyond that the passivity controller acts. >= 0.
+    DeviceLimits device;   ///< Limits in world coordinates, as in DeviceInfo.
+    double period_s{1e-3}; ///< Period of the loop; above 0.
+    /// Largest distance from the device's position at which a surface may touch the tool: it damps
+    /// rotation by at most its damping x the square of this, which lowers the limit of the angular
+    /// stiffness. No more than half of the device's own damping is counted; beyond that the
+    /// passivity controller acts. >= 0.
     double lever_max_m{0.0};
     bool controls_passivity{true}; ///< False: observes only.
-    /// A device that is faster has jumped: its energy isn't observed.
+    /// Speed above which the device has jumped: its energy isn't observed.
     double speed_max_m_per_s{kDeviceSpeedMax_m_per_s};
 };
 
-/// Where a device was when a force was wished for it; of a device that turns, in angles: its
-/// position is how far it has turned about the world's axes, summed up.
+/// State of a device for a commanded force. For torques in angles: the position is the device's
+/// rotation about the world's axes, summed up.
 struct DeviceStep
 {
-    Vec3 position_m{0.0, 0.0, 0.0};   ///< From this frame's sample.
-    std::uint32_t elapsed_periods{1}; ///< Since the last step; more after a stall. 0 counts as 1.
-    /// The largest surface damping of what the tool touches: it lowers the stiffness cap. Finite,
-    /// >= 0.
+    Vec3 position_m{0.0, 0.0, 0.0}; ///< Position of this frame's sample.
+    /// Whole periods since the last step; above 1 after a stall. 0 counts as 1.
+    std::uint32_t elapsed_periods{1};
+    /// Largest surface damping of the touched objects: it lowers the stiffness limit. Finite, >= 0.
     double surface_damping_n_s_per_m{0.0};
-    /// How far the wall was moved since the last step, by those who move it: what the force does
-    /// along that way isn't the wall's work.
+    /// Displacement of the wall since the last step by those who move it: the force's work along it
+    /// isn't the wall's.
     Vec3 carried_m{0.0, 0.0, 0.0};
 };
 
-/// Two stages between the force that one tool's frame wants and its device.
+/// Two stages between the commanded force of one tool's frame and its device.
 ///
 /// Limits of the device:
 ///
 ///     usable?   a force or stiffness that is no number: zero
-///     cap       a wall stiffer than the device may have at this rate: scaled down to the cap,
-///               which under a force moves by its own within kMaterialGlide_s when a damping comes
-///               or goes
+///     cap       a wall stiffer than the device's limit at this rate: scaled down to the limit;
+///               under a force the limit moves within kMaterialGlide_s if a damping appears or
+///               disappears
 ///     clamp     to the device's largest force
 ///
 /// Passivity:
 ///
-///     damping   against the velocity, when the port has given away energy (PassivityObserver)
+///     damping   against the velocity, if the port has given away energy (PassivityObserver)
 ///     clamp     again
 ///
-/// The first only shortens the force. The damping is bounded by the device's
-/// added_damping_max_n_s_per_m, acts only where there is a force, and never turns a push into a
-/// pull. How fast the force may change is for a ChangeLimit behind it, and a SafeState brings the
-/// first force in. docs/stability.md says what this is worth in figures.
+/// The first stage only shortens the force. The damping is bounded by the device's
+/// added_damping_max_n_s_per_m, acts only on a force, and never turns a push into a pull. The rate
+/// of change is limited by a ChangeLimit after this, and a SafeState fades the first force in.
+/// docs/stability.md has the figures.
 ///
-/// Haptic thread, once a frame and tool: after Frame::run(), before the SafeState. Cost:
-/// about a microsecond, most of it the velocity's.
+/// Haptic thread, once a frame and tool: after Frame::run(), before the SafeState. Cost: about a
+/// microsecond, most of it the velocity's.
 class ForceConditioner
 {
 public:
@@ -72,26 +73,27 @@ public:
     /// - `setup.period_s` > 0 (asserted).
     explicit ForceConditioner(const ConditionerSetup& setup) noexcept;
 
-    /// From the force that is wished for to the one to write now: the energy of the next period is
-    /// its.
+    /// Replaces the commanded force by the one to write now, to which the energy of the next period
+    /// belongs.
     void condition(SpringForce& force, const DeviceStep& device) noexcept TACTUS_NONBLOCKING
     {
         finish(force, begin(force, device));
     }
 
-    /// The same in two steps, for what shares a gain with others: how much of the wish, 0 .. 1, cap
-    /// and clamp leave; then the force of it, or of less.
+    /// The same in two steps, for springs that share a gain: begin() returns the share of the
+    /// commanded force, 0 .. 1, that cap and clamp leave; finish() computes the force with that
+    /// gain or less.
     /// - finish() follows each begin(), with the same force; `gain` in 0 .. 1.
     [[nodiscard]] double begin(SpringForce& force,
                                const DeviceStep& device) noexcept TACTUS_NONBLOCKING;
     void finish(SpringForce& force, double gain) noexcept TACTUS_NONBLOCKING;
 
-    /// `sent` went out in place of the force that condition() has just made; finite. `is_ramp`: a
-    /// gain brought it in, and what energy that makes beyond the spring's is forgiven. Else it
-    /// counts as any other.
+    /// Continues from `sent`, which replaced the last result of condition(); finite. `is_ramp`: a
+    /// gain fades the force in, and energy that this adds beyond the spring's is forgiven.
+    /// Otherwise it counts as any other.
     void follow(const SpringForce& sent, bool is_ramp) noexcept TACTUS_NONBLOCKING;
 
-    /// The stiffest wall that goes through unscaled, with the surface damping of the last step.
+    /// The stiffest wall that is not scaled, with the surface damping of the last step.
     [[nodiscard]] double stiffness_cap_n_per_m() const noexcept { return cap_n_per_m_; }
 
 private:
@@ -103,30 +105,32 @@ private:
 
     ConditionerSetup setup_;
     double surface_damping_n_s_per_m_{0.0};
-    double cap_step_n_per_m_; ///< By which a period may move the cap under a force.
-    double allowed_n_per_m_;  ///< The rule's, with that damping.
-    double cap_n_per_m_;      ///< In force: that, or on its way there.
+    /// Largest change of the limit per period under a force.
+    double cap_step_n_per_m_;
+    double allowed_n_per_m_; ///< Limit of the rule with that damping.
+    double cap_n_per_m_;     ///< Limit in use: that, or on its way there.
     VelocityWindow velocity_;
     SentForces sent_;
     PassivityObserver observer_;
     Vec3 position_m_{0.0, 0.0, 0.0};
     bool knows_position_{false};
-    double gain_{0.0}; ///< What begin() said, for finish().
+    double gain_{0.0}; ///< Result of begin(), for finish().
 };
 
-/// Two of them for a device that turns: the law of the ways for the force, that of the angles for
-/// the torque. What caps or clamps one of them shortens both by one gain, and garbage in one takes
-/// both away, so that a wrench keeps its line of action; damping is each one's own.
+/// A conditioner for the force and one for the torque, by the same law in lengths and in angles. If
+/// one of them is capped or clamped, both are shortened by one gain, and an invalid value in one
+/// removes both, so that a wrench keeps its line of action; each has its own damping.
 class WrenchConditioner
 {
 public:
-    /// As ForceConditioner. A device that makes no torque gets none.
+    /// Same set-up as ForceConditioner. A device without torque gets none.
     explicit WrenchConditioner(const ConditionerSetup& setup) noexcept;
 
-    /// Of `force` its push and turn; of `period` what the device did and what was carried.
+    /// Conditions the push and turn of `force` with the device's motion and the carried motion of
+    /// `period`.
     void condition(ToolForce& force, const ToolPeriod& period) noexcept TACTUS_NONBLOCKING;
 
-    /// As ForceConditioner::follow(); each for itself, where it was another.
+    /// Same as ForceConditioner::follow(), for each of both that was changed.
     void follow(const ToolForce& sent, bool is_ramp) noexcept TACTUS_NONBLOCKING;
 
 private:
@@ -134,7 +138,7 @@ private:
     ForceConditioner turn_;
     bool has_torque_;
     double lever_max_m_;
-    double turning_damping_max_nm_s_per_rad_; ///< Of a surface's, that is counted.
+    double turning_damping_max_nm_s_per_rad_; ///< Limit of the counted surface damping.
     Vec3 last_n_{0.0, 0.0, 0.0};
     Vec3 last_nm_{0.0, 0.0, 0.0};
 };

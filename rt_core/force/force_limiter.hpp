@@ -8,16 +8,16 @@
 namespace tactus
 {
 
-/// `force_n` or, when it is longer than `norm_max_n`, the force of that length in its direction.
-/// Zero when a coordinate is no finite number.
+/// `force_n`, shortened to `norm_max_n` if it is longer. Zero if a coordinate is no finite number.
 [[nodiscard]] Vec3 clamp_norm(const Vec3& force_n, double norm_max_n) noexcept TACTUS_NONBLOCKING;
 
-/// The next force on the way from `before_n` to `wished_n` when it may change by `step_max_n` >= 0:
-/// the wish, or on the straight line there as far as that. Never longer than the longer one.
+/// The next force from `before_n` towards `wished_n` if it may change by `step_max_n` >= 0:
+/// `wished_n`, or the point at that distance on the straight line there. Never longer than the
+/// longer one.
 [[nodiscard]] Vec3 limit_change(const Vec3& before_n, const Vec3& wished_n,
                                 double step_max_n) noexcept TACTUS_NONBLOCKING;
 
-/// The point between two that is nearest to a third one.
+/// The point between `from` and `to` nearest to `point`.
 [[nodiscard]] Vec3 nearest_between(const Vec3& from, const Vec3& to,
                                    const Vec3& point) noexcept TACTUS_NONBLOCKING;
 

@@ -15,59 +15,58 @@
 namespace tactus
 {
 
-/// Fixed while the loop runs.
+/// Settings that are fixed while the loop runs.
 struct PipelineSetup
 {
     ConditionerSetup conditioner;
     SafetyLimits limits;
-    ToolLoad load; ///< Its weight no more than the device's largest force.
-    /// Of it, the pipeline itself sets the hand's speed, which is `limits`', and the arm.
+    ToolLoad load; ///< Its weight is at most the device's largest force.
+    /// The pipeline sets hand_speed_max_m_per_s (from `limits`) and arm_m itself.
     ChangeRule change;
-    /// The tool's angular stiffness over its stiffness; 0: a sphere, which nothing turns.
+    /// The tool's angular stiffness over its stiffness; 0: a sphere, without rotation.
     double angular_share_m2{0.0};
 };
 
-/// What a device that is held by this tool allows at this period, with nothing hung on it. Hands
-/// above `speed_max_m_per_s` get no force. What the tool's stiffness is beyond the device's cap
-/// doesn't count.
+/// Set-up for a device with this tool at this period, without a payload. Above `speed_max_m_per_s`
+/// the device gets no force. The part of the tool's stiffness above the device's limit is ignored.
 /// - `device` has no fault, `period_s` > 0, `tool.stiffness_n_per_m` > 0 (asserted).
 [[nodiscard]] PipelineSetup pipeline_setup(const ToolSpec& tool, const DeviceLimits& device,
                                            double period_s,
                                            double speed_max_m_per_s) noexcept TACTUS_NONBLOCKING;
 
-/// Everything between the force of one tool's frame and its device, stage by stage. Only two other
-/// records carry the force: ToolOutput before it and what the device is written behind it.
+/// All stages between the force of one tool's frame and its device. Only two other records carry
+/// the force: ToolOutput before it, and the device's command after it.
 ///
 ///     force of the frame    the proxy's spring, and the program's own (OwnForce)
 ///     limits of the device  WrenchConditioner: cap, clamp
-///     passivity             WrenchConditioner: damping of energy from nowhere
-///     fade                  SafeState: by a cause, and back
-///     payload               GravityCompensation: what carries a load, beside the rest
-///     change                ChangeLimit: no faster than hand and objects move
+///     passivity             WrenchConditioner: damping of energy without a source
+///     fade                  SafeState: out by a cause, and back in
+///     payload               GravityCompensation: the payload's force, in addition
+///     change                ChangeLimit: no faster than device and objects move
 ///
-/// The stages before the last one are told what it let out. docs/safety.md has the laws.
+/// The stages before the last one receive its result. docs/safety.md has the laws.
 ///
-/// Haptic thread, once a frame and tool, after Frame::run(). Some 1.5 us; allocates nothing.
+/// Haptic thread, once a frame and tool, after Frame::run(). About 1.5 us; allocates nothing.
 class ForcePipeline
 {
 public:
-    /// - Each part as its stage asserts.
+    /// - Each part in the ranges that its stage asserts.
     explicit ForcePipeline(const PipelineSetup& setup) noexcept;
 
-    /// What to send now. `tool` and `output` are the frame's of this period. `device`: what else it
-    /// said; what it was sent isn't looked at. Anything of it that is no number takes the force
-    /// away (ForceOff::garbage).
+    /// Force to send now. `tool` and `output` are the frame's of this period; `device` has the
+    /// device's other data, of which the sent forces are ignored. Any value of it that is no number
+    /// removes the force (ForceOff::garbage).
     const ToolForce& step(const ToolState& tool, const ToolOutput& output,
                           const DeviceRecord& device, const OwnForce& own,
                           const PeriodContext& context) noexcept TACTUS_NONBLOCKING;
 
-    /// Instead of step() where there is no frame to go by: the last force fades on.
+    /// Replaces step() if there is no frame: the last force continues to fade.
     /// - `elapsed_s` >= 0; `cause` is not none (asserted).
     const ToolForce& fade(double elapsed_s, ForceOff cause) noexcept TACTUS_NONBLOCKING;
 
-    /// The last one that was let out.
+    /// Last result.
     [[nodiscard]] const ToolForce& force() const noexcept { return force_; }
-    /// Share of the force that goes out, 0 .. 1.
+    /// Share of the force that is sent, 0 .. 1.
     [[nodiscard]] double gain() const noexcept { return safe_state_.gain(); }
 
 private:
@@ -83,7 +82,7 @@ private:
     double angular_share_m2_;
     ToolPeriod period_;
     ToolForce force_;
-    double gripper_n_{0.0}; ///< Wanted by the last frame in which nothing was wrong.
+    double gripper_n_{0.0}; ///< Commanded in the last frame without a fault.
 };
 
 } // namespace tactus

@@ -14,7 +14,7 @@
 namespace tactus
 {
 
-/// A motion of N coordinates: 3 of a point; 6 of a body, in whatever metric the caller has.
+/// A motion of N coordinates: 3 of a point; 6 of a rigid tool, in the caller's metric.
 template <int N>
 using Motion = Eigen::Matrix<double, N, 1>;
 
@@ -32,25 +32,25 @@ template <int N>
 struct NearestMotion
 {
     Motion<N> motion{Motion<N>::Zero()};
-    /// Indices of the planes that hold it back, whose normals are independent.
+    /// Indices of the planes that hold the motion back, whose normals are independent.
     StaticVector<std::uint32_t, static_cast<std::size_t>(N)> held_by;
     std::array<double, static_cast<std::size_t>(N)> reactions{}; ///< Not negative.
-    /// False: no motion is allowed by all planes; the one above is zero, with nothing holding it.
-    /// Where planes have offsets of at most zero, some motion always is.
+    /// False: no motion is allowed by all planes; the one above is zero, with no plane holding it.
+    /// If all offsets are at most zero, there is always one.
     bool is_feasible{true};
 };
 
-/// The motion nearest to `wanted` that all planes allow, to 1e-12 of the lengths in the question;
-/// it is unique, and the order of the planes changes it by rounding only.
+/// The motion nearest to `wanted` that all planes allow, to 1e-12 of the lengths in the problem; it
+/// is unique, and the order of the planes changes it by rounding only.
 ///
 /// Planes whose normals are dependent to kParallelPlanes count as parallel: the one that holds back
-/// most counts, and opposite ones leave a gap between them or none. Of a gap that is too narrow by
-/// at most kSqueezeTolerance, one side may be violated by as much.
+/// most counts, and opposite ones leave a gap between them or none. If a gap is too narrow by at
+/// most kSqueezeTolerance, one side may be violated by as much.
 ///
-/// At most kMaxHalfSpaces planes, all finite as is `wanted`. Dual active set method (Goldfarb and
-/// Idnani 1983): the wanted motion is pushed out of the plane that it violates most, until none is.
-/// Haptic thread. Cost: 0.4 to 2 us for 8 to 64 planes in three dimensions, 0.7 to 5 us in six; at
-/// most kConstraintRounds steps.
+/// At most kMaxHalfSpaces planes, all finite, like `wanted`. Dual active set method (Goldfarb and
+/// Idnani 1983): the wanted motion is pushed out of the plane that it violates most, until none is
+/// violated. Haptic thread. Cost: 0.4 to 2 us for 8 to 64 planes in three dimensions, 0.7 to 5 us
+/// in six; at most kConstraintRounds steps.
 template <int N>
 [[nodiscard]] NearestMotion<N> nearest_motion(std::span<const HalfSpace<N>> planes,
                                               const Motion<N>& wanted) noexcept TACTUS_NONBLOCKING;

@@ -10,9 +10,9 @@
 namespace tactus
 {
 
-/// How one tool feels an object whose material changes: from what it felt to what it is to feel in
-/// straight lines, within kMaterialGlide_s. So a wall's force changes by a small share of the
-/// change a frame, and not at once. A texture of another length ends before it begins.
+/// Blends one tool's material at an object from the old to the new one, linearly within
+/// kMaterialGlide_s. So a wall's force changes by a small share of the difference per frame, and
+/// not at once. A texture of another length ends before the new one begins.
 ///
 /// Haptic thread.
 class MaterialGlide
@@ -24,8 +24,8 @@ public:
     {
     }
 
-    /// One frame on the way to `wanted`; a wall is never felt stiffer than `tool_n_per_m`. Returns
-    /// whether something is felt otherwise now.
+    /// One frame towards `wanted`; a wall is never felt stiffer than `tool_n_per_m`. True if the
+    /// felt material changed.
     [[nodiscard]] bool step(const Material& wanted, double tool_n_per_m,
                             double elapsed_s) noexcept TACTUS_NONBLOCKING
     {
@@ -48,7 +48,7 @@ public:
     [[nodiscard]] const Material& felt() const noexcept { return felt_; }
 
 private:
-    /// As std::lerp, which may differ between libraries. Two infinite ones are one.
+    /// Same as std::lerp, which may differ between libraries. Infinite if both are.
     [[nodiscard]] static double lerp(double from, double to, double share) noexcept
     {
         return from == to ? to : from + share * (to - from);
@@ -56,7 +56,7 @@ private:
 
     [[nodiscard]] Material between(double share, double tool_n_per_m) const noexcept
     {
-        // Beyond the tool's own a stiffness isn't felt, and an infinite one has no way.
+        // A stiffness above the tool's isn't felt, and an infinite one can't be blended.
         const double stiffest =
             std::max(tool_n_per_m, std::min(from_.stiffness_n_per_m, to_.stiffness_n_per_m));
         Material felt;

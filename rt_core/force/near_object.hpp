@@ -10,20 +10,20 @@
 namespace tactus
 {
 
-/// What a proxy keeps of an object from frame to frame. World frame.
+/// State that a proxy keeps of an object from frame to frame. World frame.
 struct ProxyMemory
 {
-    /// It may move by this much before it is on the other side of the object's surface.
+    /// Motion that the proxy may make before it is on the other side of the object's surface.
     double clearance_m{kInfinity};
-    Vec3 velocity_m_per_s{0.0, 0.0, 0.0}; ///< The object's, at the proxy.
-    Vec3 spin_rad_per_s{0.0, 0.0, 0.0};   ///< The object's; only a body's proxy asks for it.
+    Vec3 velocity_m_per_s{0.0, 0.0, 0.0}; ///< Velocity of the object at the proxy.
+    Vec3 spin_rad_per_s{0.0, 0.0, 0.0};   ///< Angular velocity of the object, for rigid tools.
 };
 
-/// An object near a tool as a frame begins: of the model's frame, where it stood and where it
-/// stands now; the same pose where it has not moved.
+/// An object near a tool at the beginning of a frame: the previous and the present pose of the
+/// model's frame; the same pose if it has not moved.
 struct NearObject
 {
-    std::uint32_t object{0}; ///< Its number.
+    std::uint32_t object{0}; ///< Number of the object.
     const ObjectPose* before{nullptr};
     const ObjectPose* now{nullptr};
     ProxyMemory* memory{nullptr};

@@ -12,21 +12,21 @@
 namespace tactus
 {
 
-/// What a program wants to do to a hand beside what surfaces do: guidance, a spring to a point, a
-/// gripper that closes. World frame, SI. Haptic thread.
+/// External force of a program on the user's hand besides that of surfaces: guidance, a spring to a
+/// point, a gripper that closes. World frame, SI. Haptic thread.
 struct OwnForce
 {
     Vec3 force_n{0.0, 0.0, 0.0};
     Vec3 torque_nm{0.0, 0.0, 0.0};
-    /// How much the force changes with the way: of the spring that it is. 0: it is none, and what
-    /// work it does on the hand is energy from nowhere, which in touch is damped as such.
+    /// Change of the force with displacement, if it is a spring. 0: it is none, and its work on the
+    /// user is energy without a source, which is damped as such in contact.
     double stiffness_n_per_m{0.0};
-    double stiffness_nm_per_rad{0.0}; ///< Likewise.
+    double stiffness_nm_per_rad{0.0}; ///< The same for the torque.
     double gripper_n{0.0};            ///< Above 0 it opens the gripper.
 };
 
-/// A spring from the tool, which is at `place_m`, to a point, at most so strong. Stiffness and
-/// largest force finite, not negative.
+/// A spring from the tool at `place_m` to a point, with a limited force. Stiffness and largest
+/// force must be finite and not negative.
 [[nodiscard]] inline OwnForce spring_to(const Vec3& point_m, const Vec3& place_m,
                                         double stiffness_n_per_m, double force_max_n) noexcept
 {
@@ -36,9 +36,8 @@ struct OwnForce
     return spring;
 }
 
-/// Two springs that pull at one hand as the one that they are together: forces and stiffnesses
-/// add, and the stretch is that with which it holds what both hold. One without a force of its own
-/// changes no bit.
+/// Combines two springs on one device into one: forces and stiffnesses add, and the stretch is set
+/// so that it holds the energy of both. A spring without force changes no bit.
 inline void add_spring(SpringForce& wall, const Vec3& force_n, double stiffness_n_per_m) noexcept
 {
     if (force_n == Vec3(0.0, 0.0, 0.0))
@@ -62,7 +61,7 @@ inline void add_spring(SpringForce& wall, const Vec3& force_n, double stiffness_
     }
 }
 
-/// What surfaces want and what the program wants, for the WrenchConditioner.
+/// Adds the program's force to that of the surfaces, for the WrenchConditioner.
 inline void add_own(ToolForce& force, const OwnForce& own) noexcept
 {
     add_spring(force.push, own.force_n, own.stiffness_n_per_m);

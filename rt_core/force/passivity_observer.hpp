@@ -13,79 +13,81 @@
 namespace tactus
 {
 
-/// The forces that were sent and when, for a device that holds each until the next one arrives,
+/// Sent forces and their times, for a device that holds each until the next one arrives,
 /// DeviceLimits::delay_s later.
 class SentForces
 {
 public:
-    /// `delay_periods`: of the device, whole or not.
+    /// `delay_periods`: the device's delay, whole or not.
     explicit SentForces(double delay_periods) noexcept : delay_(delay_periods) {}
 
-    /// Whether no force is at the device that is older than those kept.
+    /// True if no force at the device is older than those kept.
     [[nodiscard]] bool knows_delay() const noexcept { return delay_ <= kForcesUnderWay - 1; }
     void send(const Vec3& force_n) noexcept TACTUS_NONBLOCKING;
-    /// The newest was this one after all.
+    /// Replaces the newest force.
     void replace_newest(const Vec3& force_n) noexcept { sent_[0].force_n = force_n; }
-    /// The mean over time of the force at the device since the newest was sent, `elapsed_periods`
-    /// > 0 ago. Call it once before each send().
+    /// Mean over time of the force at the device since the newest was sent, `elapsed_periods` > 0
+    /// ago. Call it once before each send().
     [[nodiscard]] Vec3 mean_since(std::uint32_t elapsed_periods) noexcept TACTUS_NONBLOCKING;
 
 private:
     struct Sent
     {
         Vec3 force_n{0.0, 0.0, 0.0};
-        double periods{0.0}; ///< Until the next one was sent.
+        double periods{0.0}; ///< Periods until the next one was sent.
     };
 
     double delay_;
     std::array<Sent, kForcesUnderWay> sent_{}; ///< Newest first.
 };
 
-/// Watches the energy at the port between force and device (time-domain passivity: Hannaford and
+/// Observes the energy at the port between force and device (time-domain passivity: Hannaford and
 /// Ryu 2002), in contact and across contacts.
 ///
-/// A force that is held does F . (x[k] - x[k-1]) of work, exactly, whatever the motion in between.
-/// A passive wall gives back no more than it holds: the energy of its spring. The *surplus* is
-/// what it gave or holds beyond what it was given, less what the device itself has lost meanwhile:
+/// A held force does F . (x[k] - x[k-1]) of work, exactly, for any motion in between. A passive
+/// wall gives back no more than it holds: the energy of its spring. The *surplus*, the observed
+/// energy, is the energy that the wall gave or holds beyond its input, less the device's own losses
+/// meanwhile:
 ///
 ///     surplus[k] = surplus[k-1] + work + (held[k] - held[k-1]) - b dx^2 / dt - f |dx|, at least 0
 ///
-/// Of a wall that is moved the work is F . (dx - its own way): the rest is of those who move it.
+/// If a wall is moved, its work is F . (dx - its own displacement): the rest is done by those who
+/// move it.
 ///
-/// Each sampled wall makes some of it: K (v T)^2 / 2 when it is entered between two samples, and
-/// K dx^2 / 2 in each period, which a wall within stiffness_cap() loses in b again. What it grows
-/// beyond, the controller takes out. At least 0, so that energy lost long ago hides nothing;
-/// unlike Hannaford and Ryu's sum, which a long contact makes large.
+/// Each sampled wall generates some of it: K (v T)^2 / 2 when it is entered between two samples,
+/// and K dx^2 / 2 in each period, which a wall within stiffness_cap() loses in b again. Any further
+/// growth is removed by the controller. The surplus is at least 0, so that energy lost long ago
+/// hides nothing; unlike Hannaford and Ryu's sum, which a long contact makes large.
 ///
 /// Work and losses are of measured positions. A position that toggles between two quanta adds the
-/// same square to what the wall makes and what b loses, so it doesn't add up within the cap.
-/// Haptic thread.
+/// same square to the energy that the wall generates and that b dissipates, so it doesn't
+/// accumulate within the limit. Haptic thread.
 class PassivityObserver
 {
 public:
     PassivityObserver(const DeviceLimits& device, double period_s) noexcept;
 
-    /// What the device did under `force_n`, the mean of the forces that it held meanwhile. Along
-    /// `carried_m`, the way that the wall was moved, it is no work of the wall.
+    /// Adds the device's motion under `force_n`, the mean of the forces that it held meanwhile. The
+    /// work along `carried_m`, the displacement of a moved wall, isn't the wall's.
     /// - `elapsed_s` > 0.
     void observe(const Vec3& force_n, const Vec3& displacement_m, double elapsed_s,
                  const Vec3& carried_m = Vec3(0.0, 0.0, 0.0)) noexcept TACTUS_NONBLOCKING;
-    /// What the spring holds from now on; called after observe().
+    /// Sets the spring's energy; called after observe().
     void hold(double energy_j) noexcept TACTUS_NONBLOCKING;
-    /// It is this much, in place of what hold() was just told.
+    /// Replaces the energy of the last hold().
     void hold_instead(double energy_j) noexcept TACTUS_NONBLOCKING;
-    /// What the spring holds now came from elsewhere: there is no surplus.
+    /// Clears the surplus: the spring's energy came from elsewhere.
     void forgive() noexcept { surplus_j_ = 0.0; }
-    /// The force comes from no wall: there is no surplus.
+    /// Clears the surplus for a force that comes from no wall.
     void hold_nothing() noexcept TACTUS_NONBLOCKING;
 
-    /// Done on hand and device since the start.
+    /// Work done on user and device since the start.
     [[nodiscard]] double work_j() const noexcept { return work_j_; }
     [[nodiscard]] double surplus_j() const noexcept { return surplus_j_; }
 
-    /// The damping that would lose the surplus in one period at this speed, within the device's
-    /// limit; the passivity controller's, one period late: the surplus is bounded, not zero.
-    /// N s/m; 0 at rest.
+    /// Damping of the passivity controller, one period late: it would lose the surplus in one
+    /// period at this speed, within the device's limit. So the surplus is bounded, not zero. N s/m;
+    /// 0 at rest.
     [[nodiscard]] double damping_for(double speed_m_per_s) const noexcept TACTUS_NONBLOCKING;
 
 private:
@@ -96,7 +98,7 @@ private:
     double work_j_{0.0};
     double held_j_{0.0};
     double surplus_j_{0.0};
-    double unheld_j_{0.0}; ///< Surplus before the last hold(), less what was held then.
+    double unheld_j_{0.0}; ///< Surplus before the last hold(), minus the energy held then.
 };
 
 } // namespace tactus

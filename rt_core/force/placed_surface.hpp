@@ -12,21 +12,22 @@
 namespace tactus
 {
 
-/// One object's surface near a tool, as the force stage sees it from where the proxy is.
+/// One object's surface near a tool, as queried from the proxy, for the force stage.
 struct PlacedSurface
 {
     const ObjectPose* pose{nullptr};
     const LocalSurface* surface{nullptr};
     const Material* material{nullptr};
-    double quantum_m{0.0}; ///< Of the model's coordinates, in its frame.
-    /// How far round the tool's core it was asked for, in the world.
+    double quantum_m{0.0}; ///< Quantum of the model's coordinates, in its frame.
+    /// Range of the query round the tool's core, in the world.
     double reach_m{kInfinity};
-    /// Proven distance of the core, in the world; 0 where that is not known.
+    /// Proven distance of the core, in the world; 0 if unknown.
     double lower_m{0.0};
-    /// World frame; null unless the tool is held as a body.
+    /// World frame; null unless the tool is rigid.
     const TouchReport* touches{nullptr};
-    double upper_m{kInfinity}; ///< Some surface is within this of the core, in the world.
-    std::uint32_t object{0};   ///< Its number in the scene.
+    double upper_m{kInfinity}; ///< Upper bound of the core's distance from the surface, in the
+                               ///< world.
+    std::uint32_t object{0};   ///< Number of the object in the scene.
     ProxyMemory* memory{nullptr};
     const Kernels* kernels{&portable_kernels()};
 };

@@ -24,31 +24,31 @@ namespace tactus
 /// The virtual proxy of a tool whose core is a point (god-object: Zilles and Salisbury 1995;
 /// virtual proxy: Ruspini, Kolarov and Khatib 1997; friction cone: Harwin and Melder 2002).
 ///
-/// The proxy is the tool's centre as the surfaces let it be: the place nearest to the goal that can
-/// be reached without entering a triangle, and where friction lets it get. It goes there in
-/// straight steps. Each step is the nearest motion to the goal that stays on the free side of a
-/// plane for every triangle near, so whatever holds it, up to three planes, does so at once; the
-/// planes are found again where it ends. No step enters a triangle, however fast or deep the goal
-/// is. Steps stay where the surfaces are certified: within (certified radius - tool radius), or
-/// (L - tool radius), of where they were queried.
+/// The proxy is the tool's centre that the surfaces allow: the reachable place nearest to the goal
+/// without entering a triangle, as far as friction permits. It moves in straight steps. Each step
+/// is the nearest motion to the goal that stays on the free side of a plane for every triangle
+/// near, so all planes that hold it, up to three, do so at once; the planes are found again at its
+/// end. No step enters a triangle, however fast or deep the goal is. Steps stay where the surfaces
+/// are certified: within (certified radius - tool radius), or (L - tool radius), of the place of
+/// their query.
 ///
-/// The force is the spring between goal and proxy, of the softer of tool and object; never a
-/// penalty on a distance. Friction, viscosity, a texture (texture.hpp) and smooth normals
-/// (smooth_normals.hpp) say where along the surface the proxy comes to rest, so all that they do is
-/// stretch that spring. Without a certified
-/// surface, and where objects leave no room, the proxy is frozen or squeezed and says so: SafeState
-/// fades the force, which is along the last normal and never pulls. After a frame in which the
-/// proxy had to wait for data the force catches up by kCatchUp_n_per_s, beside what the hand does.
+/// The force is the spring between goal and proxy, with the softer stiffness of tool and object;
+/// never a penalty on a distance. Friction, viscosity, a texture (texture.hpp) and force shading
+/// (smooth_normals.hpp) determine where along the surface the proxy comes to rest, so their only
+/// effect is to stretch that spring. Without a certified surface the proxy is frozen, and if
+/// objects leave no room it is squeezed, both of which it reports: SafeState fades the force, which
+/// is along the last normal and never pulls. After a frame in which the proxy waited for data the
+/// force catches up by kCatchUp_n_per_s, besides the device's motion.
 ///
-/// A fast hand asks for more triangles than fit in a list. The proxy goes as far as those that are
-/// listed prove, then on from there with another list of the same frame, kListsPerFrame at most.
+/// A fast device needs more triangles than fit in a list. The proxy goes as far as the listed ones
+/// prove, then on from there with another list in the same frame, kListsPerFrame at most.
 ///
-/// What it looks at is bounded by Budgets::planes. Where they are used up it stays, `under_way`,
-/// and goes on in the next frame.
+/// Its checks are bounded by Budgets::planes. If they are used up it stops, `under_way`, and
+/// continues in the next frame.
 ///
-/// A tool without a radius is a ball of kPointSkin quanta.
+/// A tool without a radius is a sphere of kPointSkin quanta.
 ///
-/// Haptic thread. Cost: a list of the triangles in reach once a frame as a rule, 2 to 6 steps and
+/// Haptic thread. Cost: usually one list of the triangles in reach per frame, 2 to 6 steps and
 /// kProxySteps at most, each of a few passes over the list.
 class Proxy
 {
@@ -58,83 +58,85 @@ public:
     Proxy() noexcept = default;
     explicit Proxy(ToolSpec spec) noexcept TACTUS_NONBLOCKING;
 
-    /// The proxy begins at the first goal; later ones it goes to when it responds.
+    /// Starts the proxy at the first goal; later goals take effect in respond().
     void see(const ToolGoal& goal) noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] const Vec3& position_m() const noexcept { return position_; }
-    /// Where the tool lies in the world: at the proxy, turned as the hand has it.
+    /// Pose of the tool in the world: at the proxy, with the device's rotation.
     [[nodiscard]] Similarity place() const noexcept { return {rotation_, position_, 1.0}; }
-    /// The tool's, or a point's skin.
+    /// Radius of the tool, or the skin of a point.
     [[nodiscard]] double radius_m() const noexcept { return radius_; }
-    /// How far beyond its radius it looks for what it may feel.
+    /// Distance beyond the radius within which surfaces affect the force.
     [[nodiscard]] double feels_beyond_m() const noexcept
     {
         return spec_.smooth_m > 0.0 ? SmoothNormals::reach_beyond_m(radius_, spec_.smooth_m) : 0.0;
     }
-    /// How far it may have to go for this goal: what presses it against what it touches is no way.
+    /// Distance to the goal along the surface. The normal component of a pressed contact does not
+    /// count.
     [[nodiscard]] double way_to_m(const ToolGoal& goal) const noexcept TACTUS_NONBLOCKING;
-    /// The places that it went by in this frame, the first and the last included: straight lines.
+    /// Corners of its path in this frame, including both ends: straight lines.
     [[nodiscard]] std::span<const Vec3> path_m() const noexcept { return path_.view(); }
     [[nodiscard]] bool is_in_contact() const noexcept { return in_contact_; }
-    /// More triangles touched in the last frame than planes fit: the force may lack some.
+    /// True if more triangles touched in the last frame than planes fit: the force may lack some.
     [[nodiscard]] bool is_crowded() const noexcept { return is_crowded_; }
 
-    /// The objects move. The proxy goes along with the one that it touches, or that would run over
-    /// it; else it stays. Where one of them runs over it whatever it does, it is squeezed. Once a
-    /// frame, before the surfaces are queried.
+    /// Moves the proxy with the objects: along with the one that it touches, or that would pass
+    /// over it; otherwise it stays. If one of them passes over it in each case, it is squeezed.
+    /// Once a frame, before the surfaces are queried.
     void carry(std::span<const NearObject> objects, double elapsed_s) noexcept TACTUS_NONBLOCKING;
-    /// The object is another from now on, or gone.
+    /// Drops an object that was replaced or removed.
     void forget(std::uint32_t object) noexcept TACTUS_NONBLOCKING;
 
-    /// Moves towards the goal and returns the force. `surfaces` were queried at position_m(); from
-    /// everything else it is at least `clear_m` away there. `planes` are what is left of
-    /// Budgets::planes: with none left it stays where it has come to, and feels what touches there.
+    /// Moves towards the goal and returns the force. `surfaces` were queried at position_m(); all
+    /// others are at least `clear_m` away there. `planes` are the rest of Budgets::planes: with
+    /// none left the proxy stops, with the contacts at its place.
     [[nodiscard]] ToolOutput
     respond(const ToolGoal& goal, std::span<const PlacedSurface> surfaces, double clear_m,
             std::uint32_t planes = Vicinity::kUnlimited) noexcept TACTUS_NONBLOCKING;
-    /// Of them, after respond().
+    /// Rest of `planes` after respond().
     [[nodiscard]] std::uint32_t planes_left() const noexcept { return planes_left_; }
-    /// It came to the end of a list that room or budget had cut short: from where it is now, with
-    /// surfaces that are asked for there, it would go on.
+    /// True if it reached the end of a list that capacity or budget had truncated: from its new
+    /// place, with surfaces queried there, it would move on.
     [[nodiscard]] bool goes_on() const noexcept { return goes_on_; }
-    /// How far it came by the last respond(), at most.
+    /// Distance of the last respond(), at most.
     [[nodiscard]] double went_m() const noexcept { return (position_ - anchor_).norm(); }
-    /// The next respond() is of the same frame; its force takes the place of the last one's.
-    /// Where it is frozen it changes nothing.
+    /// Makes the next respond() a continuation of the same frame, whose force replaces the last
+    /// one. A frozen continuation changes nothing.
     void go_on() noexcept { is_on_ = true; }
 
 private:
     enum class Motion : std::uint8_t
     {
-        at_rest,   ///< At the goal, or held by the surface.
-        ran_out,   ///< More triangles are near than fit: those that don't may be here.
-        held_back, ///< The certified ball ends here.
+        at_rest, ///< Reached the goal, or held by the surface.
+        /// More triangles are near than fit: unlisted ones may be here.
+        ran_out,
+        held_back, ///< The certified sphere ends here.
         out_of_steps,
-        out_of_planes, ///< Nothing more may be looked at.
+        out_of_planes, ///< No checks are left.
         squeezed,      ///< No place near is free.
     };
 
-    /// What the surfaces do at one place. Sums are over the planes that touch, each by how deep the
-    /// goal is behind it.
+    /// Effect of the surfaces at one place. Sums are over the touching planes, each weighted by the
+    /// goal's depth behind it.
     struct Hold
     {
-        Vec3 motion{0.0, 0.0, 0.0}; ///< As far as planes and friction let it go.
-        Vec3 push_n{0.0, 0.0, 0.0}; ///< Of the planes.
-        Vec3 drag_n{0.0, 0.0, 0.0}; ///< Of friction.
+        Vec3 motion{0.0, 0.0, 0.0}; ///< Motion that planes and friction allow.
+        Vec3 push_n{0.0, 0.0, 0.0}; ///< Force of the planes.
+        Vec3 drag_n{0.0, 0.0, 0.0}; ///< Force of friction.
         double depth_m{0.0};
-        double stiffness{0.0}; ///< N/m x m, and so on.
+        double stiffness{0.0}; ///< Sum in N/m x m; so are those below.
         double static_m{0.0};
         double dynamic_m{0.0};
         double damping{0.0};
         double viscosity{0.0};
-        Vec3 bump_m{0.0, 0.0, 0.0};   ///< What textures move the proxy along by.
-        double stiffening{0.0};       ///< By textures and smooth normals, likewise a sum.
-        Vec3 velocity{0.0, 0.0, 0.0}; ///< The objects'.
+        Vec3 bump_m{0.0, 0.0, 0.0};   ///< Proxy displacement by textures.
+        double stiffening{0.0};       ///< Sum for textures and force shading.
+        Vec3 velocity{0.0, 0.0, 0.0}; ///< Velocity of the objects.
         double deepest_m{0.0};
-        std::uint32_t object{kNoObject}; ///< Whose plane that is.
+        std::uint32_t object{kNoObject}; ///< Object of the deepest plane.
         bool touches{false};
-        bool rubs{false};        ///< Something holds it back along the surface.
-        bool has_texture{false}; ///< One that presses is bumpy.
-        bool is_smooth{false};   ///< It is held as a hand is that is raised.
+        bool rubs{false};        ///< Friction or damping acts along the surface.
+        bool has_texture{false}; ///< A pressing surface has a texture.
+        bool is_smooth{false};   ///< Held with force shading.
         bool is_squeezed{false};
     };
 
@@ -178,27 +180,28 @@ private:
     ToolSpec spec_;
     double radius_{0.0};
     Vec3 position_{0.0, 0.0, 0.0};
-    Mat3 rotation_{Mat3::Identity()};        ///< The goal's.
-    Vec3 anchor_{0.0, 0.0, 0.0};             ///< Where this frame's surfaces were queried.
-    double clear_m_{kInfinity};              ///< There, of everything else.
-    Vec3 normal_{0.0, 0.0, 1.0};             ///< Of the last contact.
-    SmoothNormals normals_;                  ///< While the proxy moves.
-    StaticVector<std::uint32_t, 3> held_by_; ///< The faces, at the last stand of this frame.
+    Mat3 rotation_{Mat3::Identity()};        ///< Rotation of the goal.
+    Vec3 anchor_{0.0, 0.0, 0.0};             ///< Place of the last query.
+    double clear_m_{kInfinity};              ///< Clearance there, of all others.
+    Vec3 normal_{0.0, 0.0, 1.0};             ///< Normal of the last contact.
+    SmoothNormals normals_;                  ///< Valid while the proxy moves.
+    StaticVector<std::uint32_t, 3> held_by_; ///< Faces at the last stop of this frame.
     Hold hold_;
     CatchUp catch_up_;
-    CatchUp catch_up_before_; ///< As the frame found it, and
-    bool has_waited_{false};  ///< the same of
-    bool waits_{false};       ///< frozen, squeezed, held back or cut short in the last frame.
-    bool is_on_{false};       ///< A further list of the same frame.
+    CatchUp catch_up_before_; ///< State at the frame's beginning.
+    bool has_waited_{false};  ///< waits_ at the frame's beginning.
+    /// Frozen, squeezed, held back or cut short in the last frame.
+    bool waits_{false};
+    bool is_on_{false}; ///< Continues in the same frame.
     bool goes_on_{false};
-    std::uint32_t lists_{0}; ///< Of this frame, as are
-    std::uint32_t steps_{0}; ///< these.
+    std::uint32_t lists_{0}; ///< Number in this frame.
+    std::uint32_t steps_{0}; ///< Number in this frame.
     std::uint32_t planes_left_{0};
     bool in_contact_{false};
-    bool slides_{false};    ///< From the last frame on: the dynamic cone holds.
-    bool has_slid_{false};  ///< In this frame.
-    double rubbed_m_{0.0};  ///< How far it went in touch, in this frame,
-    double elapsed_s_{0.0}; ///< and the frame's time.
+    bool slides_{false};    ///< True if the dynamic cone holds from the last frame on.
+    bool has_slid_{false};  ///< The same in this frame.
+    double rubbed_m_{0.0};  ///< Displacement in contact in this frame.
+    double elapsed_s_{0.0}; ///< Duration of the frame.
     bool was_overrun_{false};
     bool is_crowded_{false};
     StaticVector<Vec3, kProxySteps + kListsPerFrame + 1> path_;

@@ -22,113 +22,113 @@
 namespace tactus
 {
 
-/// The virtual proxy of a tool that is more than a point: a place and a rotation that surfaces let
-/// the tool have, coupled to the hand's (god-object of six degrees of freedom: Ortega, Redon and
+/// The virtual proxy of a tool that is more than a point: a place and a rotation that surfaces
+/// allow, coupled to the device's (god-object of six degrees of freedom: Ortega, Redon and
 /// Coquillart 2007; virtual coupling: Colgate, Stanley and Brown 1995; friction: body_planes.hpp).
 ///
-/// Each step goes towards the hand. What is near the proxy are planes that the step may not cross,
-/// in the metric of the coupling's energy: |translation|^2 + |arm x rotation|^2. The square of the
-/// arm is the angular stiffness over the stiffness; where none is set, the arm is what the core's
-/// ball and the radius measure together. The step is then cut to what is proven free
-/// (body_room.hpp): the core never crosses a surface, seen or not, in translation or rotation. The
-/// tool's radius is what it has to slide with: a core without one keeps a skin, kLeastSkin of its
-/// own radius.
+/// Each step moves towards the device pose. Surfaces near the proxy are planes that the step may
+/// not cross, in the metric of the coupling's energy: |translation|^2 + |arm x rotation|^2. The
+/// square of the arm is the angular stiffness over the stiffness; by default the arm is the sum of
+/// the core's sphere and the radius. The step is then cut to the proven free share (body_room.hpp):
+/// the core never crosses a surface, seen or not, in translation or rotation. The tool's radius is
+/// its room to slide: a core without one keeps a skin, kLeastSkin of its own radius.
 ///
-/// The force is what planes and friction hold back of the hand's motion, each times the softer
-/// stiffness of tool and object; the torque is theirs about the device's position. So they never
-/// pull, are zero where no plane holds, and a proxy that lags behind the hand drags at nothing. At
-/// rest they are the stiffness x (proxy - hand), and the angular stiffness x the turn between them.
-/// An object's damping acts across its surface, where it is touched, its viscosity along it. Its
-/// texture is felt where the middle of the core is (texture.hpp): which of its contacts bear
-/// changes from frame to frame, and with them the energy of the bumps would.
+/// The force is the part of the device's motion that planes and friction hold back, each times the
+/// softer stiffness of tool and object; the torque is the same about the device's position. So they
+/// never pull, are zero without a holding plane, and a lagging proxy causes no drag. At rest they
+/// are the stiffness x (proxy - device), and the angular stiffness x the rotation between them. An
+/// object's damping acts across its surface in contact, its viscosity along it. Its texture is felt
+/// at the middle of the core (texture.hpp): the set of bearing contacts changes from frame to
+/// frame, and the energy of the bumps would change with it.
 ///
-/// Where it sticks, the proxy does not move by a bit. Before its first step in a frame the proxy
-/// goes along with an object that moves, if that one holds it or would run over it (carried.hpp):
-/// of what moves only that counts by which objects move to one another.
+/// While it sticks, the proxy does not move by a bit. Before its first step in a frame an object
+/// that moves carries the proxy if it holds it or would pass over it (carried.hpp): only motion of
+/// objects relative to one another counts.
 ///
-/// Where the distance is not exact, the proxy moves no farther than it is proven to be from every
-/// surface, less the radius. When that is nothing it is frozen and says so: the last planes hold
-/// what pushes against them, and SafeState fades that; afterwards force and torque catch up by
-/// kCatchUpShare_per_s. So they do, beside what the hand does, while objects leave it no room and
-/// in the frame after that: planes hold then what went free before. A proxy that nothing is known
-/// of yet, or whose core an object has crossed for kFadeTime_s, is where the hand is, without a
-/// force, until it is proven to be clear there.
+/// If the distance is not exact, the proxy moves no farther than its proven distance from every
+/// surface, minus the radius. If that is nothing it is frozen and reports it: the last planes hold
+/// against pressure, and SafeState fades that force; afterwards force and torque catch up by
+/// kCatchUpShare_per_s. They do the same, besides the device's motion, while objects leave it no
+/// room and in the frame after that, since planes then hold motions that were free before. A proxy
+/// about which nothing is known yet, or whose core an object has crossed for kFadeTime_s, is at the
+/// device pose, without a force, until it is proven to be clear there.
 ///
 /// Haptic thread. Cost: 1 to 4 us with 8 to 32 contacts, with friction up to 10 us more.
 class RigidProxy
 {
 public:
     using Planes = BodyPlanes;
-    /// Steps of one frame at most; each asks for the surfaces anew. One is usual below 0.1 m/s.
+    /// Largest number of steps in one frame; each needs another query of the surfaces. One is usual
+    /// below 0.1 m/s.
     static constexpr std::uint32_t kStepsPerFrame = 4;
 
-    /// `planes` may serve many proxies, one after the other, and outlives them.
+    /// `planes` may serve many proxies in turn and outlives them.
     RigidProxy(const ToolSpec& spec, Planes& planes) noexcept TACTUS_NONBLOCKING;
 
-    /// What the tool keeps round its core.
+    /// Distance that the tool keeps round its core.
     [[nodiscard]] double radius_m() const noexcept { return radius_m_; }
-    /// Where the tool lies in the world.
+    /// Pose of the tool in the world.
     [[nodiscard]] const Similarity& place() const noexcept { return place_; }
-    /// How far a point of the tool may have to go from here to the hand, at most.
+    /// Bound on the displacement of the tool's points from here to the device pose.
     [[nodiscard]] double way_to_m(const ToolGoal& goal) const noexcept TACTUS_NONBLOCKING;
-    /// No motion was allowed by all planes in the last step, or an object may have come over it.
+    /// True if no motion was allowed by all planes in the last step, or an object may have passed
+    /// over it.
     [[nodiscard]] bool is_squeezed() const noexcept { return is_squeezed_; }
-    /// What may hold the tool was left out in the last step, for want of room.
+    /// True if a possible contact was left out in the last step for lack of capacity.
     [[nodiscard]] bool is_crowded() const noexcept { return is_crowded_; }
-    /// Friction holds it, or it slides against it.
+    /// True if friction holds it, or it slides against it.
     [[nodiscard]] bool sticks() const noexcept { return sticks_; }
     [[nodiscard]] bool slides() const noexcept { return slides_; }
-    /// Surfaces hold it: it is not where the hand is until it is proven to be clear there.
+    /// True if surfaces hold it: otherwise it is at the device pose until proven to be clear there.
     [[nodiscard]] bool is_joined() const noexcept { return is_joined_; }
-    /// How far it may be expected to go in a frame. One that pushes goes twice as far as it went at
-    /// most, so that it asks for little of a surface that it rests on.
+    /// Expected displacement in a frame. For a proxy in contact it is at most twice the last one,
+    /// so that it needs little of a surface that it rests on.
     [[nodiscard]] double likely_way_m() const noexcept TACTUS_NONBLOCKING;
-    /// From where it went to, with surfaces that are asked for there, it would go on.
+    /// True if it would move on from its new place, with surfaces queried there.
     [[nodiscard]] bool goes_on() const noexcept { return goes_on_; }
-    /// How far any point of the core has come in the last step, at most.
+    /// Bound on the displacement of the core's points in the last step.
     [[nodiscard]] double went_m() const noexcept { return went_m_; }
 
-    /// A proxy that is nowhere yet is at the hand; else nothing changes before it responds.
+    /// Starts the proxy at the device pose; later goals take effect in respond().
     void see(const ToolGoal& goal) noexcept TACTUS_NONBLOCKING;
-    /// The objects move. Once a frame, before the surfaces are queried.
+    /// Moves the proxy with the objects. Once a frame, before the surfaces are queried.
     void carry(std::span<const NearObject> objects, double elapsed_s) noexcept TACTUS_NONBLOCKING;
-    /// The object is another from now on, or gone.
+    /// Drops an object that was replaced or removed.
     void forget(std::uint32_t object) noexcept TACTUS_NONBLOCKING;
 
-    /// One step towards the hand, and its force. `surfaces` were queried where the proxy is; from
-    /// everything else its core is at least `clear_m` away there.
+    /// One step towards the device pose, and its force. `surfaces` were queried at the proxy; the
+    /// core is at least `clear_m` away from all others there.
     [[nodiscard]] ToolOutput respond(const ToolGoal& goal, std::span<const PlacedSurface> surfaces,
                                      double clear_m) noexcept TACTUS_NONBLOCKING;
-    /// The next respond() is one more step of the same frame, whose force takes the place of the
-    /// last one's.
+    /// Makes the next respond() another step of the same frame, whose force replaces the last one.
     void go_on() noexcept TACTUS_NONBLOCKING;
 
 private:
-    /// A place where the tool was held, kept while the tool has not slid away from it.
+    /// A place where the tool was held, kept until the tool slides away from it.
     struct Hold
     {
-        std::uint32_t object{0};          ///< Its number in the scene.
-        Vec3 on_tool_m{0.0, 0.0, 0.0};    ///< In the tool's frame.
-        Vec3 on_surface_m{0.0, 0.0, 0.0}; ///< In the object's.
-        Vec3 normal{0.0, 0.0, 0.0};       ///< In the object's.
+        std::uint32_t object{0};          ///< Number in the scene.
+        Vec3 on_tool_m{0.0, 0.0, 0.0};    ///< Point in the tool's frame.
+        Vec3 on_surface_m{0.0, 0.0, 0.0}; ///< Point in the object's frame.
+        Vec3 normal{0.0, 0.0, 0.0};       ///< Normal in the object's frame.
         bool is_face{false};
     };
-    /// What pushed last, while nothing new is known.
+    /// The last push, for frames without new data.
     struct LastPush
     {
         Motion<6> normal{Motion<6>::Zero()};
         double stiffness_n_per_m{0.0};
     };
-    /// What textures do to the spring: shares of what presses.
+    /// Effect of textures on the spring, as shares of the pressing contacts.
     struct Bumps
     {
-        Motion<6> aside{Motion<6>::Zero()}; ///< The hand is drawn along by it, for the proxy.
-        Motion<6> held{Motion<6>::Zero()};  ///< Times K, what they add to what is held back.
+        Motion<6> aside{Motion<6>::Zero()}; ///< Offset of the device goal for the proxy.
+        Motion<6> held{Motion<6>::Zero()};  ///< Times K: addition to the held motion.
         double stiffness_n_per_m{0.0};      ///< K
         double stiffening{1.0};
         bool are_there{false};
     };
-    /// As they were when the frame began.
+    /// State at the frame's beginning.
     struct Frame
     {
         CatchUp force;
@@ -167,26 +167,28 @@ private:
 
     ToolSpec spec_;
     double radius_m_{0.0};
-    double size_m_{1.0}; ///< Core and radius together.
+    double size_m_{1.0}; ///< Size of core and radius together.
     double arm_m_{1.0};
-    Vec3 center_m_{0.0, 0.0, 0.0}; ///< Of the core's ball, in the tool's frame.
+    Vec3 center_m_{0.0, 0.0, 0.0}; ///< Centre of the core's sphere, in the tool's frame.
     double core_radius_m_{0.0};
-    Similarity place_; ///< Of the tool in the world.
+    Similarity place_; ///< Pose of the tool in the world.
     bool is_joined_{false};
     bool is_squeezed_{false};
     bool is_crowded_{false};
     bool sticks_{false};
     bool slides_{false};
     bool goes_on_{false};
-    bool is_on_{false};     ///< The step is not the frame's first.
-    bool was_still_{false}; ///< Before this step, and so it rests but for what is new.
+    bool is_on_{false}; ///< The step is not the frame's first.
+    /// Still before this step, so only new contacts can move it.
+    bool was_still_{false};
     double went_m_{0.0};
-    Motion<6> gone_{Motion<6>::Zero()};     ///< In this frame.
-    std::uint32_t held_by_{kNoObject};      ///< Which pushed most in the last step.
-    bool was_overrun_{false};               ///< As the frame began.
-    double clear_m_{kInfinity};             ///< Of what is no object here, after the last step.
-    Vec3 carried_m_per_s_{0.0, 0.0, 0.0};   ///< It went along so as the frame began,
-    Vec3 carried_rad_per_s_{0.0, 0.0, 0.0}; ///< and turned so.
+    Motion<6> gone_{Motion<6>::Zero()}; ///< Motion in this frame.
+    std::uint32_t held_by_{kNoObject};  ///< Object that pushed most in the last step.
+    bool was_overrun_{false};           ///< State at the frame's beginning.
+    /// Clearance from all except the objects here, after the last step.
+    double clear_m_{kInfinity};
+    Vec3 carried_m_per_s_{0.0, 0.0, 0.0};   ///< Carried velocity at the frame's beginning.
+    Vec3 carried_rad_per_s_{0.0, 0.0, 0.0}; ///< Its angular velocity.
     double frozen_s_{0.0};
     CatchUp force_;
     CatchUp torque_;

@@ -8,7 +8,7 @@
 namespace tactus
 {
 
-/// How stiff a wall may be on one device at one rate, and why. N/m.
+/// Limits of a wall's stiffness on one device at one rate, by cause. N/m.
 struct StiffnessLimits
 {
     /// 2 (b - B) / (T + 2 t): a sampled wall gives away at most K (T/2 + t) v^2 + B v^2 of power,
@@ -16,19 +16,19 @@ struct StiffnessLimits
     double sampling_n_per_m{0.0};
     /// 2 (f - B q / T) / q: a position that is wrong by up to half a quantum q gives away at most
     /// (K q / 2 + B q / T) |v|, the device loses f |v| (Abbott and Okamura 2005, Diolaiti et al.
-    /// 2006). Infinite where friction f or quantum is 0.
+    /// 2006). Infinite if friction f or quantum is 0.
     double quantisation_n_per_m{0.0};
     double device_n_per_m{0.0}; ///< DeviceLimits::stiffness_max_n_per_m.
-    /// The stiffest wall to ask for: 0.9 x the first two, and no more than the third.
+    /// The largest usable stiffness: 0.9 x the first two, and no more than the third.
     double cap_n_per_m{0.0};
 };
 
 /// The rule of docs/stability.md for a wall with stiffness and, per object, surface damping B: its
-/// force is K x depth + B x (difference of two positions) / period. Where B alone is too much, all
-/// are 0: take less B.
+/// force is K x depth + B x (difference of two positions) / period. If B alone is too much, all
+/// limits are 0: take less B.
 ///
 /// The delay's part is exact for whole periods. For fractions the energy may be up to 8 % more than
-/// T/2 + t says, which the factor 0.9 covers.
+/// T/2 + t gives, which the factor 0.9 covers.
 /// - `device` has no fault.
 /// - `period_s` > 0: the one that the loop runs at, not the device's best.
 /// - `surface_damping_n_s_per_m` finite; its sign doesn't count.
@@ -36,14 +36,14 @@ struct StiffnessLimits
 stiffness_limits(const DeviceLimits& device, double period_s,
                  double surface_damping_n_s_per_m = 0.0) noexcept TACTUS_NONBLOCKING;
 
-/// stiffness_limits().cap_n_per_m: what callers cap a wall's stiffness with.
+/// stiffness_limits().cap_n_per_m, with which callers limit a wall's stiffness.
 [[nodiscard]] double
 stiffness_cap(const DeviceLimits& device, double period_s,
               double surface_damping_n_s_per_m = 0.0) noexcept TACTUS_NONBLOCKING;
 
-/// The turning of a device that makes a torque, as a device of the same law: kg m^2 for kg, N m
-/// s/rad for N s/m, N m for N, rad for m. So all that is said of K holds for a rotational spring,
-/// in N m/rad. It doesn't turn itself.
+/// The rotation of a device that produces torques, as a device of the same law: kg m^2 for kg, N m
+/// s/rad for N s/m, N m for N, rad for m. So all statements about K hold for a rotational spring,
+/// in N m/rad. The result has no rotation itself.
 [[nodiscard]] inline DeviceLimits turning_of(const DeviceLimits& device) noexcept
 {
     const TurnLimits& turn = device.turn;
@@ -58,7 +58,7 @@ stiffness_cap(const DeviceLimits& device, double period_s,
             .added_damping_max_n_s_per_m = turn.added_damping_max_nm_s_per_rad};
 }
 
-/// Null, or one line that names the value that is out of its range.
+/// Null, or one line that names the value out of its range.
 [[nodiscard]] const char* find_fault(const DeviceLimits& device) noexcept TACTUS_NONBLOCKING;
 [[nodiscard]] const char* find_fault(const TurnLimits& turn) noexcept TACTUS_NONBLOCKING;
 

@@ -11,8 +11,8 @@
 namespace tactus
 {
 
-/// Cholesky's factor of a symmetric matrix whose eigenvalues are 1 or more: matrix = L L^T. In
-/// loops of its own, so that every compiler adds in the same order. 0.1 us.
+/// Cholesky factor of a symmetric matrix whose eigenvalues are 1 or more: matrix = L L^T. It has
+/// its own loops, so that every compiler adds in the same order. 0.1 us.
 class SymmetricFactor
 {
 public:
@@ -30,7 +30,7 @@ public:
                 {
                     sum -= lower_(row, k) * lower_(column, k);
                 }
-                // On the diagonal 1 or more, but for what is rounded off where others are huge.
+                // The diagonal is 1 or more, except for rounding if others are huge.
                 lower_(row, column) =
                     row == column ? std::sqrt(std::max(sum, 0.5)) : sum / lower_(column, column);
             }

@@ -11,29 +11,29 @@
 namespace tactus
 {
 
-/// The bumps of a material, as energy of the spring between hand and proxy.
+/// The bumps of a material, as energy of the spring between device and proxy.
 ///
-/// Beside 1/2 K d^2, d being the depth, the spring holds K e(d) h(p) where the proxy is at p:
+/// Besides 1/2 K d^2, d being the depth, the spring holds K e(d) h(p) for a proxy at p:
 ///
 ///     h(p) = height x sum over the object's axes of (w(p / length) - 1/2)
 ///     w(t) = 16 t^2 (1 - t)^2, of t's fraction: a bump from 0 to 1, twice differentiable
 ///     e(d) = D (d / (D + d))^2, D = length^2 / (64 height)
 ///
-/// So what the hand feels of bumps is what the spring gives back elsewhere, to the last of it. D
-/// keeps e times any curvature of h within 1/2: the proxy has one place of rest for a hand, steps
-/// there are steps down in energy, and no wall gets stiffer along its surface. Across it it does by
-/// e'' h <= 3 height / D = 192 (height / length)^2, 0.19 at most. As e'(d) <= 2 d / D, a push stays
-/// a push. Proofs: docs/stability.md.
+/// So the energy that a user puts into bumps is given back elsewhere, completely. D keeps e times
+/// any curvature of h within 1/2: the proxy has one place of rest for a goal, steps there are steps
+/// down in energy, and no wall gets stiffer along its surface. Across it the stiffness grows by e''
+/// h <= 3 height / D = 192 (height / length)^2, 0.19 at most. As e'(d) <= 2 d / D, a push stays a
+/// push. Proofs: docs/stability.md.
 struct Texture
 {
-    /// 0 .. 1, from the next whole number below. kGoalRange_m / kTextureLengthMin_m has room.
+    /// Fraction, 0 .. 1, from the next whole number below. kGoalRange_m / kTextureLengthMin_m fits.
     [[nodiscard]] static double fraction_of(double turns) noexcept TACTUS_NONBLOCKING
     {
         const double cut = turns - static_cast<double>(static_cast<std::int64_t>(turns));
         return cut < 0.0 ? cut + 1.0 : cut;
     }
 
-    /// How much stiffer than K a wall with this texture may be.
+    /// Bound on the stiffness of a wall with this texture, in K.
     [[nodiscard]] static double stiffening(const Material& material) noexcept TACTUS_NONBLOCKING
     {
         const double height_m = material.texture_height_m;
@@ -41,10 +41,11 @@ struct Texture
         return 1.0 + 192.0 * steepness * steepness;
     }
 
-    double push_m{0.0};          ///< e'(d) h: times K, what is pushed more.
-    Vec3 slope_m{0.0, 0.0, 0.0}; ///< e(d) grad h, world frame: times K, what the proxy feels.
+    double push_m{0.0}; ///< e'(d) h: times K, the added push.
+    /// e(d) grad h, world frame: times K, the force along the surface.
+    Vec3 slope_m{0.0, 0.0, 0.0};
 
-    /// At a proxy that is `place_m` in the world, pressed in by `depth_m`. The bumps are the
+    /// Texture at a proxy at `place_m` in the world, pressed in by `depth_m`. The bumps are the
     /// object's, in metres of the world.
     [[nodiscard]] static Texture at(const Material& material, const ObjectPose& pose,
                                     const Vec3& place_m, double depth_m) noexcept TACTUS_NONBLOCKING
@@ -56,7 +57,7 @@ struct Texture
             return texture;
         }
         const double length_m = material.texture_length_m;
-        // D of the flattest bumps is beyond all numbers; 1 / D and d / D are not.
+        // D of the flattest bumps overflows; 1 / D and d / D do not.
         const double per_limit = 64.0 * height_m / (length_m * length_m);
         const double depths = depth_m * per_limit;
         const double rest = 1.0 / (1.0 + depths); // D / (D + d)

@@ -9,22 +9,23 @@
 namespace tactus
 {
 
-/// How a tool's goal came about since the last frame.
+/// Origin of a tool's goal since the last frame.
 enum class GoalChange : std::uint8_t
 {
-    none,   ///< No sample was taken: the goal is the last one.
-    first,  ///< The first sample of all.
-    jump,   ///< The goal is farther from the last one than any hand gets.
-    motion, ///< The hand has moved.
+    none,  ///< No sample was taken: the goal is the last one.
+    first, ///< The first sample.
+    /// The goal is farther from the last one than a user can move.
+    jump,
+    motion, ///< The device moved.
 };
 
-/// Where the hand wants the tool to be. World frame, SI.
+/// Place of the tool at the device pose. World frame, SI.
 struct ToolGoal
 {
     Vec3 position_m{0.0, 0.0, 0.0};
     Vec3 velocity_m_per_s{0.0, 0.0, 0.0};
-    double elapsed_s{0.0};           ///< Since the last frame.
-    Mat3 rotation{Mat3::Identity()}; ///< Of the tool's frame; orthonormal to rounding.
+    double elapsed_s{0.0};           ///< Time since the last frame.
+    Mat3 rotation{Mat3::Identity()}; ///< Rotation of the tool's frame; orthonormal to rounding.
     GoalChange change{GoalChange::none};
     Vec3 spin_rad_per_s{0.0, 0.0, 0.0}; ///< Angular velocity.
 

@@ -12,11 +12,11 @@
 namespace tactus
 {
 
-/// The velocity of a position that is known in steps of a quantum: first-order adaptive windowing
-/// (Janabi-Sharifi, Hayward and Chen 2000), by the end points. Over the last n periods the velocity
-/// is the straight line's from the oldest to the newest position, with the largest n whose
+/// Velocity of a position that is known in steps of a quantum: first-order adaptive windowing
+/// (Janabi-Sharifi, Hayward and Chen 2000), by the end points. The velocity is that of the straight
+/// line from the oldest to the newest position over the last n periods, with the largest n whose
 /// positions all lie within a quantum of their line. A slow motion gets a long window and a fine
-/// answer, quantum / (n x period); a turn gets a short one at once.
+/// result, quantum / (n x period); a reversal gets a short one at once.
 ///
 /// Haptic thread. Cost: kVelocitySamples^2 / 2 comparisons of points at most.
 class VelocityWindow
@@ -24,12 +24,12 @@ class VelocityWindow
 public:
     explicit VelocityWindow(double quantum_m) noexcept : quantum_m_(quantum_m) {}
 
-    /// The next position, `elapsed_s` > 0 after the one before.
+    /// Adds a position, `elapsed_s` > 0 after the one before.
     void add(const Vec3& position_m, double elapsed_s) noexcept TACTUS_NONBLOCKING;
-    /// Nothing is known any more.
+    /// Drops all positions.
     void clear() noexcept { count_ = 0; }
 
-    /// Of the newest position; zero while fewer than two are known.
+    /// Velocity of the newest position; zero with fewer than two positions.
     [[nodiscard]] Vec3 velocity_m_per_s() const noexcept TACTUS_NONBLOCKING;
 
 private:
@@ -37,7 +37,7 @@ private:
 
     double quantum_m_;
     std::array<Vec3, kVelocitySamples> positions_m_{}; ///< Newest first.
-    std::array<double, kVelocitySamples> ages_s_{};    ///< Against the newest.
+    std::array<double, kVelocitySamples> ages_s_{};    ///< Relative to the newest.
     std::uint32_t count_{0};
 };
 

@@ -19,19 +19,20 @@
 namespace tactus
 {
 
-/// The triangles that a ball near one place can touch, each with a plane between the two.
+/// The triangles that a sphere near one place can touch, each with a separating plane.
 ///
-/// A triangle is convex, so all of it lies behind the plane through its point nearest to the ball's
-/// centre, square to the line between the two: where a plane lets the ball go, however far, the
-/// triangle does too. Planes are found from where the ball stands, for the triangles that a motion
-/// would enter; the others keep what was seen from farther away, which only takes away more.
+/// A triangle is convex, so all of it lies behind the plane through its point nearest to the
+/// sphere's centre, perpendicular to the line between the two: motions that a plane allows, of any
+/// length, are free of the triangle. Planes are computed at the sphere's present place for the
+/// triangles that a motion would enter; the others keep those from farther away, which only
+/// restrict more.
 ///
 /// It is a view of the surfaces: batches of eight triangles as the queries found them. Single
-/// precision proposes planes and proves that a motion is free (PlaneTable); of what it can't prove
-/// double decides.
+/// precision proposes planes and proves that a motion is free (PlaneTable); double precision
+/// decides the rest.
 ///
-/// What is looked at is counted against an allowance (Budgets::planes). When that is used up the
-/// search for what a motion enters ends, and only what single precision proves is free.
+/// Checks are counted against an allowance (Budgets::planes). Once it is used up the search for
+/// entered faces ends, and only motions proven by single precision are free.
 ///
 /// Lengths in metres, in the world; places relative to the centre. Haptic thread. 38 KiB.
 class Vicinity
@@ -39,38 +40,38 @@ class Vicinity
 public:
     static constexpr std::uint32_t kUnlimited = 0xFFFF'FFFFU;
 
-    /// The triangles of the surfaces, which were queried at `center_m` and outlive it; what isn't
-    /// among them is at least `reach_m` from there. Where more are in reach than fit, reach_m() is
-    /// less. `planes` is what it may look at. Costs 2 ns a triangle.
+    /// Lists the triangles of the surfaces, which were queried at `center_m` and outlive it; all
+    /// others are at least `reach_m` from there. If more are in reach than fit, reach_m() is less.
+    /// `planes` is the allowance of checks. Costs 2 ns a triangle.
     Vicinity(std::span<const PlacedSurface> surfaces, Vec3 center_m, double reach_m,
              std::uint32_t planes = kUnlimited) noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] const Vec3& center_m() const noexcept { return center_m_; }
-    /// Every triangle that isn't in the list is at least this far from the centre.
+    /// Distance from the centre of every triangle that isn't listed, at least.
     [[nodiscard]] double reach_m() const noexcept { return reach_m_; }
-    /// Faces are below this; not every number is one.
+    /// Upper end of the faces' numbers; not every number is a face.
     [[nodiscard]] std::uint32_t size() const noexcept { return kPlaneLanes * batches_; }
     [[nodiscard]] bool has(std::uint32_t face) const noexcept;
-    /// Which of the surfaces a face belongs to.
+    /// Index of the surface that a face belongs to.
     [[nodiscard]] std::uint32_t surface_of(std::uint32_t face) const noexcept
     {
         return surface_[face / kPlaneLanes];
     }
-    /// Counts work that somebody else did among its planes.
+    /// Counts checks that were done elsewhere among its planes.
     void use(std::uint32_t planes) noexcept { planes_left_ -= std::min(planes, planes_left_); }
     [[nodiscard]] std::uint32_t planes_left() const noexcept { return planes_left_; }
     [[nodiscard]] bool is_spent() const noexcept { return planes_left_ == 0; }
-    /// No more than the distance from `place` to any face of a surface; infinite when none is
+    /// Lower bound on the distance from `place` to any face of a surface; infinite if none is
     /// listed.
     [[nodiscard]] double bound_of_surface(std::uint32_t surface,
                                           const Vec3& place) const noexcept TACTUS_NONBLOCKING;
 
-    /// The ball's centre is at `place` now. A place on a face sees it along `fallback` (unit
-    /// length).
+    /// Moves the sphere's centre to `place`. A place on a face takes `fallback` (unit length) as
+    /// its direction.
     void stand_at(const Vec3& place, const Vec3& fallback) noexcept TACTUS_NONBLOCKING;
-    /// Faces within this distance of here, in order; what has no room in `faces` is left out.
-    /// Whatever was looked at before, kMaxTouchLooks faces are. From now on find_entered() knows
-    /// how deep the ball is in faces here.
+    /// Lists faces within this distance of here, in order, as many as fit in `faces`. It checks up
+    /// to kMaxTouchLooks faces even with a spent allowance. From then on find_entered() knows the
+    /// sphere's depth in the faces here.
     struct Listed
     {
         std::size_t count{0};
@@ -78,42 +79,41 @@ public:
     };
     [[nodiscard]] Listed list_within(double distance_m,
                                      std::span<std::uint32_t> faces) noexcept TACTUS_NONBLOCKING;
-    /// The motions from here that keep a ball of this radius on its side of the face; looks at the
-    /// face first. 40 ns.
+    /// Motions from here that keep a sphere of this radius on its side of the face; checks the face
+    /// first. 40 ns.
     [[nodiscard]] HalfSpace<3> half_space(std::uint32_t face,
                                           double radius_m) noexcept TACTUS_NONBLOCKING;
-    /// Of the faces that a ball of this radius, seen from here, enters on this motion, the one
-    /// that it enters deepest; none when the way is free, or the allowance is used up. `passed` are
-    /// not looked at. Some 10 ns for each batch that is near, and 40 ns for each face that single
-    /// precision can't tell.
+    /// The face that a sphere of this radius enters deepest on this motion from here; none if the
+    /// motion is free, or the allowance is used up. Faces in `passed` are skipped. About 10 ns for
+    /// each near batch, and 40 ns for each face that single precision can't decide.
     [[nodiscard]] std::optional<std::uint32_t>
     find_entered(const Vec3& motion, double radius_m,
                  std::span<const std::uint32_t> passed = {}) noexcept TACTUS_NONBLOCKING;
-    /// How much of the motion, 0 .. 1, is free as far as the planes seen from here say. Whatever
-    /// was looked at before, no batch is passed over.
+    /// Share of the motion, 0 .. 1, that is free by the planes seen from here. It checks all
+    /// batches even with a spent allowance.
     [[nodiscard]] double free_share(const Vec3& motion,
                                     double radius_m) noexcept TACTUS_NONBLOCKING;
-    /// How much of the motion, 0 .. 1, a ball of this radius can go before it touches the face: no
-    /// more than that, and as a rule less by kLeastStep radii at most.
+    /// Share of the motion, 0 .. 1, before a sphere of this radius touches the face: a lower bound,
+    /// usually by kLeastStep radii at most.
     [[nodiscard]] double share_before(std::uint32_t face, const Vec3& motion,
                                       double radius_m) noexcept TACTUS_NONBLOCKING;
 
 private:
     static constexpr std::uint32_t kLooks = 32;
 
-    /// A surface's batches, in quanta of its model around the centre.
+    /// Batches of a surface, in quanta of its model around the centre.
     struct Part
     {
         PlaneTable table{};
-        std::uint32_t first{0};         ///< Of its batches.
-        double unit_m{1.0};             ///< A quantum, in the world.
-        Vec3 last_place{0.0, 0.0, 0.0}; ///< That was asked about.
+        std::uint32_t first{0};         ///< First of its batches.
+        double unit_m{1.0};             ///< Size of a quantum in the world.
+        Vec3 last_place{0.0, 0.0, 0.0}; ///< Place of the last question.
         std::array<float, 3> stand{};
     };
     struct Plane // NOLINT(cppcoreguidelines-pro-type-member-init): many, set where they are seen.
     {
-        Vec3 normal;     ///< From the face to the ball; unit length.
-        double offset_m; ///< Of the centre from the plane.
+        Vec3 normal;     ///< Unit vector from the face to the sphere.
+        double offset_m; ///< Height of the centre above the plane.
 
         [[nodiscard]] double height_m(const Vec3& place) const noexcept
         {
@@ -123,7 +123,7 @@ private:
     struct Look
     {
         std::uint32_t face{0};
-        std::uint32_t stand{0}; ///< 0: at nothing yet.
+        std::uint32_t stand{0}; ///< 0: never checked.
     };
     using Hits = std::span<PlaneHit>;
 
@@ -149,19 +149,20 @@ private:
     Vec3 place_{0.0, 0.0, 0.0};
     Vec3 fallback_{0.0, 0.0, 1.0};
     std::uint32_t stand_{1};
-    double clear_m_{kInfinity}; ///< No face is nearer to the stand, as far as list_within() knows.
+    /// Lower bound on the distance of faces from the present place, by list_within().
+    double clear_m_{kInfinity};
     std::uint32_t planes_left_;
     std::uint32_t batches_{0};
-    StaticVector<Part, kMaxNear> parts_; ///< Of the surfaces, in their order.
+    StaticVector<Part, kMaxNear> parts_; ///< Same order as the surfaces.
     std::array<PlaneRows, kMaxNearBatches> planes_;
     std::array<PlaneSeen, kMaxNearBatches> seen_;
     alignas(32) std::array<float, kMaxNearBatches + kPlaneLanes * kMaxNear> lows_;
     std::array<const void*, kMaxNearBatches> triangles_;
     std::array<std::uint8_t, kMaxNearBatches> surface_;
-    std::array<std::uint8_t, kMaxNearBatches> faces_; ///< How many of a batch's lanes have one.
+    std::array<std::uint8_t, kMaxNearBatches> faces_; ///< Number of a batch's lanes in use.
     std::array<PlaneHit, kMaxNearBatches> hits_;
-    std::array<Look, kLooks> looks_{};      ///< In double, from here:
-    std::array<Plane, kLooks> look_planes_; ///< what was seen there.
+    std::array<Look, kLooks> looks_{};      ///< Checks in double from here.
+    std::array<Plane, kLooks> look_planes_; ///< Planes of these checks.
 };
 
 } // namespace tactus

@@ -81,7 +81,6 @@ struct ModelPools
 /// beyond their base meshes, but no more than the whole model needs. False if base meshes and a few
 /// pages do not fit; `capacities` are then invalid. Tries up to about 50 sizes, each in time linear
 /// in the models.
-///
 /// - `headers` and `capacities` have the same size, 1 to kMaxModels (asserted).
 [[nodiscard]] bool try_plan(std::span<const ModelHeader> headers, std::size_t bytes,
                             std::size_t cache_bytes,

@@ -60,7 +60,6 @@ public:
 
     /// Begins the frame: each present tool takes its sample and moves with the objects that carry
     /// it. `period_ns` > 0 is the loop's. Returns the samples' faults.
-    ///
     /// - `samples`: one for each tool (asserted).
     [[nodiscard]] FrameFault begin(std::span<const ToolState> samples, const AwakePairs& pairs,
                                    std::int64_t period_ns) noexcept TACTUS_NONBLOCKING;
