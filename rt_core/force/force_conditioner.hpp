@@ -108,7 +108,7 @@ private:
     /// Largest change of the limit per period under a force.
     double cap_step_n_per_m_;
     double allowed_n_per_m_; ///< Limit of the rule with that damping.
-    double cap_n_per_m_;     ///< Limit in use: that, or on its way there.
+    double cap_n_per_m_;     ///< Limit in use, which moves towards that.
     VelocityWindow velocity_;
     SentForces sent_;
     PassivityObserver observer_;

@@ -123,7 +123,7 @@ private:
         Vec3 push_n{0.0, 0.0, 0.0}; ///< Force of the planes.
         Vec3 drag_n{0.0, 0.0, 0.0}; ///< Force of friction.
         double depth_m{0.0};
-        double stiffness{0.0}; ///< Sum in N/m x m; so are those below.
+        double stiffness{0.0}; ///< Weighted sum, N/m x m, like those below.
         double static_m{0.0};
         double dynamic_m{0.0};
         double damping{0.0};
@@ -199,7 +199,7 @@ private:
     std::uint32_t planes_left_{0};
     bool in_contact_{false};
     bool slides_{false};    ///< True if the dynamic cone holds from the last frame on.
-    bool has_slid_{false};  ///< The same in this frame.
+    bool has_slid_{false};  ///< True if the proxy slid in this frame.
     double rubbed_m_{0.0};  ///< Displacement in contact in this frame.
     double elapsed_s_{0.0}; ///< Duration of the frame.
     bool was_overrun_{false};

@@ -82,7 +82,7 @@ public:
     [[nodiscard]] const MeshReport& report() const noexcept { return report_; }
 
 private:
-    /// Number of parts of its allowance of which a refining search may use one. If that was too
+    /// Number of parts of its allowance of which a refining search first uses one. If that was too
     /// little, the next frame allows kSearchGrowth times as much, so that the search ends if
     /// nothing is to be split.
     static constexpr std::uint32_t kSearchParts = 32;

@@ -63,7 +63,7 @@ private:
     BroadPhase broad_;
     std::uint32_t paired_lists_{0}; ///< BroadPhase::lists() for which all pairs exist; 0: some are
                                     ///< missing.
-    /// By tool: largest displacement in this frame of an object without a pair of it.
+    /// Largest displacement in this frame of an object without a pair of the tool.
     std::array<double, kMaxTools> leap_m_{};
     bool has_guests_{false};
 };

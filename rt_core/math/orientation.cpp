@@ -14,7 +14,7 @@ namespace
 {
 
 /// Each term of the determinant has been rounded at most eight times, 2^-53 each: three
-/// differences, two products, one difference, two sums. The ninth stands for products of these
+/// differences, two products, one difference, two sums. The ninth covers products of these
 /// errors.
 constexpr double kVolumeError = 9.0 * 0x1p-53;
 /// Differences are exact in double-double, and a term has been rounded at most five times, 2^-102

@@ -45,7 +45,7 @@ public:
     void rank(Prediction way, ModelId model, const CoreCover& balls, double reach_m,
               RegionRanking& ranking) const noexcept TACTUS_NONBLOCKING;
 
-    /// Adds the spheres at their present place only, for tools at rest in the model's frame.
+    /// Adds the spheres at their present place only, without a prediction.
     static void rank_present(ModelId model, const CoreCover& balls, double reach_m,
                              RegionRanking& ranking) noexcept TACTUS_NONBLOCKING;
 

@@ -33,7 +33,7 @@ struct Contact
 /// Nearest first; among equals lower ids of the object's faces first, then lower ids of the tool's.
 using ContactSet = StaticVector<Contact, kMaxContacts>;
 
-/// A group of faces that look alike: each lies behind a plane, with the core in front of it at
+/// A group of faces with similar normals: each lies behind a plane, with the core in front of it at
 /// `distance_m` or more. Their planes' normals are within `spread` of `normal`.
 struct ContactSlab
 {

@@ -62,7 +62,7 @@ struct SpringForce
     ForceAction actions{ForceAction::none};
     double damping_n_s_per_m{0.0}; ///< Added by the passivity controller.
     double work_j{0.0};            ///< Work on user and device since the start.
-    /// Energy that no work paid for and that is not dissipated yet: PassivityObserver::surplus_j().
+    /// Observed energy that is not dissipated yet: PassivityObserver::surplus_j().
     double surplus_j{0.0};
 };
 
