@@ -197,6 +197,18 @@ void check_finite(const double* values, std::size_t count, const char* name)
     }
 }
 
+void check_positions(const double* values_m, std::size_t count, const char* name)
+{
+    for (std::size_t i = 0; i < 3 * count; ++i)
+    {
+        if (!(std::abs(values_m[i]) < kGoalRange_m)) // Also refuses NaN.
+        {
+            refuse(TACTUS_BAD_ARGUMENT, "{}: element {} is {}; below {} m is allowed", name, i,
+                   values_m[i], kGoalRange_m);
+        }
+    }
+}
+
 Vec3 to_vec(const double* values)
 {
     return {values[0], values[1], values[2]};
@@ -576,6 +588,7 @@ bool is_settled(const tactus_frame& frame)
 void find_insides(const tactus_frame& frame, const double* positions_m, std::uint8_t* inside)
 {
     const std::size_t tools = frame.states.size();
+    check_positions(positions_m, tools, "positions_m");
     std::fill(inside, inside + tools, std::uint8_t{0});
     for (std::uint32_t object = 0; object < frame.objects; ++object)
     {
@@ -660,16 +673,7 @@ void check_poses(const tactus_frame& frame, const tactus_poses& poses)
     check_size(poses, "poses");
     check_range(poses.rounds, 0, 10'000, "poses.rounds");
     const std::size_t places = poses.count * frame.states.size();
-    const double* positions_m = &given(poses.positions_m, "poses.positions_m");
-    for (std::size_t i = 0; i < 3 * places; ++i)
-    {
-        if (!(std::abs(positions_m[i]) < kGoalRange_m)) // Also refuses NaN.
-        {
-            refuse(TACTUS_BAD_ARGUMENT,
-                   "poses.positions_m: element {} is {}; below {} m is allowed", i, positions_m[i],
-                   kGoalRange_m);
-        }
-    }
+    check_positions(&given(poses.positions_m, "poses.positions_m"), places, "poses.positions_m");
     if (poses.rotations == nullptr)
     {
         return;

@@ -96,9 +96,14 @@ void Catalogue::keep(std::uint64_t host_epoch)
     }
     if (kept_hosts_.size() > kMaxKeptHosts)
     {
-        const auto gone = std::ranges::find_if(kept_hosts_, [&](std::uint64_t epoch)
-                                               { return epoch != host_epoch && !has_host(epoch); });
-        kept_hosts_.erase(gone != kept_hosts_.end() ? gone : kept_hosts_.begin());
+        const auto is_other = [&](std::uint64_t epoch) { return epoch != host_epoch; };
+        auto given_up = std::ranges::find_if(kept_hosts_, [&](std::uint64_t epoch)
+                                             { return is_other(epoch) && !has_host(epoch); });
+        if (given_up == kept_hosts_.end())
+        {
+            given_up = std::ranges::find_if(kept_hosts_, is_other);
+        }
+        kept_hosts_.erase(given_up);
     }
     count_again();
 }

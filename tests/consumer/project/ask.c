@@ -201,6 +201,9 @@ static void ask_inside(void)
         begin(&p, &hand, i == 1 ? 0.0 : 0.028, 0.0);
         done(tactus_frame_begins_inside(p.frame, p.place_m, &inside, &error), "inside");
         need(inside == (i == 0), "another side of the ring");
+        p.place_m[0] = NAN;
+        need(tactus_frame_begins_inside(p.frame, p.place_m, &inside, &error) == TACTUS_BAD_ARGUMENT,
+             "a place that is no number");
         tactus_frame_end(p.frame);
     }
 }
