@@ -85,11 +85,11 @@ TEST(RunStatistics, counts_a_frame_as_over_budget_from_one_beyond_what_it_may_do
     EXPECT_EQ(run.sut.frames, 5U);
 }
 
-/// With more work than any frame before, a long frame is our own fault; with as much as in a quick
-/// one, the machine's.
+/// A long frame is the loop's own fault if its work is more than a quick frame showed to fit: four
+/// times that frame's work.
 TEST(RunStatistics, compares_long_frames_with_quick_ones_by_their_work)
 {
-    for (const std::uint32_t done : {3'000U, 3'001U})
+    for (const std::uint32_t done : {12'000U, 12'001U})
     {
         StatisticsRig run;
         run.frame([](FrameOutput& output, CycleMeasures&) { output.work.budget.spend(3'000); });
@@ -99,7 +99,7 @@ TEST(RunStatistics, compares_long_frames_with_quick_ones_by_their_work)
                 output.work.budget.spend(done);
                 measures.cpu = kPeriod;
             });
-        EXPECT_EQ(run.sut.deadlines.own_faults, done == 3'000 ? 0U : 1U);
+        EXPECT_EQ(run.sut.deadlines.own_faults, done == 12'000 ? 0U : 1U);
     }
 }
 
