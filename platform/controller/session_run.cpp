@@ -53,10 +53,10 @@ FinishedRun empty_run(const Controller& controller, const Options& options)
             .safety = SafetyRecord(tools)};
 }
 
-/// With a time to keep; none in virtual time, where work takes none.
+/// No governor in virtual time, where work takes no time.
 std::optional<BudgetGovernor> make_governor(const Options& options)
 {
-    if (options.virtual_time || !options.frame_budget_us)
+    if (options.virtual_time)
     {
         return std::nullopt;
     }
