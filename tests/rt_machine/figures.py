@@ -14,6 +14,7 @@ import sys
 
 STAGES = ("load", "refine", "refit", "query", "force", "frame")
 RUNS = {"alone": "1 kHz, 200,000 faces", "load": "1 kHz, 200,000 faces, load beside",
+        "mesh": "1 kHz, 200,000 faces, a mesh of 1,000 faces as tool",
         "fast": "4 kHz, 2,000 faces, 60 us a frame", "minute": "1 kHz, 200,000 faces, over DDS",
         "network": "1 kHz, over DDS, 10 ms and 1 % lost each way", "services": "service", "faults": "service, killed, back inside a model"}
 # What no run may have but one whose hand is deep inside a model when it starts, and bounds that hold

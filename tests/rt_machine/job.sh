@@ -55,6 +55,10 @@ case "$job" in
     power_cut | minute_twice) "$job" ;;
     # An instruction a nanosecond is some three times slower than a real processor: a smaller model.
     fast) scenario fast "deadline,$seconds,none,2000,--rate,4000,--frame-budget-us,60" ;;
+    mesh)
+        ring=mesh:/usr/share/tactus_models/ring.spm
+        scenario mesh "deadline,$((seconds * 2)),none,200000,--tool,$ring"
+        ;;
     alone) scenario alone "deadline,$((full ? 600 : 10)),none,200000" ;;
     load) scenario load deadline,120,cpu+memory+disk,200000 ;;
 esac

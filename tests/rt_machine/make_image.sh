@@ -62,6 +62,8 @@ for faces in 2000 20000 200000; do
     chroot "\$root" spm_build --shape bumpy-sphere --faces "\$faces" \\
         -o "/usr/share/tactus_models/bumpy-\$faces.spm"
 done
+chroot "\$root" spm_build --shape torus --faces 1000 --fit-diag 0.02 \\
+    -o /usr/share/tactus_models/ring.spm
 find "\$root"/usr/share/doc -mindepth 1 -maxdepth 1 ! -name 'tactus*' -exec rm -rf {} +
 # As on a machine that was booted before: services are those that somebody enabled.
 echo 0123456789abcdef0123456789abcdef >"\$root/etc/machine-id"

@@ -55,7 +55,7 @@ await_job() { # Any of them.
     cat "$folder/$name.said"
     faults=$((faults + code))
 }
-jobs=(alone services faults network power_cut minute_twice fast) # The longest first.
+jobs=(alone services faults network power_cut minute_twice mesh fast) # The longest first.
 ((!full)) || jobs+=(load)
 for name in "${jobs[@]}"; do
     ((${#free[@]} > 0)) || await_job
