@@ -252,6 +252,22 @@ def line_length(tree):
         yield frame[0], 1, f'{lines} lines with its header; at most 400: other classes do the work'
 
 
+# Folders whose comments are still to be rewritten.
+OLD_COMMENTS = ('platform/', 'tests/', 'rt_core/abtree/', 'rt_core/force/', 'rt_core/frame/',
+                'rt_core/kernels/', 'rt_core/query/')
+BACKWARDS = r'///<? *(Of|By|As|And|Likewise|Else|Than)\b'
+VAGUE = r'(?i)//.*\b(whoever|whatever|nobody|lately|anew|for ever|mend|foretell|seldom|askew)\b'
+
+
+def plain_comments(tree):
+    """A comment has a subject and can be read before the declaration."""
+    paths = [path for path in tree.files(*CPP) if not path.startswith(OLD_COMMENTS)]
+    for path, line, match in tree.matches(BACKWARDS, paths):
+        yield path, line, f'the comment begins with {match[1]}: name its subject first'
+    for path, line, match in tree.matches(VAGUE, paths):
+        yield path, line, f'{match[1]} in a comment: name what is meant'
+
+
 def no_leftovers(tree):
     """No mark of unfinished work. They are spelt in two parts, so that this file has none."""
     marks = r'\b(TO' r'DO|FIX' r'ME|X' r'XX|HA' r'CK)\b'
@@ -416,8 +432,8 @@ def named_tests(tree):
 
 
 GUARDS = {guard.__name__: guard for guard in (
-    layers, modules_told, module_map, line_length, no_leftovers, machine_paths, licence, files_listed, limits_tested,
-    own_header_first, threads_told, links, named_tests)}
+    layers, modules_told, module_map, line_length, plain_comments, no_leftovers, machine_paths, licence,
+    files_listed, limits_tested, own_header_first, threads_told, links, named_tests)}
 
 
 class Parser(argparse.ArgumentParser):

@@ -234,6 +234,13 @@ class Text(House):
                 self.accept('line_length')
         self.refuse('line_length', 'rt_core/frame/frame.cpp:1: 401 lines with its header')
 
+    def test_comments_that_begin_backwards_or_name_nothing_are_refused(self):
+        self.source('rt_core/base/good.hpp', 'int a; ///< Of the last frame.', '/// Nobody waits.')
+        self.refuse('plain_comments', 'rt_core/base/good.hpp:4: the comment begins with Of',
+                    'rt_core/base/good.hpp:5: Nobody in a comment')
+        self.source('rt_core/base/good.hpp', 'int a; ///< Value of the last frame.', '// Often.')
+        self.accept('plain_comments')
+
     def test_marks_of_unfinished_work_are_refused(self):
         for mark in ('TO' 'DO', 'FIX' 'ME', 'X' 'XX', 'HA' 'CK'):
             self.source('rt_core/base/good.hpp', f'// {mark}: later.', f'// {mark}S')
