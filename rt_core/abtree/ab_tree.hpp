@@ -20,8 +20,8 @@
 namespace tactus
 {
 
-/// The paper's three words for a node: *inactive* nodes are not in the tree, *deformed* ones wait
-/// for refit.
+/// Three words of the 3DIM 2005 paper for a node: *inactive* nodes are not in the tree, *deformed*
+/// ones wait for refit.
 enum class NodeStatus : std::uint8_t
 {
     inactive,

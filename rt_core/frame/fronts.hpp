@@ -11,8 +11,9 @@
 namespace tactus
 {
 
-/// The paper's two fronts, region by region, for reports and tests. A record belongs to the region
-/// of the header's regular partition that holds its vertex, so each record has exactly one.
+/// The two fronts of the 3DIM 2005 paper, region by region, for reports and tests. A record belongs
+/// to the region of the header's regular partition that holds its vertex, so each record has
+/// exactly one.
 ///
 /// Every function visits each record of each adopted page once: about 10 ns a record, 1 ms for
 /// 1,600 pages. Not for use within a frame. Haptic thread, or any thread while no frame runs.

@@ -35,8 +35,8 @@ struct ModelCapacities
     std::uint32_t nodes{0};       ///< Inner nodes of the AB-Tree.
     /// Pages are requested only while the refinement waits for records, never ahead of need, and
     /// evicted as soon as it waits for none and no record in them is refined: then the refined and
-    /// the loaded front agree to a page (the paper's figure 5). For measuring the benefit of a
-    /// cache.
+    /// the loaded front agree to a page (figure 5 of the 3DIM 2005 paper). For measuring
+    /// the benefit of a cache.
     bool cache_off{false};
     /// Memory for base meshes of streamed models, in cells of a face and a vertex each. Only in
     /// capacities for all models: FrameSetup::for_guests.

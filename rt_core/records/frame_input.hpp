@@ -128,7 +128,7 @@ struct FrameInput
 /// The frame's stages, in order; times are named after them.
 enum class Stage : std::uint8_t
 {
-    load,   ///< adopt, predict, request: T_L of the paper
+    load,   ///< adopt, predict, request: T_L of the 3DIM 2005 paper
     refine, ///< coarsen, refine: T_R
     refit,  ///< T_B
     query,  ///< T_Q

@@ -13,9 +13,9 @@
 namespace tactus
 {
 
-/// Methods that predict where a tool will touch: the paper's four, and the choice among them.
-/// Recordings store the number, so adding one before `automatic` needs a new version of that format
-/// (platform/recording/setup_coding.cpp).
+/// Methods that predict where a tool will touch: the four of the 3DIM 2005 paper, and the
+/// choice among them. Recordings store the number, so adding one before `automatic` needs a new
+/// version of that format (platform/recording/setup_coding.cpp).
 enum class Prediction : std::uint8_t
 {
     local_neighbours, ///< Fixed place; the present speed sets the radius that may be touched.

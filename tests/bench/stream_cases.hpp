@@ -35,7 +35,8 @@ struct CacheCase
     double small_mib;
     double larger_mib;
 };
-/// The four regimes of the paper's figure 5: no cache, a small one, a larger one, all of the model.
+/// The four regimes of figure 5 of the 3DIM 2005 paper: no cache, a small one, a larger one, all of
+/// the model.
 void run_cache_case(const CaseContext& context, const CacheCase& test_case);
 
 /// Goals in percent of the frames, counts and milliseconds.

@@ -54,7 +54,7 @@ double linear(const Size& size)
     return size.n;
 }
 
-/// The paper's for k faces that change together.
+/// The bound of the 3DIM 2005 paper for k faces that change together.
 double clustered(const Size& size)
 {
     return size.k * (std::log2(size.n) - std::log2(size.k) + 2.0);

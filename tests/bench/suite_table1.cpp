@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The suite `table1`: the models of the paper's Table 1, encoded by us, and how high the AB-Tree
-/// over each is when it is fully refined.
+/// The suite `table1`: the models of Table 1 of the 3DIM 2005 paper, encoded by us, and how high
+/// the AB-Tree over each is when it is fully refined.
 
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/bench/scenes.hpp"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The suite `table2`: the paper's Table 2, a mesh that touches a mesh. The same motion against the
-/// whole object, its base mesh alone, and the object refined where the tool is.
+/// The suite `table2`: Table 2 of the 3DIM 2005 paper, a mesh that touches a mesh. The same motion
+/// against the whole object, its base mesh alone, and the object refined where the tool is.
 
 #include "rt_core/math/vec3.hpp"
 #include "tests/bench/measuring.hpp"

@@ -13,9 +13,10 @@
 #include <utility>
 #include <vector>
 
-/// The paper's lemma: refitting a tree of n leaves, b children a node, after k leaves at random
-/// changed visits at most k (log_b n - log_b k + 2) nodes, leaves included. The upper log_b k
-/// levels have fewer than 2 k nodes in all; below them each leaf has a way of its own.
+/// The lemma of the 3DIM 2005 paper: refitting a tree of n leaves, b children a node, after k
+/// leaves at random changed visits at most k (log_b n - log_b k + 2) nodes, leaves included. The
+/// upper log_b k levels have fewer than 2 k nodes in all; below them each leaf has a way of its
+/// own.
 namespace tactus::test
 {
 

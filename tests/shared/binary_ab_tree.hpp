@@ -13,10 +13,10 @@
 namespace tactus::test
 {
 
-/// The shape of the paper's AB-Tree: a binary tree over all faces of the finest mesh, one face a
-/// leaf, in which every node is inactive, active or deformed. A face becomes active: its leaf and
-/// all nodes above it are deformed until refit(). Shares nothing with the 8-wide tree but the order
-/// of the faces. It has no boxes.
+/// The shape of the AB-Tree of the 3DIM 2005 paper: a binary tree over all faces of the finest
+/// mesh, one face a leaf, in which every node is inactive, active or deformed. A face becomes
+/// active: its leaf and all nodes above it are deformed until refit(). Shares nothing with the
+/// 8-wide tree but the order of the faces. It has no boxes.
 class BinaryAbTree
 {
 public:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The paper's three words over the life of a node, the links that lead up from it, and the index
-/// list that leads down to it.
+/// The three words of the 3DIM 2005 paper over the life of a node, the links that lead up from it,
+/// and the index list that leads down to it.
 
 #include "tests/unit/rt_core/tree_support.hpp"
 
