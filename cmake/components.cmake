@@ -131,6 +131,7 @@ tactus_component(core
         rt_core/frame/frame.hpp
         rt_core/frame/frame_setup.hpp
         rt_core/frame/model.hpp
+        rt_core/geometry/believed_motion.hpp
         rt_core/geometry/convex.hpp
         rt_core/geometry/shapes.hpp
         rt_core/geometry/tool_core.hpp
