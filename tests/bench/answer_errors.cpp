@@ -16,9 +16,9 @@ namespace
 
 constexpr double kObject_m = 0.2;
 constexpr double kStiffness_n_per_m = 500.0;
-/// What is nearer to the radius may be told to touch or not.
+/// Answers within this of the radius may report a touch or not.
 constexpr double kTolerance_diag = 2e-6;
-/// Nearer to the surface a direction from it means little.
+/// Closer to the surface, the direction of an answer has no meaning.
 constexpr double kNoDirection_diag = 1e-4;
 
 double angle_deg(const Vec3& a, const Vec3& b)

@@ -14,31 +14,31 @@
 namespace tactus::bench
 {
 
-/// What a contestant says of one point, model frame.
+/// Answer of a contestant for one point, in the model frame.
 struct SurfaceAnswer
 {
-    double distance_m{0.0}; ///< Not finite: none within its band.
+    double distance_m{0.0}; ///< Distance; not finite if nothing is within the contestant's band.
     Vec3 nearest_m{0.0, 0.0, 0.0};
     bool has_nearest{false};
 };
-/// Ours: the proven nearest point, or the middle of a bracket.
+/// Answer of Tactus: the proven nearest point, or the middle of the bounds.
 [[nodiscard]] SurfaceAnswer answer_of(const PairOutput& pair);
-/// A peer's, one a question.
+/// Answers of a peer, one for each question.
 [[nodiscard]] std::vector<SurfaceAnswer> answers_of(const PointAnswers& answers);
 
-/// How far answers are from the truth.
+/// Errors of answers against the truth.
 struct AnswerErrors
 {
-    Spread distance_diag; ///< As TrueAnswers::errors_of has it.
-    Spread normal_deg;    ///< Of answers that tell a nearest point.
-    /// Of the force of a penalty spring, 500 N/m on an object of 0.2 m. Whoever knows no nearest
-    /// point has no force.
+    Spread distance_diag; ///< Errors of the distance, see TrueAnswers::errors_of().
+    Spread normal_deg;    ///< Errors of the normal, of answers with a nearest point.
+    /// Errors of the force of a penalty spring, 500 N/m on an object of 0.2 m. An answer without a
+    /// nearest point has no force.
     Spread force_n;
     TouchErrors touch;
-    std::uint64_t hash{0}; ///< Over the answers' bits.
+    std::uint64_t hash{0}; ///< Hash of the answers' bits.
 };
 
-/// Points of a motion with the true distances and nearest points, those of the whole mesh.
+/// Points of a motion with the true distances and nearest points of the whole mesh.
 class TrueAnswers
 {
 public:
@@ -47,8 +47,8 @@ public:
 
     [[nodiscard]] const Questions& questions() const { return questions_; }
     [[nodiscard]] double radius_m() const { return radius_m_; }
-    /// One answer a point. Distances count as the radius where they are beyond it, the truth, too:
-    /// what is judged is how deep the tool is in.
+    /// Errors of one answer for each point. Distances beyond the radius, also true ones, count as
+    /// the radius: only the penetration depth is judged.
     [[nodiscard]] AnswerErrors errors_of(const std::vector<SurfaceAnswer>& answers) const;
 
 private:

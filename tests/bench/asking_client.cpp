@@ -20,8 +20,8 @@ namespace
 
 constexpr std::size_t kOpenMax = 256;
 constexpr auto kRetry = std::chrono::milliseconds(200);
-/// Between two looks, as the controller's transport thread; longer, a tenth of the time between two
-/// chunks, for slow clients, so that many of them find room on few processors.
+/// Pauses between two polls. The shortest is that of a controller's transport thread; slow clients
+/// take a tenth of the time between two chunks, so that many run on few processors.
 constexpr double kPauseMin_s = 300e-6;
 constexpr double kPauseMax_s = 10e-3;
 

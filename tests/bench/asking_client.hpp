@@ -15,17 +15,19 @@
 namespace tactus::bench
 {
 
-/// Asks for chunks of a model in an order of its own, as a controller's transport does, without the
-/// rest of a controller. What comes is counted and not looked at.
+/// Client that requests chunks of a model in its own order, like a controller's transport without
+/// the rest. Received chunks are counted, not decoded.
 class AskingClient final : private PieceSink
 {
 public:
-    /// `rate_hz` chunks a second; 0: as fast as they come. The model must outlive the client.
+    /// Requests `rate_hz` chunks a second; 0: as fast as they arrive. The model must outlive the
+    /// client.
     AskingClient(ServedModel& model, double rate_hz);
 
-    /// Until then, or until it is told to stop.
+    /// Runs for `seconds` or until `stop` is set.
     void run(double seconds, const std::atomic<bool>& stop);
 
+    /// Report:
     /// {"pieces","bytes","link_bytes","seconds","asked","asked_again","p50_ms","p99_ms","max_ms"}.
     [[nodiscard]] std::string to_json() const;
 

@@ -12,22 +12,22 @@
 namespace tactus::bench
 {
 
-/// The ranges of the options.
+/// Ranges of the options.
 inline constexpr std::uint32_t kMinFrames = 100;
 inline constexpr std::uint32_t kMaxFrames = 1'000'000;
 inline constexpr std::uint32_t kMaxPasses = 100;
 
 struct BenchOptions
 {
-    bool quick{false};                   ///< Fewer frames and repeats; no case of 4 M faces.
-    bool full{false};                    ///< All trials of a suite that usually tries few.
-    bool count{false};                   ///< One warm pass, nothing else: for instruction counts.
-    bool instructions{false};            ///< Count them, too, where a suite can.
-    std::vector<std::string> only;       ///< Names of cases; empty: all.
-    std::filesystem::path cache;         ///< Keeps encoded models; empty: none are kept.
-    std::optional<std::uint32_t> frames; ///< Instead of the suite's own numbers.
+    bool quick{false};             ///< Fewer frames and repeats; no case of 4 M faces.
+    bool full{false};              ///< All trials of a suite that usually runs few.
+    bool count{false};             ///< One warm pass and nothing else, to count instructions.
+    bool instructions{false};      ///< Counts instructions too, in suites that can.
+    std::vector<std::string> only; ///< Names of cases; empty: all.
+    std::filesystem::path cache;   ///< Folder that keeps encoded models; empty: none are kept.
+    std::optional<std::uint32_t> frames; ///< Frames in place of the suite's own numbers.
     std::optional<std::uint32_t> passes;
-    int core{-1}; ///< To measure on; -1: the last one that the process may use.
+    int core{-1}; ///< Core to measure on; -1: the last one that the process may use.
 
     [[nodiscard]] std::uint32_t frames_or(std::uint32_t usual, std::uint32_t quick_ones) const
     {
@@ -39,11 +39,11 @@ struct BenchOptions
     }
 };
 
-/// In which runs a case takes part.
+/// Runs in which a case takes part.
 enum class When : std::uint8_t
 {
     always,
-    full_only, ///< Left out of quick runs unless named.
+    full_only, ///< Not in quick runs, unless named.
     named_only,
 };
 

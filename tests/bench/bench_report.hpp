@@ -10,12 +10,12 @@
 namespace tactus::bench
 {
 
-/// How the rows came about, beside the machine.
+/// Facts about a run, besides the machine.
 struct RunFacts
 {
-    int core{-1}; ///< The one that everything was measured on; -1: not held to one.
+    int core{-1}; ///< Core of all measurements; -1: not pinned.
     bool quick{false};
-    std::vector<std::string> options; ///< Those that make it another than a full run, as given.
+    std::vector<std::string> options; ///< Options that make this less than a full run, as given.
 };
 
 enum class Figures : std::uint8_t
@@ -23,11 +23,11 @@ enum class Figures : std::uint8_t
     all,
     with_goals,
 };
-/// A line for each row below one for its case, and how many goals were met.
+/// One line for each row, below one for its case, and the number of goals met.
 [[nodiscard]] std::string to_text(const Rows& rows, Figures which);
 
-/// {"schema":2,"commit","machine","core","quick","options","compiler","rows":[...]}, and "failures"
-/// when there are any.
+/// Report: {"schema":2,"commit","machine","core","quick","options","compiler","rows":[...]}, and
+/// "failures" if there are any.
 [[nodiscard]] std::string to_json(const Results& results, const RunFacts& facts);
 
 } // namespace tactus::bench

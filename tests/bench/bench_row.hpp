@@ -10,26 +10,26 @@
 namespace tactus::bench
 {
 
-/// The seed of every noise and motion here; it stands in the rows.
+/// Seed of every noise and motion in this program; reported in the rows.
 inline constexpr std::uint64_t kSeed = 2026;
 
-/// One figure of one case. All suites use the same rows.
+/// One figure of one case, the same for all suites.
 struct Row
 {
     std::string suite;
-    std::string part; ///< Of the suite; empty when it has only one.
+    std::string part; ///< Part of the suite; empty if it has only one.
     std::string test_case;
-    std::string by;      ///< Whose figure it is; empty when all are ours.
-    std::string setting; ///< Of what a case varies, e.g. "K 64"; empty: it varies nothing.
+    std::string by;      ///< Library that is measured; empty if all figures are ours.
+    std::string setting; ///< Value of the parameter that a case varies, e.g. "K 64"; empty: none.
     std::string metric;
     double value{0.0};
     std::string unit;
     std::string scene;
     std::uint64_t seed{0};
     std::uint64_t frames{0};
-    std::uint64_t hash{0};      ///< Over the frames: the same work was measured.
-    std::optional<double> goal; ///< The value is to be this at most,
-    bool is_least{false};       ///< or at least.
+    std::uint64_t hash{0};      ///< Hash of the frames, to show that the same work was measured.
+    std::optional<double> goal; ///< Greatest allowed value, or least one if `is_least`.
+    bool is_least{false};
     std::optional<std::string> peer;
     double peer_value{0.0};
 
@@ -42,7 +42,7 @@ struct Row
 
 using Rows = std::vector<Row>;
 
-/// What all rows of one case have in common, and the way to add them.
+/// Common fields of all rows of one case, and the way to add rows.
 class CaseRows
 {
 public:
@@ -57,7 +57,7 @@ private:
     Row common_;
 };
 
-/// How many rows have a goal, and how many of those hold it.
+/// Number of rows with a goal, and of those that meet it.
 struct GoalCount
 {
     std::size_t goals{0};
@@ -65,11 +65,11 @@ struct GoalCount
 };
 [[nodiscard]] GoalCount count_goals(const Rows& rows);
 
-/// What suites have brought.
+/// Results of the suites.
 struct Results
 {
     Rows rows;
-    std::vector<std::string> failures; ///< A line for each suite that could not be run to its end.
+    std::vector<std::string> failures; ///< One line for each suite that did not complete.
 };
 
 } // namespace tactus::bench

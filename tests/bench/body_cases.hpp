@@ -11,7 +11,7 @@
 namespace tactus::bench
 {
 
-/// The corners of a box round the origin.
+/// Corners of a box centred on the origin.
 [[nodiscard]] inline std::vector<Vec3> box_corners(const Vec3& half_m)
 {
     std::vector<Vec3> corners_m;
@@ -24,11 +24,11 @@ namespace tactus::bench
     return corners_m;
 }
 
-/// Bodies that lie, slide and turn on flat sheets of any cell size, where force and torque are
-/// known.
+/// Rigid tools that lie, slide and rotate on flat sheets of any cell size, where force and torque
+/// are known.
 void run_body_sheets(const CaseContext& context);
 
-/// Tools of a centimetre on dense meshes: how often they have a force and how well it is known.
+/// Tools of a centimetre on dense meshes: how often they have a force, and how accurate it is.
 void run_dense_meshes(const CaseContext& context);
 
 } // namespace tactus::bench

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// A judge of bodies that lie, slide and turn on a flat sheet without friction. The hand holds the
-/// body 2 mm below where it would rest, so the true wrench is known in each frame, whatever the
-/// motion: 1 N along the normal through the hand's place, no drag and no torque. Nothing is
-/// subtracted from what is felt.
+/// Accuracy of rigid tools that lie, slide and rotate on a flat sheet without friction. The device
+/// pose is 2 mm below the tool's rest pose, so the true wrench is known in each frame: 1 N along
+/// the normal through the device position, no drag and no torque. Nothing is subtracted from the
+/// rendered wrench.
 
 #include "rt_core/limits.hpp"
 #include "tests/bench/body_cases.hpp"
@@ -30,7 +30,7 @@ namespace
 {
 
 constexpr double kSheet_m = 0.06;
-/// How far corners of an uneven sheet are off at most, as a share of a cell.
+/// Greatest displacement of corners of an uneven sheet, as a share of a cell.
 constexpr double kSheetJitter = 0.3;
 constexpr double kSheetForce_n = 1.0;
 constexpr double kSheetStiffness_n_per_m = 500.0;
@@ -39,10 +39,10 @@ constexpr std::size_t kSheetPool_bytes = 16 * kMiB;
 
 constexpr double kSheetSlide_m_per_s = 0.05;
 constexpr double kSheetTurn_rad_per_s = 1.0;
-constexpr double kSheetReach_m = 0.014; ///< Of a slide, either way.
-constexpr double kSheetAbove_m = 3e-3;  ///< Where it comes from.
+constexpr double kSheetReach_m = 0.014; ///< Amplitude of a slide.
+constexpr double kSheetAbove_m = 3e-3;  ///< Height of the start above the sheet.
 constexpr std::uint32_t kSheetComes = 150;
-/// Not counted, after it has come.
+/// Frames that are not counted after the descent.
 constexpr std::uint32_t kSheetSettles = 200;
 
 /// Goals, as shares of the force and of force x size.
@@ -53,7 +53,7 @@ constexpr double kSheetTorqueStep = 0.01;
 
 struct SheetMesh
 {
-    std::uint32_t cells; ///< Along a side.
+    std::uint32_t cells; ///< Cells along a side.
     bool is_uneven;
     bool is_quick;
 };
@@ -69,18 +69,19 @@ constexpr std::array<SheetMesh, 8> kSheetMeshes{{{15, false, false},
 struct SheetBody
 {
     const char* name;
-    ToolCore shape;              ///< A point: the hull of the corners.
-    std::vector<Vec3> corners_m; ///< Of the core: the body is their hull and the radius round it.
+    ToolCore shape; ///< Shape of the core; a point means the hull of the corners.
+    /// Corners of the core; the tool is their hull, enlarged by the radius.
+    std::vector<Vec3> corners_m;
     double radius_m;
     double size_m;
 
-    /// Refers to the corners.
+    /// Core that refers to the corners.
     [[nodiscard]] ToolCore core() const
     {
         return is_hull() ? ToolCore(Hull::create(corners_m).value()) : shape;
     }
     [[nodiscard]] bool is_hull() const { return std::holds_alternative<PointCore>(shape); }
-    /// Of its lowest point, above where its frame's origin is.
+    /// Distance from the tool frame's origin down to the lowest point.
     [[nodiscard]] double lowest_m(const Mat3& rotation) const
     {
         double lowest_m = std::numeric_limits<double>::infinity();
@@ -95,7 +96,7 @@ struct SheetBody
 struct SheetMotion
 {
     const char* name;
-    Vec3 heading; ///< Zero: it stays where it is.
+    Vec3 heading; ///< Direction of the slide; zero: the tool stays.
     double turn_rad_per_s;
 };
 const std::array<SheetMotion, 5>& sheet_motions()
@@ -112,7 +113,7 @@ const std::array<SheetMotion, 5>& sheet_motions()
     return kMotions;
 }
 
-/// Squares that are cut in two; corners of an uneven one lie anywhere near.
+/// Sheet of squares, each cut into two faces; an uneven sheet has displaced corners.
 NamedMesh make_sheet(const SheetMesh& sheet)
 {
     NamedMesh named;
@@ -156,7 +157,7 @@ SheetBody sheet_capsule(const char* name, double length_m)
     return {name, Segment{-end_m, end_m}, {-end_m, end_m}, 1e-3, length_m};
 }
 
-/// On a flat base of ten corners, a wider top that is turned by half a corner.
+/// Hull with a flat base of ten corners and a wider top, rotated by half a corner.
 SheetBody sheet_hull(const char* name)
 {
     constexpr int kSheetCorners = 10;
@@ -179,14 +180,14 @@ std::vector<SheetBody> sheet_bodies()
             sheet_capsule("capsule of 20 mm", 0.02), sheet_hull("hull of 10 mm")};
 }
 
-/// To and fro from the middle, a triangle wave.
+/// Triangle wave about the middle, by path length.
 double to_and_fro_m(double way_m)
 {
     const double turn = std::fmod(way_m / (4.0 * kSheetReach_m) + 0.25, 1.0);
     return kSheetReach_m * (1.0 - 4.0 * std::abs(turn - 0.5));
 }
 
-/// What the hand does; `frame` counts from where the body has come and settled.
+/// Device pose; `frame` counts from the end of the descent and settling.
 ToolState sheet_hand(const SheetMotion& motion, const Vec3& rest_m, std::int64_t frame)
 {
     const double time_s = kPeriod_s * static_cast<double>(std::max<std::int64_t>(0, frame));
@@ -201,7 +202,7 @@ ToolState sheet_hand(const SheetMotion& motion, const Vec3& rest_m, std::int64_t
     return hand;
 }
 
-/// Shares of the force and of force x size, the largest of all frames.
+/// Shares of the force and of force x size; the largest of all frames.
 struct SheetFigures
 {
     double normal{0.0};
@@ -210,8 +211,8 @@ struct SheetFigures
     double force_step{0.0};
     double torque_step{0.0};
     double sunk_m{0.0};
-    std::uint64_t impaired{0}; ///< Frames that freeze, squeeze or press nothing.
-    std::uint64_t crowded{0};  ///< More touches the body than is kept.
+    std::uint64_t impaired{0}; ///< Frames that are halted, over-constrained or without force.
+    std::uint64_t crowded{0};  ///< Frames in which the contact capacity is exceeded.
 
     void see(const SheetBody& body, const ToolOutput& output, double plane_m)
     {

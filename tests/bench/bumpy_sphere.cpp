@@ -19,7 +19,7 @@ constexpr double kRadius_m = 0.05;
 constexpr double kBump = 0.02;
 constexpr double kWaves = 8.0;
 
-/// Each projection leaves curvature x distance of the error, some 0.3 at worst.
+/// Limit of projections. Each leaves curvature x distance of the error, about 0.3 at worst.
 constexpr int kMaxProjections = 60;
 constexpr double kProjected_m = 1e-17;
 
@@ -37,7 +37,7 @@ Vec3 normal_of(const test::Face& face)
     return (to_vec3(face[1]) - first).cross(to_vec3(face[2]) - first);
 }
 
-/// Numbers for the places of corners, equal for equal places.
+/// Numbers of the positions of corners; equal positions have equal numbers.
 std::vector<std::uint32_t> corner_numbers(const std::vector<test::Face>& faces)
 {
     const auto place = [&](std::uint32_t corner) -> const Vec3f&
@@ -174,7 +174,8 @@ Faceting measure_faceting(const std::vector<test::Face>& faces,
 double largest_dihedral_rad(const std::vector<test::Face>& faces)
 {
     const std::vector<std::uint32_t> numbers = corner_numbers(faces);
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> sides; // Of faces: their ends and theirs.
+    // Sides of faces: the ends, and the face.
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> sides;
     sides.reserve(numbers.size());
     for (std::uint32_t face = 0; face < faces.size(); ++face)
     {
@@ -220,7 +221,7 @@ Sweep make_sweep(const Touch& touch, std::span<const double> steps_m)
     for (const double step_m : steps_m)
     {
         double turn = step_m / kRadius_m;
-        for (int round = 0; round < 8; ++round) // Each leaves some per cent of the error.
+        for (int round = 0; round < 8; ++round) // Each round leaves some per cent of the error.
         {
             const Vec3 next = above(surface_point(direction_at(angle + turn)), held_m);
             turn *= step_m / (next - last).norm();

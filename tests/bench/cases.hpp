@@ -24,8 +24,8 @@ inline constexpr double kNoGoal = std::numeric_limits<double>::infinity();
     return goal < kNoGoal ? std::optional(goal) : std::nullopt;
 }
 
-/// What every case gets, and where its rows go. Each throws a Failure when it can't be run or gives
-/// wrong answers; goals that are not met are rows, not failures.
+/// Inputs of every case, and the destination of its rows. A case throws a Failure if it cannot be
+/// run or gives wrong answers; a missed goal is a row, not a failure.
 struct CaseContext
 {
     const char* suite;
@@ -34,7 +34,7 @@ struct CaseContext
     SceneStore& scenes;
     Rows& rows;
 
-    /// What all rows of this case have in common; the part is the suite's, if it has any.
+    /// Common fields of this case's rows, with the suite's part if it has any.
     [[nodiscard]] Row common_row(const std::string& scene, const char* part = "") const;
 };
 
@@ -58,16 +58,16 @@ struct FrameCase
 {
     SceneSource scene;
     double speed_diag_per_s;
-    std::uint32_t splits;   ///< K, for splits and merges alike.
-    std::size_t pool_bytes; ///< Tables, inbox and the courier's copies included.
+    std::uint32_t splits;   ///< Limit K of splits and of merges.
+    std::size_t pool_bytes; ///< Pools including tables, inbox and the loader's copies.
     double p50, p99, max;
     double cold_max{kNoGoal};
-    /// Of T_R + T_B, in instructions.
+    /// Goals for T_R + T_B, in instructions.
     double counted_p99{kNoGoal}, counted_max{kNoGoal};
     double counted_mean{kNoGoal}; ///< Goal for the mean of whole frames, in instructions.
 };
-/// A tool slides over a model that streams; all of T_L + T_R + T_B + T_Q, warm, cold and
-/// rehearsed, and with --instructions those of a frame and of T_R + T_B.
+/// A tool slides over a streamed model. Measures T_L + T_R + T_B + T_Q, warm, cold and with warmed
+/// caches, and with --instructions those of a frame and of T_R + T_B.
 void run_frame_case(const CaseContext& context, const FrameCase& test_case);
 
 /// Goal in MiB.
@@ -78,8 +78,8 @@ struct MemoryCase
     std::uint32_t splits;
     double pool_mib;
 };
-/// The smallest pools, of some that are tried in turn, with which a slide has an exact answer in
-/// every frame in contact.
+/// Finds the smallest of a series of pools with which a slide has an exact answer in every frame in
+/// contact.
 void run_memory_case(const CaseContext& context, const MemoryCase& test_case);
 
 /// Goals as shares of the peer's time.
@@ -88,16 +88,16 @@ struct StaticCase
     SceneSource scene;
     double near_p50{kNoGoal}, near_p99{kNoGoal};
     double flight_p99{kNoGoal};
-    double rehearsed_p99{kNoGoal}; ///< As a share of our own warm p99.
+    double rehearsed_p99{kNoGoal}; ///< Goal as a share of our own warm p99.
 };
-/// The touching motion's queries against a fully refined model, beside the peers.
+/// Queries of the touching motion against a fully refined model, compared with the peers.
 void run_static_case(const CaseContext& context, const StaticCase& test_case);
 
 struct GrowthCase
 {
-    double growth; ///< Goal: p50 with the most faces by that with the fewest.
+    double growth; ///< Goal for p50 with the most faces divided by p50 with the fewest.
 };
-/// The same near queries on four sizes of one surface, the bumpy sphere.
+/// The same near queries on four sizes of the bumpy sphere.
 void run_growth_case(const CaseContext& context, const GrowthCase& test_case);
 
 /// Goals in microseconds.
@@ -114,7 +114,7 @@ struct VolumeCase
 {
     SceneSource scene;
 };
-/// Queries and refits of the static model over 18-DOPs, beside those over boxes.
+/// Queries and refits of the static model over 18-DOPs, compared with boxes.
 void run_volume_case(const CaseContext& context, const VolumeCase& test_case);
 
 } // namespace tactus::bench

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// How tight the bounds are, and what they make a first contact cost.
+/// Tightness of the bounds, and the cost of a first contact that follows from it.
 
 #include "host_tools/encode/write_spm.hpp"
 #include "host_tools/mesh/prepare.hpp"
@@ -20,7 +20,7 @@ namespace
 {
 
 constexpr std::uint32_t kCertifiedBaseFaces = 500;
-/// Of the tool, of the diagonal.
+/// Radius of the tool as a share of the diagonal.
 constexpr double kRadius = 0.01;
 
 void add_tightness(CaseRows& rows, const PreparedMesh& prepared,

@@ -49,7 +49,7 @@ std::string read_all(int file)
     return text;
 }
 
-/// The child's life. It leaves without the parent's destructors and buffers.
+/// Body of the child. It exits without the parent's destructors and buffers.
 [[noreturn]] void live(int answer, const std::function<std::string()>& work)
 {
     int code = kWorkFailed;
@@ -76,7 +76,7 @@ ChildOutcome run_in_child(const std::function<std::string()>& work)
     {
         throw Failure(fmt::format("no pipe to a child process: {}", std::strerror(errno)));
     }
-    ::malloc_trim(0); // The child inherits what was freed and not given back.
+    ::malloc_trim(0); // The child inherits memory that was freed but not returned.
     const pid_t child = ::fork();
     if (child == 0)
     {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// Tools of a centimetre on dense meshes, thousands of faces under each: how often a tool that is
-/// pressed in has a force, how often that is exact or within the tolerance, and with --instructions
-/// the most that a frame costs. A hand comes down, slides while it presses, and lifts off again.
+/// Tools of a centimetre on dense meshes, with thousands of faces below each: how often a pressed
+/// tool has a force, how often that is exact or within the tolerance, and with --instructions the
+/// greatest cost of a frame. The operator descends, slides while pressing, and lifts off.
 
 #include "host_tools/shapes/shapes.hpp"
 #include "rt_core/limits.hpp"
@@ -30,26 +30,27 @@ namespace
 {
 
 constexpr std::size_t kDensePool_bytes = 16 * kMiB;
-constexpr std::size_t kScarcePool_bytes = 2 * kMiB; ///< hrtc's default.
+constexpr std::size_t kScarcePool_bytes = 2 * kMiB; ///< Default of hrtc.
 constexpr double kDenseInstructions = 600'000;      ///< Goal.
-constexpr double kDenseShare = 99.0;                ///< Goal of shares, in per cent.
+constexpr double kDenseShare = 99.0;                ///< Goal of the shares, in per cent.
 
 constexpr double kDenseSlide_m_per_s = 0.2;
-/// Of the slide's heading: rounds of some 25 mm round the middle, each a little beside the last.
+/// Rate of the slide's heading: rounds of about 25 mm around the middle, each slightly beside the
+/// last.
 constexpr double kDenseTurn_rad_per_s = 8.0;
-constexpr double kDenseUneven = 0.05; ///< How much slower it turns, at most.
+constexpr double kDenseUneven = 0.05; ///< Greatest reduction of that rate.
 constexpr double kDenseRound_m = kDenseSlide_m_per_s / kDenseTurn_rad_per_s;
-/// The lowest point of the tool above the surface, and below it: 1.5 N of 500 N/m.
+/// Heights of the tool's lowest point, above and below the surface: 1.5 N at 500 N/m.
 constexpr double kDenseAbove_m = 5e-3;
 constexpr double kDenseDepth_m = 3e-3;
-/// A tool that is deeper than this must have a force.
+/// A tool that is deeper must have a force.
 constexpr double kDensePressed_m = 2e-4;
-/// One cycle: down, slide, up.
+/// Frames of one cycle: down, slide, up.
 constexpr std::uint32_t kDenseDown = 200;
 constexpr std::uint32_t kDensePress = 600;
 constexpr std::uint32_t kDenseUp = 200;
 constexpr std::uint32_t kDenseCycle = kDenseDown + kDensePress + kDenseUp;
-/// With --instructions: a descent and most of a slide.
+/// Frames with --instructions: a descent and most of a slide.
 constexpr std::uint32_t kDenseCounted = 600;
 
 struct DenseMesh
@@ -70,10 +71,10 @@ struct DenseTool
     const char* name;
     ToolCore core;
     double radius_m;
-    std::vector<Vec3> corners_m; ///< Of the core.
-    std::uint32_t times{1};      ///< What a frame may do, in times of what others may.
+    std::vector<Vec3> corners_m; ///< Corners of the core.
+    std::uint32_t times{1};      ///< Factor of the usual frame budget.
 
-    /// How far the tool reaches along a direction, from its frame's origin.
+    /// Extent of the tool along a direction, from its frame's origin.
     [[nodiscard]] double reach_m(const Vec3& direction) const
     {
         double most_m = 0.0;
@@ -96,7 +97,7 @@ DenseTool dense_capsule(const char* name, double radius_m, double length_m)
     return {name, Segment{-end_m, end_m}, radius_m, {-end_m, end_m}};
 }
 
-/// The model that tools are made of in all runs.
+/// Model of the mesh tools in all runs.
 const Scene& dense_tool_scene(SceneStore& scenes)
 {
     const TriangleMesh ball = make_shape(Shape::bumpy_sphere, 1'000).value();
@@ -124,7 +125,7 @@ std::vector<DenseTool> dense_tools(SceneStore& scenes)
             dense_mesh_tool(dense_tool_scene(scenes))};
 }
 
-/// The height of the tool's lowest point over the surface.
+/// Height of the tool's lowest point above the surface.
 double dense_height_m(std::uint32_t frame)
 {
     const std::uint32_t at = frame % kDenseCycle;
@@ -136,8 +137,8 @@ double dense_height_m(std::uint32_t frame)
     return smooth * (kDenseAbove_m + kDenseDepth_m) - kDenseDepth_m;
 }
 
-/// Where the hand is in each frame: over or in the surface's point that is nearest to a ball which
-/// slides on it.
+/// Device position in each frame: above or below the surface point nearest to a sphere that slides
+/// on the surface.
 std::vector<Vec3> dense_way(const Scene& scene, const DenseTool& tool, std::uint32_t frames)
 {
     const test::FaceTree& tree = *scene.tree;
@@ -164,11 +165,11 @@ std::vector<Vec3> dense_way(const Scene& scene, const DenseTool& tool, std::uint
 struct DenseFigures
 {
     std::uint64_t pressed{0};
-    std::uint64_t forceless{0}; ///< Of those.
-    std::uint64_t longest{0};   ///< Of those in a row.
-    std::uint64_t waiting{0};   ///< Of those without: frozen or held back.
+    std::uint64_t forceless{0}; ///< Pressed frames without force.
+    std::uint64_t longest{0};   ///< Longest sequence of frames without force.
+    std::uint64_t waiting{0};   ///< Frames without force that are halted or data-limited.
     std::uint64_t contacts{0};
-    std::uint64_t known{0}; ///< Of those, exact or within the tolerance.
+    std::uint64_t known{0}; ///< Frames with a force that is exact or within the tolerance.
     double force_step_n{0.0};
     std::uint64_t hash{0};
     std::uint64_t in_a_row{0};

@@ -11,7 +11,7 @@
 namespace tactus::bench
 {
 
-/// Lines of a mesh that a simplifier should keep.
+/// Lines of a mesh that a simplifier should preserve.
 enum class Feature : std::uint8_t
 {
     none,
@@ -19,24 +19,25 @@ enum class Feature : std::uint8_t
     sharp_edges,
 };
 
-/// What the encoder has to reach on one mesh; without a value no goal.
+/// Goals of the encoder for one mesh; no goal without a value.
 struct EncoderGoals
 {
-    std::optional<double> rms_to_garland_heckbert; ///< Ours by theirs.
+    std::optional<double> rms_to_garland_heckbert; ///< Our error divided by theirs.
     std::optional<double> max_to_garland_heckbert;
     std::optional<double> rms_to_meshoptimizer;
-    std::optional<double> us_per_face; ///< On one core.
+    std::optional<double> us_per_face; ///< Microseconds a face on one core.
     std::optional<double> us_per_face_on_two;
-    std::optional<double> seconds; ///< On one core.
+    std::optional<double> seconds; ///< Seconds on one core.
     std::optional<double> peak_bytes_per_face;
-    std::optional<double> file_bytes_per_face;      ///< At 16 bits, hashes not counted.
-    std::optional<double> fine_file_bytes_per_face; ///< At 20 bits.
-    std::optional<double> read_ns_per_record;       ///< Parsed and linked on one core.
+    std::optional<double> file_bytes_per_face;      ///< File size at 16 bits, without hashes.
+    std::optional<double> fine_file_bytes_per_face; ///< File size at 20 bits.
+    std::optional<double> read_ns_per_record;       ///< Parsing and linking on one core.
     std::optional<double> base_faces;
-    std::optional<double> bound_at_sixth; ///< Largest bound by largest true error, at n/6 faces.
+    /// Greatest bound divided by greatest true error, at n/6 faces.
+    std::optional<double> bound_at_sixth;
     std::optional<double> bound_at_two_thirds;
     std::optional<double> exact_splits;
-    std::optional<double> contact_kb; ///< Until the first exact contact, hashes not counted.
+    std::optional<double> contact_kb; ///< Data until the first exact contact, without hashes.
     std::optional<double> hashed_contact_kb;
 };
 
@@ -47,27 +48,27 @@ struct EncoderMesh
     std::function<NamedMesh()> make;
     EncoderGoals goals{};
     Feature feature{Feature::none};
-    bool is_compared{true}; ///< Simplified beside the peers.
+    bool is_compared{true}; ///< Compares the simplifiers of the peers.
 };
 
-/// What a part of the suite gets.
+/// Context of a part of the suite.
 struct EncoderContext : CaseContext
 {
     const EncoderMesh& mesh;
 };
 
-/// The parts of the suite, which fail as cases do.
+/// Parts of the suite, which fail like cases.
 
-/// Our simplifier and the peers' on one mesh: faces reached, error of the surface and of its
-/// features, time. On one thread; ours on two as well, with the same result.
+/// Our simplifier and the peers' on one mesh: faces reached, errors of the surface and its
+/// features, and time. All on one thread; ours also on two, with the same result.
 void compare_simplifiers(const EncoderContext& context);
 
-/// The whole encoder, from a mesh in memory to a file, each run in a process of its own: time,
-/// memory, and what the file holds and how fast it is read. The same bytes from one thread and two.
+/// The whole encoder, from a mesh in memory to a file, each run in its own process: time, memory,
+/// content and reading speed of the file. One thread and two give the same bytes.
 void measure_files(const EncoderContext& context);
 
-/// How much larger bounds are than what they bound, how many splits a distance takes until it is
-/// exact, and how many bytes a first contact. With a tool's radius of 1 % of the diagonal.
+/// Ratio of the bounds to the true errors, splits until a distance is exact, and bytes of a first
+/// contact, for a tool radius of 1 % of the diagonal.
 void measure_bounds(const EncoderContext& context);
 
 } // namespace tactus::bench

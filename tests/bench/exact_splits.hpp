@@ -12,15 +12,16 @@
 namespace tactus::bench
 {
 
-/// How many splits from the base mesh up the certificate asks for until a distance is exact.
+/// Splits from the base mesh that the certificate requests until a distance is exact.
 struct ExactSplits
 {
     ContactSpread splits;
-    double distance_error_max_m{0.0}; ///< Of the answers, against the source: rounding only.
+    /// Greatest error of the answers against the source: rounding only.
+    double distance_error_max_m{0.0};
 };
 
-/// Asks for the distances of `probes` places up to two radii off a place of the source, in any
-/// direction. `tree` is the source's. Some 0.3 ms each, and 2 ms a million of faces.
+/// Requests the distances of `probes` places, each up to two radii from a place of the source in
+/// any direction. `tree` is the source's. About 0.3 ms each, and 2 ms for each million faces.
 [[nodiscard]] ExactSplits measure_exact_splits(const DecodedModel& model,
                                                const std::vector<test::Face>& source,
                                                const test::FaceTree& tree, double radius_m,

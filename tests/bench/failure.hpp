@@ -10,14 +10,14 @@
 namespace tactus::bench
 {
 
-/// Why a case can't be run, or that it gave wrong answers: a line, thrown, that ends the case.
+/// Reason, in one line, why a case cannot be run or has wrong answers. Thrown; ends the case.
 class Failure : public std::runtime_error
 {
 public:
     using std::runtime_error::runtime_error;
 };
 
-/// What a step brought; a failure when it was refused.
+/// Value of a result; a failure if it was refused.
 template <typename Value, typename Error>
 Value needed(Result<Value, Error> result)
 {

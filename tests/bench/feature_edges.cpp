@@ -18,7 +18,7 @@ namespace tactus::bench
 namespace
 {
 
-/// A face's side, its ends in ascending order: sides of one edge are equal but for the face.
+/// Side of a face, ends in ascending order: sides of one edge differ only in the face.
 struct Side
 {
     std::uint32_t low;
@@ -62,7 +62,7 @@ std::vector<Side> sorted_sides(const TriangleMesh& mesh)
     return sides;
 }
 
-/// The edges of which `is_wanted(sides)` holds.
+/// Edges that satisfy `is_wanted(sides)`.
 template <typename Condition>
 std::vector<Segment> edges_where(const TriangleMesh& mesh, const Condition& is_wanted)
 {

@@ -16,16 +16,16 @@ struct Segment
     Vec3 to{0.0, 0.0, 0.0};
 };
 
-/// Edges of one face alone.
+/// Edges of a single face.
 [[nodiscard]] std::vector<Segment> border_edges(const TriangleMesh& mesh);
 
-/// Edges at which the surface turns by more than `angle_deg`, 0 .. 180; faces without an area turn
-/// nothing.
+/// Edges at which the surface turns by more than `angle_deg`, 0 .. 180; faces without an area do
+/// not count.
 [[nodiscard]] std::vector<Segment> sharp_edges(const TriangleMesh& mesh, double angle_deg);
 
-/// The largest distance of points of `lines` to the nearest of `others`; the points include the
-/// ends and are at most a `points`-th of the whole length apart. Infinity when there are no others,
-/// 0 without lines. One by one: their product decides the cost.
+/// Greatest distance of points of `lines` to the nearest of `others`. The points include the ends
+/// and are at most one `points`-th of the total length apart. Infinity without others, 0 without
+/// lines. The cost is the product of both counts.
 [[nodiscard]] double largest_distance(const std::vector<Segment>& lines,
                                       const std::vector<Segment>& others, unsigned points);
 

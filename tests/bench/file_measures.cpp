@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The whole encoder and its files.
+/// Measurements of the whole encoder and its files.
 
 #include "host_tools/encode/write_spm.hpp"
 #include "host_tools/mesh/prepare.hpp"
@@ -38,18 +38,19 @@ struct EncodeJob
 {
     std::filesystem::path path;
     std::uint32_t position_bits{kMinPositionBits};
-    unsigned threads{1};     ///< One is held to one core.
-    std::uint32_t passes{1}; ///< At least one.
+    unsigned threads{1};     ///< Number of threads; a single one is pinned to one core.
+    std::uint32_t passes{1}; ///< Passes, at least one.
 };
 
-/// How the encoder's run went that took least time, and the highest peak of all.
+/// Fastest run of the encoder, with the highest peak of all runs.
 struct EncodeRun
 {
     std::string scene;
-    double prepare_s{0.0}; ///< From a mesh in memory.
+    double prepare_s{0.0}; ///< Time from a mesh in memory.
     double simplify_s{0.0};
-    double write_s{0.0};     ///< Until the file is there.
-    double processor_s{0.0}; ///< Of all threads; less than the others' sum when it had to wait.
+    double write_s{0.0}; ///< Time until the file is written.
+    /// CPU time of all threads; less than the sum of the others if the process had to wait.
+    double processor_s{0.0};
     std::uint64_t peak_bytes{0};
 
     [[nodiscard]] double total_s() const { return prepare_s + simplify_s + write_s; }
@@ -57,7 +58,7 @@ struct EncodeRun
 
 constexpr std::uint32_t kEncodedBaseFaces = 500;
 
-/// Seconds since it was made or last asked.
+/// Seconds since construction or the last call.
 class Laps
 {
 public:
@@ -105,8 +106,8 @@ std::string make_and_encode(const EncoderContext& context, const EncodeJob& job)
     return encode(std::move(source), job);
 }
 
-/// Encodes the context's mesh as spm_build does, each pass in a process of its own. A base mesh
-/// larger than the usual one is written all the same, so that there is a figure of it.
+/// Encodes the context's mesh as spm_build does, each pass in its own process. A base mesh larger
+/// than usual is still written, to have its figures.
 EncodeRun encode_in_child(const EncoderContext& context, const EncodeJob& job)
 {
     EncodeRun best;
@@ -134,15 +135,15 @@ std::string bytes_of(const std::filesystem::path& path)
     return std::move(bytes).str();
 }
 
-/// What a file would lack without its hash tree.
+/// Bytes of a file's hash tree.
 double hash_bytes(const ModelCounts& counts)
 {
     const std::size_t hashes =
-        counts.chunks() + counts.index_pages() + std::size_t{1}; // The base's.
+        counts.chunks() + counts.index_pages() + std::size_t{1}; // The base mesh's hash.
     return static_cast<double>(hashes * sizeof(ContentHash) + kRootHashBytes);
 }
 
-/// The first half of the model's hash, as rows have one.
+/// First half of the model's hash, in the form of the rows.
 std::uint64_t short_hash(const ModelStore& store)
 {
     std::uint64_t bits = 0;

@@ -19,14 +19,14 @@ namespace
 
 constexpr double kHashBytes = sizeof(ContentHash);
 
-/// Over all contacts; one value of each kind a contact.
+/// Counts by contact.
 struct Counted
 {
     std::vector<double> index, index_hashes, chunks, chunk_bytes, needed, splits;
     std::uint64_t missed{0};
 };
 
-/// The base mesh's, those of the index pages, and the model's own.
+/// Hashes of the base mesh, the index pages and the model.
 double header_hash_bytes(const ModelHeader& header)
 {
     return kHashBytes + kHashBytes * header.counts().index_pages() + kRootHashBytes;

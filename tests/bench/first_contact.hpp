@@ -12,7 +12,7 @@
 namespace tactus::bench
 {
 
-/// How a figure is spread over the contacts.
+/// Distribution of a figure over the contacts.
 struct ContactSpread
 {
     double p50{0.0};
@@ -21,28 +21,28 @@ struct ContactSpread
 };
 [[nodiscard]] ContactSpread contact_spread_of(const std::vector<double>& values);
 
-/// What a file costs a controller that knows nothing of it until the first contact is exact,
-/// counted at file level: coded bytes, checksums included, protocol headers not.
-///
-/// A contact is exact when every source face within `radius_m` of a place on the surface is active:
-/// the ball is certified, as a frame certifies it round the proxy. It takes the whole header, the
-/// base mesh, the index pages whose boxes meet the ball, and the chunks whose influence boxes do.
+/// Cost of a file until the first contact is exact, for a controller that has none of it. Counts
+/// coded bytes with checksums, without protocol headers.
+/// || A contact is exact if every source face within `radius_m` of a place on the surface is
+/// active: the sphere is certified, as a frame certifies it around the proxy. This needs the whole
+/// header, the base mesh, the index pages whose boxes meet the sphere, and the chunks whose
+/// influence boxes do.
 struct FirstContactFigures
 {
     double header_bytes{0.0}; ///< Without hashes.
     double base_bytes{0.0};
     ContactSpread index_bytes;      ///< Without hashes.
-    ContactSpread chunk_bytes;      ///< Which have no hashes in them.
+    ContactSpread chunk_bytes;      ///< Bytes of chunks, which contain no hashes.
     ContactSpread all_bytes;        ///< Without hashes.
-    ContactSpread all_hashed_bytes; ///< With those of header and fetched index pages.
-    ContactSpread chunks;           ///< How many.
-    ContactSpread needed_bytes;     ///< Of the chunks that have a record which is split.
-    ContactSpread splits;           ///< From the base mesh until the ball is certified.
-    std::uint64_t missed_chunks{0}; ///< Needed, but not named by the index: always 0.
+    ContactSpread all_hashed_bytes; ///< With the hashes of header and fetched index pages.
+    ContactSpread chunks;           ///< Number of chunks.
+    ContactSpread needed_bytes;     ///< Bytes of chunks with a record that is split.
+    ContactSpread splits;           ///< Splits from the base mesh until the sphere is certified.
+    std::uint64_t missed_chunks{0}; ///< Needed chunks that the index does not name: always 0.
 };
 
-/// Measures `contacts` places, evenly by area of the source, with `radius_m`. Two milliseconds each
-/// and, on large models, as much for every million of faces.
+/// Measures `contacts` places, distributed by area of the source, with `radius_m`. Two milliseconds
+/// each, and on large models as much for each million faces.
 [[nodiscard]] FirstContactFigures measure_first_contact(const ModelStore& store,
                                                         const DecodedModel& model,
                                                         const std::vector<test::Face>& source,

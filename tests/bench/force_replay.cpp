@@ -46,7 +46,7 @@ std::unique_ptr<test::FrameRig> make_rig(const ForceRun& run)
     return rig;
 }
 
-/// One replay; its outputs and planes in the order of the counted frames.
+/// One replay; outputs and planes in the order of the counted frames.
 std::vector<ToolOutput> replay(const ForceRun& run, test::FrameRig& rig, ForceTrace& trace)
 {
     std::vector<ToolOutput> outputs;

@@ -14,31 +14,31 @@
 namespace tactus::bench
 {
 
-/// One device's way over a static model: all of it loaded and refined before the first frame, so
-/// that nothing but the force model decides what is felt.
+/// Path of one device over a static model. The model is loaded and refined before the first frame,
+/// so that only the force model determines the result.
 struct ForceRun
 {
     const Scene& scene;
     ToolSpec tool;
-    std::vector<Vec3> goals_m; ///< In the model's frame; one a frame.
-    std::size_t lead_in{0};    ///< Frames at the start that are run and not counted.
-    Material material{};       ///< The surface's.
+    std::vector<Vec3> goals_m; ///< Device positions in the model frame, one for each frame.
+    std::size_t lead_in{0};    ///< Frames at the start that are not counted.
+    Material material{};       ///< Material of the surface.
 };
 
-/// What came of the counted frames.
+/// Results of the counted frames.
 struct ForceTrace
 {
     std::vector<ToolOutput> outputs;
-    std::vector<double> planes; ///< That the proxy looked at (Budgets::planes).
-    LeastTimes force_us;        ///< Of the stage alone.
-    LeastTimes frame_us;        ///< Of all stages.
-    /// By all frames of the replay that had most; nothing where they can't be counted.
+    std::vector<double> planes; ///< Planes that the proxy evaluated (Budgets::planes).
+    LeastTimes force_us;        ///< Time of the force stage.
+    LeastTimes frame_us;        ///< Time of all stages.
+    /// Most allocations of all frames in one replay; empty if they cannot be counted.
     std::optional<std::uint64_t> allocations;
-    std::uint64_t hash{0}; ///< Over the bits of all forces and proxies.
+    std::uint64_t hash{0}; ///< Hash of the bits of all forces and proxies.
 };
 
-/// Replays the way `passes` times, at least once, each time with a new controller. A failure when
-/// the model can't be refined fully and when two replays give forces of different bits.
+/// Replays the path `passes` times, at least once, each time with a new controller. A failure if
+/// the model cannot be refined fully, or if two replays differ in a bit of a force.
 [[nodiscard]] ForceTrace replay_forces(const ForceRun& run, std::uint32_t passes);
 
 } // namespace tactus::bench

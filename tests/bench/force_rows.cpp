@@ -15,7 +15,7 @@ namespace tactus::bench
 namespace
 {
 
-/// Of one sweep; not a number: not told.
+/// Figures of one sweep; NaN: not reported.
 struct Recorded
 {
     const char* sweep;
@@ -33,7 +33,7 @@ constexpr std::array<Recorded, 6> kRecorded{
      {"1.3M, 0.1 m/s, 0.5 mm", 21.5, 50.0, 0.94, 0.201, 0.84, 2.7},
      {"1.3M, 0.1 m/s, 2 mm", 664.0, 10'383.0, 0.98, kNotTold, kNotTold, 45.0}}};
 
-/// What is not a number is infinitely wrong.
+/// Length of a difference; infinite if it is not a number.
 double length_of(const Vec3& difference)
 {
     const double length = difference.norm();

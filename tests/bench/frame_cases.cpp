@@ -22,7 +22,7 @@ namespace
 
 constexpr double kSplitGoal_us = 0.25;
 constexpr double kPeerTolerance_diag = 2e-6;
-/// Evicting takes 5 ms a frame, so cold frames are the first of the slide only.
+/// Share of the slide that is measured cold, at its start: eviction takes 5 ms a frame.
 constexpr std::size_t kColdShare = 4;
 
 CaseRows rows_of(const CaseContext& context, const FrameRun& run, std::uint64_t hash)
@@ -33,7 +33,7 @@ CaseRows rows_of(const CaseContext& context, const FrameRun& run, std::uint64_t 
     return {context.rows, common};
 }
 
-/// What the first peer's query alone takes, with the whole mesh in memory, for the same goals.
+/// Query time of the first peer alone, with the whole mesh in memory, for the same positions.
 std::optional<Spread> peer_spread(const FrameRun& run, std::uint32_t passes, std::string& name)
 {
     const auto peers = make_peers(run.scene.model.faces);

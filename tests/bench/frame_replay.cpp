@@ -18,7 +18,7 @@ namespace tactus::bench
 namespace
 {
 
-/// How much faster than the slide the proxy may follow its goal.
+/// Proxy speed limit relative to the slide's speed.
 constexpr double kFollowTimes = 1.5;
 
 } // namespace

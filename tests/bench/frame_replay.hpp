@@ -18,43 +18,44 @@
 namespace tactus::bench
 {
 
-/// What the caches hold when a frame starts.
+/// Content of the caches at the start of a frame.
 enum class CacheState : std::uint8_t
 {
-    warm,      ///< What the last frame and the rehearsal left, as in a loop that runs on its own.
-    cold,      ///< Nothing of ours: driven out before the frame, not rehearsed.
-    rehearsed, ///< Driven out, then rehearsed, as a loop does in the wait before its deadline.
+    warm, ///< Content left by the last frame and its warm-up, as in a loop that runs on its own.
+    cold, ///< Evicted before the frame, and not warmed.
+    rehearsed, ///< Evicted, then warmed, as a loop does in the wait before its deadline.
 };
 
-/// One tool's way over one model, and what the frames may do.
+/// Path of one tool over one model, with the budgets of the frames.
 struct FrameRun
 {
     const Scene& scene;
     std::vector<Vec3> goals_m;
-    std::size_t lead_in{0}; ///< Frames at the start that are run and not counted.
+    std::size_t lead_in{0}; ///< Frames at the start that are not counted.
     test::RigOptions rig;
     Budgets budgets;
-    std::uint32_t models{1}; ///< That share the pools, all the scene's; rig.objects show them.
+    /// Models that share the pools, all of the same scene; rig.objects show them.
+    std::uint32_t models{1};
 
     [[nodiscard]] std::size_t counted() const { return goals_m.size() - lead_in; }
 };
 
-/// A slide over the scene: see slide_motion(). The tool has the motions' radius; its proxy follows
-/// the goal at up to 1.5 times the slide's speed, which leaves room for the swing in depth, so the
-/// reach R is the tool's radius and what that allows in a period.
+/// Slide over the scene, see slide_motion(). The tool has the radius of the motions; its proxy
+/// follows the device at up to 1.5 times the slide's speed, to allow for the swing in depth. The
+/// reach R is the tool's radius plus the motion that this permits in a period.
 [[nodiscard]] FrameRun make_slide(const Scene& scene, double speed_diag_per_s, std::uint32_t splits,
                                   std::size_t pool_bytes, std::uint32_t frames);
 
-/// What frames did, over the counted ones of one replay.
+/// Work of the counted frames of one replay.
 struct FrameWork
 {
     std::uint64_t frames{0};
-    WorkCounters counters;        ///< Their sum.
-    std::uint64_t coded_bytes{0}; ///< That came over the link meanwhile.
+    WorkCounters counters;        ///< Sum of the counters.
+    std::uint64_t coded_bytes{0}; ///< Bytes received over the link.
     std::uint64_t contacts{0};    ///< Frames in contact.
-    std::uint64_t uncertified{0}; ///< Of those, without an exact answer.
-    std::uint64_t open{0};        ///< Frames with neither an exact nor a decided answer.
-    ModelOutput model;            ///< After the last frame.
+    std::uint64_t uncertified{0}; ///< Frames in contact without an exact answer.
+    std::uint64_t open{0};        ///< Frames with neither an exact nor a separated answer.
+    ModelOutput model;            ///< State after the last frame.
 
     [[nodiscard]] double per_frame(std::uint64_t count) const
     {
@@ -66,36 +67,36 @@ struct FrameWork
     }
 };
 
-/// Runs the same frames from the start again and again.
+/// Repeated runs of the same frames from the start.
 class FrameReplay
 {
 public:
     explicit FrameReplay(const FrameRun& run);
 
-    /// So many replays of the first counted frames. A failure when a frame's state differs from
-    /// that of an earlier replay.
+    /// Replays the first `frames` counted frames `passes` times. A failure if a frame's state
+    /// differs between replays.
     void run(CacheState caches, std::uint32_t passes, std::size_t frames);
-    /// Of all counted frames, the caches warm.
+    /// Replays all counted frames with warm caches.
     void run(std::uint32_t passes) { run(CacheState::warm, passes, run_.counted()); }
 
-    /// T_L + T_R + T_B + T_Q, in microseconds, of the counted frames.
+    /// T_L + T_R + T_B + T_Q of the counted frames, in microseconds.
     [[nodiscard]] const LeastTimes& sum_us(CacheState caches) const
     {
         return sum_us_[index(caches)];
     }
-    /// Warm ones only.
+    /// Times of one stage with warm caches.
     [[nodiscard]] const LeastTimes& stage_us(Stage stage) const
     {
         return stage_us_[static_cast<std::size_t>(stage)];
     }
-    /// T_R + T_B of all frames by all splits of them; NaN when there is none.
+    /// T_R + T_B of all frames divided by their splits; NaN without splits.
     [[nodiscard]] double split_us() const;
-    /// Of each counted frame.
+    /// Splits of each counted frame.
     [[nodiscard]] const std::vector<double>& splits() const { return splits_; }
     [[nodiscard]] const FrameWork& work() const { return work_; }
-    /// What the counted frames answered, by the first replay.
+    /// Answers of the counted frames in the first replay.
     [[nodiscard]] const std::vector<PairOutput>& answers() const { return answers_; }
-    /// Calls on the heap by the counted frames of the last replay; none where they aren't counted.
+    /// Heap calls of the counted frames in the last replay; empty if they are not counted.
     [[nodiscard]] std::optional<std::uint64_t> allocations() const { return allocations_; }
     [[nodiscard]] std::uint64_t hash() const;
 
@@ -112,8 +113,8 @@ private:
     CacheEvictor evictor_;
     std::array<LeastTimes, 3> sum_us_;
     std::array<LeastTimes, kStages> stage_us_;
-    std::vector<std::uint64_t> hashes_; ///< Of each frame's state, by the first replay.
-    std::vector<double> splits_;        ///< Of each counted frame, likewise.
+    std::vector<std::uint64_t> hashes_; ///< Hash of each frame's state in the first replay.
+    std::vector<double> splits_;        ///< Splits of each counted frame in the first replay.
     FrameWork work_;
     std::vector<PairOutput> answers_;
     std::optional<std::uint64_t> allocations_;

@@ -12,7 +12,7 @@
 namespace tactus::bench
 {
 
-/// The calls on the heap that a function makes.
+/// Heap calls of a function.
 template <typename Function>
 std::uint64_t allocations_of(const Function& function)
 {
@@ -23,14 +23,14 @@ std::uint64_t allocations_of(const Function& function)
     return allocation_counter::of_this_thread().allocations - before;
 }
 
-/// A count of allocations_of(), or none where nothing is counted.
+/// Count of allocations_of(); empty if allocations are not counted.
 [[nodiscard]] inline std::optional<std::uint64_t> counted_if_available(std::uint64_t allocations)
 {
     return allocation_counter::available() ? std::optional(allocations) : std::nullopt;
 }
 
-/// What the heap has given out and not got back, its own bookkeeping included: of the process's
-/// main thread and of all that was mapped on its own. Always 0 under a sanitizer.
+/// Bytes in use on the heap, with its own bookkeeping: of the process's main thread and of separate
+/// mappings. Always 0 under a sanitizer.
 [[nodiscard]] inline std::size_t heap_bytes()
 {
     const struct mallinfo2 now = ::mallinfo2();

@@ -21,7 +21,8 @@ namespace tactus::bench
 namespace
 {
 
-/// Runs a program of the path, unheard. Its exit code, or none when it can't be run.
+/// Runs a program from the path without its output. Returns its exit code; empty if it cannot be
+/// run.
 std::optional<int> run_unheard(std::vector<std::string> words)
 {
     std::vector<char*> arguments;
@@ -48,7 +49,7 @@ std::optional<int> run_unheard(std::vector<std::string> words)
     return WEXITSTATUS(status);
 }
 
-/// What callgrind wrote of each part that it counted, the rest until the program's end last.
+/// Totals that callgrind wrote for each counted part, the rest of the run last.
 std::vector<std::uint64_t> totals_in(const std::filesystem::path& file)
 {
     static const std::string kTotal = "totals: ";
@@ -64,8 +65,8 @@ std::vector<std::uint64_t> totals_in(const std::filesystem::path& file)
     return totals;
 }
 
-// Callgrind knows functions by their names. They must be called, though they do nothing, and
-// differ, or the compiler makes one of both.
+// Callgrind finds functions by name. These must be called although they do nothing, and must
+// differ, or the compiler merges them.
 [[gnu::noinline]] void frame_begins() noexcept
 {
     asm volatile("" : : "i"(1));
@@ -76,7 +77,7 @@ std::vector<std::uint64_t> totals_in(const std::filesystem::path& file)
     asm volatile("" : : "i"(2));
 }
 
-// Calls what does nothing, and the other mark.
+// Calls the empty mark, then the given one.
 TACTUS_TRUSTED_BEGIN
 void end_stage(void* context, Stage stage) noexcept TACTUS_NONBLOCKING
 {
@@ -85,7 +86,7 @@ void end_stage(void* context, Stage stage) noexcept TACTUS_NONBLOCKING
 }
 TACTUS_TRUSTED_END
 
-/// Runs the case under callgrind, with these options of its own. What it counted, part by part.
+/// Runs the case under callgrind with additional options. Returns the counts by part.
 std::vector<std::uint64_t> run_counted(const CaseContext& context,
                                        const std::vector<std::string>& how)
 {
@@ -154,7 +155,7 @@ std::vector<StageCounts> count_stages(const CaseContext& context)
     {
         return std::vector<StageCounts>{};
     }
-    // Each stage is a part, and what comes after the last one.
+    // Each stage is a part, and the time after the last one too.
     const auto parts =
         run_counted(context, {"--zero-before=tactus::bench::(anonymous namespace)::frame_begins(*",
                               "--dump-before=tactus::bench::(anonymous namespace)::stage_ended(*",

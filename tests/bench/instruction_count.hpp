@@ -14,22 +14,21 @@
 namespace tactus::bench
 {
 
-/// rig.step_without_delivery(): a frame that is measured, under a name by which callgrind finds it.
-/// Its stages end at calls with names of their own.
+/// Calls rig.step_without_delivery() under a name that callgrind finds. The stages end at calls
+/// with names of their own.
 [[nodiscard]] FrameOutput counted_step(test::FrameRig& rig, std::span<const ToolState> tools,
                                        const Budgets& budgets, StageMark mark);
 [[nodiscard]] FrameOutput counted_step(test::FrameRig& rig, const std::vector<Vec3>& goals_m,
                                        const Budgets& budgets, StageMark mark);
 
 /// Instructions of all calls of counted_step() when the case runs once by itself with --count, in
-/// another process of this program under valgrind's callgrind; some 50 times as long as without.
-/// None unless --instructions asks for it, nor in that process itself. A failure when there is no
-/// valgrind, or it fails.
+/// another process of this program under valgrind's callgrind, about 50 times slower. Empty without
+/// --instructions and in that process itself. A failure if valgrind is missing or fails.
 [[nodiscard]] std::optional<std::uint64_t> count_instructions(const CaseContext& context);
 
-/// Of one frame, by Stage.
+/// Counts of one frame, by Stage.
 using StageCounts = std::array<std::uint64_t, kStages>;
-/// The same, call by call and stage by stage.
+/// Instructions by call and stage.
 [[nodiscard]] std::vector<StageCounts> count_stages(const CaseContext& context);
 
 } // namespace tactus::bench

@@ -8,7 +8,7 @@
 namespace tactus::bench
 {
 
-/// The q-quantile (0 .. 1) as the nearest rank: always one of the values. NaN of no values.
+/// q-quantile (0 .. 1) by nearest rank, always one of the values. NaN without values.
 [[nodiscard]] double quantile(std::vector<double> values, double q);
 
 struct Spread
@@ -19,8 +19,8 @@ struct Spread
 };
 [[nodiscard]] Spread spread_of(const std::vector<double>& values);
 
-/// Each frame's least time over repeated replays, which takes out what the machine's scheduler adds
-/// and leaves what the algorithm does; the greatest single time tells how much that was.
+/// Least time of each frame over repeated replays. This removes delays by the machine's scheduler;
+/// the greatest single time shows their size.
 class LeastTimes
 {
 public:
@@ -36,7 +36,7 @@ private:
     double raw_max_{0.0};
 };
 
-/// The values of the frames that were chosen.
+/// Values of the chosen frames.
 [[nodiscard]] std::vector<double> chosen(const std::vector<double>& values,
                                          const std::vector<bool>& choice);
 

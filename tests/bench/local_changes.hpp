@@ -14,17 +14,17 @@
 #include <utility>
 #include <vector>
 
-/// Local changes of a tree of any volume, at places spread over a surface, and the refit after
+/// Local changes of a tree of any volume, at places distributed over a surface, and the refit after
 /// each.
 namespace tactus::bench
 {
 
 inline constexpr std::size_t kPlaces = 100;
 inline constexpr std::uint32_t kClusteredFaces = 64;
-/// Faces change their error from none to this code and back: their boxes grow and shrink.
+/// Error code that faces change to and back from, so that their boxes grow and shrink.
 inline constexpr ErrorCode kChangedError = 8;
 
-/// The `count` items nearest to a point, by what `place_of` says of them.
+/// The `count` items nearest to a point, with positions by `place_of`.
 template <typename Item, typename PlaceOf>
 [[nodiscard]] std::vector<Item> nearest_items(const std::vector<Item>& items, const Vec3& point_m,
                                               std::size_t count, const PlaceOf& place_of)
@@ -49,10 +49,10 @@ struct ChangeTimes
 {
     LeastTimes refit_us{kPlaces};
     LeastTimes all_us{kPlaces};
-    std::uint64_t nodes{0}; ///< Blocks and nodes refitted, over everything.
+    std::uint64_t nodes{0}; ///< Refitted blocks and nodes, in total.
 };
 
-/// Times `change(there)` and the refit after it, there and back, `passes` times.
+/// Times `change(there)` with its refit, there and back, `passes` times.
 template <typename Tree, typename Change>
 void time_change(Tree& tree, std::size_t place, std::uint32_t passes, ChangeTimes& times,
                  const Change& change)
@@ -70,7 +70,7 @@ void time_change(Tree& tree, std::size_t place, std::uint32_t passes, ChangeTime
     }
 }
 
-/// Points of the surface, spread evenly over its faces' order.
+/// Points of the surface, evenly distributed over the order of its faces.
 [[nodiscard]] inline std::vector<Vec3> places_on(const Scene& scene)
 {
     std::vector<Vec3> places;
@@ -82,8 +82,8 @@ void time_change(Tree& tree, std::size_t place, std::uint32_t passes, ChangeTime
     return places;
 }
 
-/// At each place, the nearest of the `prims` change their error, and back. `corner_of` tells a
-/// prim's first corner.
+/// Changes the error of the nearest `prims` at each place, and back. `corner_of` returns a prim's
+/// first corner.
 template <typename Tree, typename CornerOf>
 [[nodiscard]] ChangeTimes time_clustered_faces(Tree& tree, const std::vector<PrimId>& prims,
                                                const std::vector<Vec3>& places,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// tactus_bench: measures, and prints rows that can be compared from commit to commit.
+/// tactus_bench: measures, and prints rows that can be compared between commits.
 
 #include "platform/program/command_line.hpp"
 #include "platform/program/run_program.hpp"
@@ -24,13 +24,13 @@ namespace
 struct Request
 {
     std::string suite;
-    std::string json; ///< Empty: none is written.
+    std::string json; ///< Output file; empty: none.
     bool all{false};
     bool check{false};
     BenchOptions options;
 };
 
-constexpr const char* kEvery = "all"; ///< In place of a suite.
+constexpr const char* kEvery = "all"; ///< Name of all suites together.
 
 std::string suite_names()
 {
@@ -42,7 +42,7 @@ std::string suite_names()
     return names + kEvery;
 }
 
-/// None when there is no suite of that name.
+/// Suites of that name; empty if there is none.
 std::vector<Suite> chosen_suites(const std::string& name)
 {
     if (name == kEvery)
@@ -86,7 +86,7 @@ void declare_options(CommandLine& line, Request& request)
     line.add_option("--json", request.json, "Write the rows to this file as JSON");
 }
 
-/// Why the command line makes no sense; nothing when it does.
+/// Fault of the command line, if any.
 std::optional<std::string> wrong_usage(const Request& request)
 {
     const std::vector<Suite> suites = chosen_suites(request.suite);
@@ -118,7 +118,7 @@ std::optional<std::string> wrong_usage(const Request& request)
     return std::nullopt;
 }
 
-/// What makes the run another than a full one, for those who keep its results.
+/// Options that make the run less than a full one, for the record of its results.
 std::vector<std::string> lesser_options(const BenchOptions& options)
 {
     std::vector<std::string> told;
@@ -143,8 +143,8 @@ std::vector<std::string> lesser_options(const BenchOptions& options)
     return told;
 }
 
-/// All suites asked for, one after the other, printed as they come; what came before a failure,
-/// too. `laws`: goals that leave with code 1, asked or not.
+/// Runs and prints all requested suites in turn, also results before a failure. `laws` counts the
+/// goals that cause exit code 1 even without a request.
 Results run_suites(const Request& request, GoalCount& laws)
 {
     Results results;
@@ -152,7 +152,8 @@ Results run_suites(const Request& request, GoalCount& laws)
     {
         Rows own;
         SceneStore scenes(
-            request.options.cache); // Its own: what others needed is not kept in memory.
+            // One store a suite, so that models of other suites are not kept in memory.
+            request.options.cache);
         if (const auto refused = run_suite(suite, request.options, scenes, own))
         {
             results.failures.push_back(*refused);
@@ -187,7 +188,7 @@ int run(int argc, char** argv)
         return line.fail(*reason, kExitUsage);
     }
     AtomicFile::remove_pending_on_signal();
-    // Made before the run, so that an hour of it is not lost to a name that can't be written.
+    // The file is created before the run, so that a bad name does not lose an hour of results.
     std::optional<AtomicFile> json;
     if (!request.json.empty())
     {

@@ -10,7 +10,7 @@
 namespace tactus::bench
 {
 
-/// The clock of every time in a suite, ours and the peers' alike.
+/// Clock of every time in a suite, ours and the peers'.
 using BenchClock = std::chrono::steady_clock;
 
 [[nodiscard]] inline double microseconds(BenchClock::time_point from, BenchClock::time_point to)
@@ -23,14 +23,15 @@ using BenchClock = std::chrono::steady_clock;
     return std::chrono::duration<double>(to - from).count();
 }
 
-/// What two readings with nothing in between say, in microseconds: part of every time below.
+/// Difference of two consecutive clock readings in microseconds, contained in every time below.
 [[nodiscard]] double clock_cost_us();
 
-/// Keeps the calling thread on one core while it lives.
+/// Keeps the calling thread on one core for its lifetime.
 class PinnedCore
 {
 public:
-    /// `core` -1: the last one that the thread may use. When the system refuses, core() is -1.
+    /// Pins to `core`; -1: the last one that the thread may use. core() is -1 if the system
+    /// refuses.
     explicit PinnedCore(int core);
     PinnedCore(const PinnedCore&) = delete;
     PinnedCore& operator=(const PinnedCore&) = delete;
@@ -43,12 +44,12 @@ private:
     int core_{-1};
 };
 
-/// Whether the calling thread may run on this core.
+/// True if the calling thread may run on this core.
 [[nodiscard]] bool may_use_core(int core);
 
-/// Drives the caches' contents out by writing one word of each line of 64 MB: more than a core's
-/// own caches hold, code included, and more than the rest of a 1 ms period can touch. A shared
-/// last-level cache that is larger keeps some. About 5 ms a call.
+/// Evicts the caches by writing one word of each line of 64 MB: more than a core's own caches hold,
+/// code included, and more than the rest of a 1 ms period can touch. A larger shared last-level
+/// cache keeps a part. About 5 ms a call.
 class CacheEvictor
 {
 public:

@@ -21,7 +21,7 @@ Eigen::Vector3d position(const TriangleMesh& mesh, std::uint32_t vertex)
     return {place[0], place[1], place[2]};
 }
 
-/// What a vertex's faces say about it.
+/// Averages over a vertex's faces.
 struct Vicinity
 {
     Eigen::Vector3d normal{0.0, 0.0, 0.0};
@@ -87,7 +87,7 @@ TriangleMesh with_normal_noise(const TriangleMesh& mesh, double share, std::uint
         const double length = all[i].normal.norm();
         if (!(length > 0.0))
         {
-            continue; // No face, or faces that cancel out: no direction to move in.
+            continue; // No face, or faces that cancel out: there is no direction to move in.
         }
         const double way =
             share * test::signed_unit(seed, i) * all[i].edge_length_sum / all[i].edges / length;

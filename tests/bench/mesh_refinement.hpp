@@ -9,11 +9,11 @@
 namespace tactus::bench
 {
 
-/// Cuts each face into four at its edges' midpoints; faces that share an edge share its midpoint.
+/// Splits each face into four at its edge midpoints; faces with a common edge share its midpoint.
 [[nodiscard]] TriangleMesh subdivided(const TriangleMesh& mesh);
 
-/// Moves each vertex along its normal (mean of its faces', weighted by area) by a uniform share of
-/// -`share` .. +`share` of the mean length of the edges that its faces have at it.
+/// Moves each vertex along its normal (area-weighted mean of its faces) by a uniform share in
+/// -`share` .. +`share` of the mean length of its faces' edges there.
 [[nodiscard]] TriangleMesh with_normal_noise(const TriangleMesh& mesh, double share,
                                              std::uint64_t seed);
 

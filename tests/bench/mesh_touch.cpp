@@ -24,7 +24,7 @@ constexpr double kTurn_rad_per_s = 1.0;
 constexpr double kLowest_diag = -0.0075;
 constexpr double kHighest_diag = 0.005;
 constexpr double kSwing_s = 1.0;
-/// Nothing is to be cut short.
+/// Budget without a limit.
 constexpr std::uint32_t kUnlimited = std::numeric_limits<std::uint32_t>::max();
 
 Vec3 vec3_of(const std::array<double, 3>& coordinates)
@@ -32,7 +32,7 @@ Vec3 vec3_of(const std::array<double, 3>& coordinates)
     return {coordinates[0], coordinates[1], coordinates[2]};
 }
 
-/// Of the lowest corner above the surface; highest in frame 0.
+/// Height of the lowest corner above the surface; highest in frame 0.
 double height_diag(std::uint32_t frame)
 {
     const double phase = 2.0 * std::numbers::pi * frame * kPeriod_s / kSwing_s;
@@ -40,7 +40,7 @@ double height_diag(std::uint32_t frame)
            0.5 * (kHighest_diag - kLowest_diag) * std::cos(phase);
 }
 
-/// How far a tool reaches along a direction, from its frame's origin.
+/// Extent of a tool along a direction, from its frame's origin.
 double extent_along(const Vec3& direction, const std::vector<Triangle>& tool)
 {
     double most = -std::numeric_limits<double>::infinity();

@@ -15,33 +15,32 @@
 namespace tactus::bench
 {
 
-/// A tool that is a mesh: a bumpy sphere of about 1,000 faces round the origin of its frame.
+/// Mesh tool: a bumpy sphere of about 1,000 faces around the origin of its frame.
 enum class MeshProbe : std::uint8_t
 {
-    large, ///< Its longest side is 0.15 of an object's diagonal.
-    small, ///< Its diagonal is.
+    large, ///< Longest side: 0.15 of an object's diagonal.
+    small, ///< Diagonal: 0.15 of an object's diagonal.
 };
-/// Of a tool that is a mesh, in diagonals of the object.
+/// Skin of a mesh tool, in diagonals of the object.
 inline constexpr double kMeshSkin_diag = 0.001;
 [[nodiscard]] NamedMesh make_tool_mesh(const Scene& object, MeshProbe probe);
 
-/// The faces of a scene in the frame of the mesh that it was made of.
+/// Faces of a scene in the frame of its source mesh.
 [[nodiscard]] std::vector<Triangle> faces_in_source_frame(const Scene& scene);
-/// In the model's frame, as every contestant has the object.
+/// Faces of a scene in the model frame, which all contestants use.
 [[nodiscard]] std::vector<Triangle> faces_in_model_frame(const Scene& scene);
 
-/// Places of a tool that turns at 1 rad/s about one axis, and stands above or in the point of the
-/// surface that is nearest to a way's centre, along the direction between the two.
-///
-/// The large tool slides over the object at 0.1 diag/s, its lowest corner between 0.75 % of the
-/// diagonal below the surface's point and 0.5 % above it, there and back once a second. The small
-/// one flies, approaches, slides and retreats (touch_motion); its lowest corner is as high as the
-/// lowest point of that motion's sphere.
+/// Poses of a tool that rotates at 1 rad/s about one axis, above or below the surface point nearest
+/// to the centre of a path, along the direction between the two.
+/// || The large tool slides over the object at 0.1 diag/s; its lowest corner moves between 0.75 %
+/// of the diagonal below the surface point and 0.5 % above it once a second. The small one flies,
+/// approaches, slides and retreats (touch_motion); its lowest corner has the height of the lowest
+/// point of that motion's sphere.
 [[nodiscard]] std::vector<Similarity> mesh_touch_motion(const TouchScene& object,
                                                         const std::vector<Triangle>& tool,
                                                         MeshProbe probe, std::uint32_t frames);
 
-/// The controller's queries of two meshes over two static models.
+/// Queries of two meshes over two static models.
 class TactusPairQuery final : public PairQuery
 {
 public:
@@ -50,10 +49,10 @@ public:
     [[nodiscard]] std::string name() const override { return "Tactus"; }
     void place(const Similarity& tool) override;
     [[nodiscard]] bool do_meet() override;
-    /// Those with the lowest ids when there are more than kMaxMeetingFaces.
+    /// Meeting pairs; those with the lowest ids if there are more than kMaxMeetingFaces.
     [[nodiscard]] const std::vector<test::FacePair>& meeting() override;
-    /// The frame's question, with contacts within the skin and those at the
-    /// ends of what the tool lies on, as the force needs them.
+    /// The frame's question: contacts within the skin and those at the ends of the support, as the
+    /// force needs them.
     [[nodiscard]] const std::vector<test::FacePair>& contacts() override;
     /// NaN when the answer is not proven to rounding.
     [[nodiscard]] double distance_m() override;

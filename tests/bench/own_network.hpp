@@ -9,12 +9,11 @@
 namespace tactus::bench
 {
 
-/// From now on this process and those that it starts have a network of their own, of a loopback
-/// interface alone. The caller must have no other threads. A failure when the system doesn't allow
-/// it.
+/// Moves this process and its future children to a network namespace with a loopback interface
+/// only. The caller must have no other threads. A failure if the system does not permit it.
 void enter_own_network();
 
-/// What has gone over it so far: each datagram once, with its headers.
+/// Bytes sent over it so far: each datagram once, with its headers.
 [[nodiscard]] std::uint64_t loopback_bytes();
 
 } // namespace tactus::bench

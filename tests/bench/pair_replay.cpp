@@ -15,7 +15,7 @@ namespace tactus::bench
 namespace
 {
 
-/// At the first place, before anything is measured: a local model comes and is refined there.
+/// Frames at the first place before the measurement, in which a local model is loaded and refined.
 constexpr std::uint32_t kLeadIn = 500;
 
 test::RigOptions options_of(const PairRun& run)
@@ -52,7 +52,7 @@ void keep(const StageTimer& timer, std::size_t frame, PairFrames& frames)
     frames.sum_us.keep(frame, sum_us);
 }
 
-/// Its hash.
+/// Runs once; returns the hash.
 std::uint64_t replay_once(const PairRun& run, PairFrames& frames)
 {
     test::FrameRig rig({&run.object.model, &run.tool.model}, options_of(run));

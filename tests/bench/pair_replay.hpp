@@ -14,32 +14,31 @@
 namespace tactus::bench
 {
 
-/// A tool that is a mesh and measures: it is where it is put, and feels nothing.
+/// Query-only mesh tool, which follows the device pose and renders no force.
 struct PairRun
 {
     const Scene& tool;
     const Scene& object;
-    std::vector<ToolState> places; ///< In the object's model's frame.
-    double radius_m{0.0};          ///< Distances up to this are to be exact.
-    double speed_m_per_s{0.0};     ///< No point of the tool is faster.
-    std::size_t pool_bytes{0};     ///< Of both models.
-    bool is_static{false};         ///< Both are there as a whole before the first place.
+    std::vector<ToolState> places; ///< Poses in the frame of the object's model.
+    double radius_m{0.0};          ///< Radius within which distances must be exact.
+    double speed_m_per_s{0.0};     ///< Greatest speed of a point of the tool.
+    std::size_t pool_bytes{0};     ///< Pools of both models.
+    bool is_static{false};         ///< Both models are resident and refined before the first pose.
 };
 
-/// What the frames of a run took and said.
+/// Times and answers of the frames of a run.
 struct PairFrames
 {
     std::array<LeastTimes, kStages> stage_us;
     LeastTimes sum_us; ///< T = T_R + T_B + T_Q + T_L.
     std::vector<PairOutput> answers;
-    WorkCounters work;              ///< Of all frames.
-    std::uint32_t active_faces{0};  ///< Of the object, at most.
-    std::uint64_t meeting_pairs{0}; ///< In all frames.
-    std::uint64_t hash{0};          ///< Over answers and states.
+    WorkCounters work;              ///< Work of all frames.
+    std::uint32_t active_faces{0};  ///< Most active faces of the object.
+    std::uint64_t meeting_pairs{0}; ///< Meeting pairs of all frames.
+    std::uint64_t hash{0};          ///< Hash of answers and states.
 };
 
-/// Replays a run so many times from its start, after some frames at its first place. A failure
-/// when passes differ.
+/// Replays a run `passes` times, after some frames at its first pose. A failure if passes differ.
 [[nodiscard]] PairFrames replay_pair(const PairRun& run, std::uint32_t passes);
 
 } // namespace tactus::bench

@@ -29,7 +29,7 @@ std::vector<std::uint32_t> names_of(const Scene& scene)
     return all;
 }
 
-/// The pairs by their names, ascending, each once.
+/// Names of the pairs, ascending and unique.
 std::vector<test::FacePair> named(const std::vector<test::FacePair>& pairs, const PairTruth& truth)
 {
     std::vector<test::FacePair> names;
@@ -50,7 +50,7 @@ std::uint64_t missing_from(const std::vector<test::FacePair>& those,
     return missing.size();
 }
 
-/// One question; its answer is kept and goes into the hash.
+/// Asks one question; keeps the answer and returns its hash.
 std::uint64_t answer(PairQuery& query, PairQuestion question, std::size_t frame,
                      PairAnswers& answers)
 {
@@ -75,7 +75,7 @@ std::uint64_t answer(PairQuery& query, PairQuestion question, std::size_t frame,
         for (const test::FacePair& pair : pairs)
         {
             answers.meeting[frame].push_back(query.in_source(pair));
-            sum += (std::uint64_t{pair.tool_face} << 32U) + pair.face; // In any order.
+            sum += (std::uint64_t{pair.tool_face} << 32U) + pair.face; // Independent of the order.
         }
         return sum;
     }

@@ -25,35 +25,35 @@ inline constexpr std::array kPairQuestions{PairQuestion::any, PairQuestion::all_
                                            PairQuestion::contacts, PairQuestion::distance};
 [[nodiscard]] const char* question_name(PairQuestion question);
 
-/// For each place of the tool: the pairs that meet, decided exactly, and the least distance. Faces
-/// are named by their places in the sources, those with the same corners by the lowest of theirs.
+/// Meeting pairs, decided exactly, and the least distance for each pose of the tool. Faces are
+/// named by their places in the sources; equal faces by the lowest place.
 struct PairTruth
 {
     std::vector<std::vector<test::FacePair>> meeting; ///< Ascending.
     std::vector<double> distances_m;
-    std::vector<std::uint32_t> tool_names; ///< Of each face of the source.
+    std::vector<std::uint32_t> tool_names; ///< Name of each face of the source.
     std::vector<std::uint32_t> object_names;
 };
-/// Some milliseconds a place.
+/// Truth for all poses; some milliseconds each.
 [[nodiscard]] PairTruth find_pair_truth(const Scene& tool, const Scene& object,
                                         std::span<const Similarity> places);
 
-/// What one contestant said to one question at every place; what was not asked is empty.
+/// Answers of one contestant to one question for every pose; fields not asked for are empty.
 struct PairAnswers
 {
     LeastTimes us;
     std::vector<bool> do_meet;
-    std::vector<std::vector<test::FacePair>> meeting; ///< By the sources' places.
+    std::vector<std::vector<test::FacePair>> meeting; ///< Pairs by places in the sources.
     std::vector<double> distances_m;
-    std::uint64_t hash{0}; ///< Over the answers: they were used.
+    std::uint64_t hash{0}; ///< Hash of the answers, so that they are used.
 };
-/// Asks at all places in turn, `passes` times from the start, at the first one once before. Only
-/// the question is timed. A failure only when passes differ.
+/// Asks for all poses in turn, `passes` times; the first one once before. Only the question is
+/// timed. A failure only if passes differ.
 [[nodiscard]] PairAnswers replay_pairs(PairQuery& query, std::span<const Similarity> places,
                                        PairQuestion question, std::uint32_t passes);
 
-/// Frames for `any`, pairs for `all_pairs` and `contacts`; the largest error of a distance,
-/// infinite for one that is not a number.
+/// Errors: frames for `any`, pairs for `all_pairs` and `contacts`; the greatest error of a
+/// distance, infinite for one that is not a number.
 struct PairErrors
 {
     std::uint64_t missed{0};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// A tool that is a mesh against one mesh, by every contestant in turn.
+/// A mesh tool against one mesh, by every contestant in turn.
 
 #include "tests/bench/measuring.hpp"
 #include "tests/bench/mesh_touch.hpp"
@@ -21,10 +21,10 @@ namespace tactus::bench
 namespace
 {
 
-/// What is nearer than this is near, as a share of the diagonal.
+/// Distance below which meshes are near, as a share of the diagonal.
 constexpr double kNearMeshes_diag = 0.02;
 
-/// Frames by what there is to find.
+/// Frames by their result.
 enum class PairClass : std::uint8_t
 {
     all,
@@ -35,7 +35,7 @@ enum class PairClass : std::uint8_t
 constexpr std::array kPairClasses{PairClass::all, PairClass::contact, PairClass::near,
                                   PairClass::far};
 
-/// Before the names of its figures.
+/// Prefix of the names of its figures.
 std::string prefix_of(PairClass of)
 {
     switch (of)
@@ -52,10 +52,10 @@ std::string prefix_of(PairClass of)
     return "";
 }
 
-/// The last commit before faces were decided and bounded in single precision.
+/// Last commit before faces were decided and bounded in single precision.
 constexpr const char* kCommitBefore = "9e4f313";
 
-/// What a figure of ours is to be at most: a share of FCL's, or of what it was at kCommitBefore, or
+/// Greatest value of a figure of ours: a share of FCL's or of that at kCommitBefore, or
 /// microseconds.
 struct PairGoal
 {
@@ -65,7 +65,7 @@ struct PairGoal
     PairClass of;
     const char* figure;
     double goal;
-    double before_us{0.0}; ///< At kCommitBefore when the goals were set: a run of its own.
+    double before_us{0.0}; ///< Value at kCommitBefore when the goals were set, from a separate run.
 };
 constexpr const char* kFineScene = kFineBunny.name;
 constexpr std::array kPairGoals{
@@ -86,7 +86,7 @@ constexpr std::array kPairGoals{
     PairGoal{kFineScene, MeshProbe::large, PairQuestion::any, PairClass::near, "p99", 0.3, 174.0},
 };
 
-/// One probe over one scene, and what every contestant is asked about the two.
+/// One probe over one scene, with the questions to every contestant.
 struct MeshTrial
 {
     const CaseContext& context;
@@ -97,7 +97,7 @@ struct MeshTrial
     PairTruth truth;
 };
 
-/// By question and class.
+/// Figures by question and class.
 using PairSpreads = std::map<std::pair<PairQuestion, PairClass>, Spread>;
 
 std::vector<bool> frames_of(const MeshTrial& trial, PairClass of)
@@ -127,7 +127,7 @@ CaseRows rows_of(const MeshTrial& trial, const std::string& by, const char* sett
     return {trial.context.rows, common};
 }
 
-/// None when nothing is asked of this figure.
+/// Goal of a figure; null if it has none.
 const PairGoal* goal_of(const MeshTrial& trial, PairQuestion question, PairClass of,
                         const std::string& figure)
 {
@@ -141,7 +141,7 @@ const PairGoal* goal_of(const MeshTrial& trial, PairQuestion question, PairClass
     return found == kPairGoals.end() ? nullptr : found;
 }
 
-/// A time of ours with what is asked of it.
+/// Adds a time of ours with its goal.
 void add_own_time(CaseRows& rows, const std::string& metric, double us, const PairGoal* goal)
 {
     if (goal == nullptr || goal->before_us == 0.0)
@@ -156,7 +156,7 @@ void add_own_time(CaseRows& rows, const std::string& metric, double us, const Pa
     row.peer_value = goal->before_us;
 }
 
-/// Of each class that has frames.
+/// Adds the times of each class that has frames.
 void add_times(const MeshTrial& trial, const std::string& name, CaseRows& rows,
                const PairAnswers& answers, PairQuestion question, PairSpreads& spreads)
 {
@@ -179,7 +179,7 @@ void add_times(const MeshTrial& trial, const std::string& name, CaseRows& rows,
     }
 }
 
-/// The rows of one contestant.
+/// Adds the rows of one contestant.
 void add_contestant(const MeshTrial& trial, PairQuery& query, PairSpreads& spreads)
 {
     for (const PairQuestion question : kPairQuestions)
@@ -199,7 +199,7 @@ void add_contestant(const MeshTrial& trial, PairQuery& query, PairSpreads& sprea
     }
 }
 
-/// How much there was to find.
+/// Adds the true numbers of meeting frames and pairs.
 void add_truth(const MeshTrial& trial)
 {
     std::size_t meet = 0;
@@ -222,7 +222,7 @@ void add_truth(const MeshTrial& trial)
     rows.add("pairs at most", static_cast<double>(most), "");
 }
 
-/// Our times as shares of another's, of the same run.
+/// Adds our times as shares of another contestant's from the same run.
 void add_shares(const MeshTrial& trial, const std::string& own, const std::string& other,
                 const PairSpreads& ours_us, const PairSpreads& others_us)
 {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// One probe against one mesh, by every contestant in turn; no two of them are in memory at once.
+/// One sphere against one mesh, by every contestant in turn; only one of them is in memory at a
+/// time.
 
 #include "rt_core/math/infinity.hpp"
 #include "tests/bench/frame_replay.hpp"
@@ -22,14 +23,13 @@ namespace
 {
 
 constexpr double kNear_diag = 2.0 * kRadius_diag;
-/// Some contestants work in float on coordinates of about a diagonal; that is no miss.
+/// Tolerance for contestants that use float on coordinates of about a diagonal.
 constexpr double kTouchTolerance_diag = 2e-6;
-/// The streaming tool may move this fast: the flight's speed and half as much again.
+/// Speed limit of the streaming tool: 1.5 times the flight's speed.
 constexpr double kFastest_diag_per_s = 3.0;
 constexpr const char* kStreaming = "Tactus streaming";
 
-/// The questions about one scene, and the first contestant's time for the others to be held
-/// against.
+/// Questions about one scene, and the first contestant's times, to which the others are compared.
 struct TouchTrial
 {
     const CaseContext& context;
@@ -44,7 +44,7 @@ struct TouchTrial
     [[nodiscard]] double diagonal_m() const { return scene.model.diagonal_m; }
     [[nodiscard]] double band_m() const { return kNear_diag * diagonal_m(); }
     [[nodiscard]] double radius_m() const { return kRadius_diag * diagonal_m(); }
-    /// None in flight, unless a contestant can't do without.
+    /// Bands of the questions; infinite in flight, unless the contestant requires one.
     [[nodiscard]] std::vector<double> bands_m(bool in_flight_too) const
     {
         std::vector<double> bands;
@@ -77,7 +77,7 @@ CaseRows rows_of(const TouchTrial& trial, const std::string& by, std::uint64_t h
     return {trial.context.rows, common};
 }
 
-/// Flight only of contestants that were asked without a band there.
+/// Adds times; flight only of contestants without a band there.
 void add_times(const TouchTrial& trial, CaseRows& rows, const std::vector<double>& times_us,
                bool is_banded)
 {
@@ -117,7 +117,7 @@ void add_cost(const TouchTrial& trial, CaseRows& rows, double build_ms, double b
     rows.add("memory", bytes / static_cast<double>(trial.scene.model.faces.size()), "B a face");
 }
 
-/// All rows of one contestant whose structure is built.
+/// Adds all rows of one built contestant.
 void add_contestant(TouchTrial& trial, const std::string& by, const BuiltQuery& built)
 {
     const bool is_banded = built.query->needs_band();
@@ -142,8 +142,8 @@ void add_contestant(TouchTrial& trial, const std::string& by, const BuiltQuery& 
     add_cost(trial, rows, built.build_ms, built.bytes);
 }
 
-/// Its build is what a controller does with an encoded model: load, link, refine and refit. That
-/// of the model is the encoder's, once, beforehand.
+/// Adds the static model. Its construction is that of a controller from an encoded model: load,
+/// link, refine and refit; the encoder's own time is not included.
 void add_static_model(TouchTrial& trial)
 {
     const BenchClock::time_point start = BenchClock::now();
@@ -169,8 +169,8 @@ void add_peers(TouchTrial& trial)
     }
 }
 
-/// What a frame says of touch: the distance where it is exact, nothing in reach where that is
-/// decided, and the least that is known where the question is open.
+/// Distance by which a frame reports touch: the distance if exact, infinity if separated, and the
+/// least known distance otherwise.
 double told_distance_m(const PairOutput& answer)
 {
     return answer.kind == AnswerKind::decided ? kInfinity : answer.upper_m;
@@ -182,13 +182,13 @@ FrameRun make_streaming_run(const TouchTrial& trial, std::size_t pool_bytes)
     ToolSpec tool;
     tool.radius_m = trial.radius_m();
     tool.speed_max_m_per_s = kFastest_diag_per_s * trial.diagonal_m();
-    tool.passes_through = true; // Answers are of the motion's own points.
+    tool.passes_through = true; // The answers are for the motion's own points.
     run.rig.tools = {tool};
     run.rig.pool_bytes = pool_bytes;
     return run;
 }
 
-/// How far exact answers are off at most, and the frames that have none in which the probe may
+/// Adds the greatest error of exact answers, and the frames without one in which the sphere may
 /// touch.
 void add_frame_answers(const TouchTrial& trial, CaseRows& rows, const FrameReplay& replay)
 {
@@ -211,7 +211,7 @@ void add_frame_answers(const TouchTrial& trial, CaseRows& rows, const FrameRepla
     rows.add("open frames", static_cast<double>(open), "");
 }
 
-/// T_L + T_R + T_B + T_Q of a frame that streams into small pools.
+/// Adds T_L + T_R + T_B + T_Q of a frame that streams into small pools.
 void add_streaming(const TouchTrial& trial, std::size_t pool_bytes)
 {
     const FrameRun run = make_streaming_run(trial, pool_bytes);

@@ -23,7 +23,7 @@ namespace
 
 constexpr int kNotStarted = 127;
 
-/// The child's way to the other program. Returns only when it could not go.
+/// Replaces the child by the other program. Returns only on failure.
 void become(const ProgramSetup& setup, int talk)
 {
     const int output = ::open(setup.output.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);

@@ -17,25 +17,25 @@
 namespace tactus::bench
 {
 
-/// Where a program of ours is: in the folder of this one, or where the tests' programs are.
+/// Path of a program: in the folder of this one, or in that of the tests' programs.
 [[nodiscard]] std::filesystem::path program_path(const std::string& name);
 
-/// A program to start, and what surrounds it.
+/// Program to start, with its environment.
 struct ProgramSetup
 {
     std::vector<std::string> words; ///< Path and arguments.
-    std::string network;            ///< File of the network namespace it lives in; empty: ours.
+    std::string network;            ///< File of its network namespace; empty: ours.
     std::string dds_uri;            ///< Its CYCLONEDDS_URI; empty: none.
-    std::filesystem::path output;   ///< Where stdout and stderr go.
-    /// stdin and stdout are the two ends of a talk, see ask(); stderr goes to `output`.
+    std::filesystem::path output;   ///< File of stdout and stderr.
+    /// True if stdin and stdout are connected to ask(); stderr goes to `output`.
     bool is_asked{false};
 };
 
-/// The line of JSON in a program's output.
+/// JSON line of a program's output.
 [[nodiscard]] nlohmann::json report_in(const std::filesystem::path& output);
 
-/// A running program; it is killed when this goes. It may use every processor, whatever the caller
-/// is held to.
+/// Running program; killed by the destructor. It may use every processor, even if the caller is
+/// pinned.
 class Program
 {
 public:
@@ -52,11 +52,11 @@ public:
 
     [[nodiscard]] pid_t id() const { return id_; }
     void send_signal(int signal) const { ::kill(id_, signal); }
-    /// Waits until it has ended; a failure that quotes its last line when not with code 0.
+    /// Waits for the end; a failure with the last line of output if the exit code is not 0.
     void wait();
-    /// Waits until its output holds the text.
+    /// Waits until the output contains the text.
     void wait_for(const std::string& text, std::chrono::seconds timeout) const;
-    /// Reads one line, after sending another one unless that is empty.
+    /// Sends a line unless it is empty, then reads one.
     [[nodiscard]] std::string ask(const std::string& line);
 
 private:
@@ -70,7 +70,7 @@ private:
     }
     [[nodiscard]] std::string output_text() const;
 
-    pid_t id_{0}; ///< 0: there is none.
+    pid_t id_{0}; ///< Process id; 0: none.
     std::string name_;
     std::filesystem::path output_;
     int talk_{-1};

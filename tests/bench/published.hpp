@@ -17,16 +17,16 @@ namespace tactus::bench
 
 inline constexpr std::chrono::seconds kStartTimeout{60};
 
-/// That of this process and its programs; nobody else in this machine uses it, most likely.
+/// DDS domain of this process and its programs, very likely unused by others on this machine.
 [[nodiscard]] std::uint32_t dds_domain();
 
-/// Starts a program of ours at an end, in our DDS domain. Its output goes to a file of its name in
-/// the folder.
+/// Starts one of our programs at an end, in our DDS domain. Its output goes to a file with its name
+/// in the folder.
 [[nodiscard]] Program start_at(const NetworkEnd& end, const std::string& name,
                                const std::filesystem::path& folder,
                                const std::vector<std::string>& arguments);
 
-/// spm_publish with this scene as "model"; it is ready.
+/// Starts spm_publish with this scene as "model" and waits until it is ready.
 [[nodiscard]] Program publish(const Scene& scene, const NetworkEnd& end,
                               const std::filesystem::path& folder);
 

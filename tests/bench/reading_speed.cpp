@@ -17,7 +17,7 @@ namespace tactus::bench
 namespace
 {
 
-/// A whole model, coded and decoded.
+/// Whole model, coded and decoded.
 class WholeModel
 {
 public:
@@ -48,7 +48,7 @@ public:
         }
     }
 
-    /// Whether every chunk was taken.
+    /// True if every chunk was accepted.
     [[nodiscard]] bool parse_all()
     {
         bool is_sound = true;
@@ -67,7 +67,7 @@ public:
         return {*pool_, 0, header_, slots()};
     }
 
-    /// Whether every record was linked.
+    /// True if every record was linked.
     [[nodiscard]] bool link_all(Linker& linker) const
     {
         for (std::uint32_t chunk = 0; chunk < pages_.size(); ++chunk)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// Refit after a local change of a fully refined tree, at places spread over the surface. Each
-/// place keeps its least time; the quantiles go over places.
+/// Refit after a local change of a fully refined tree, at places distributed over the surface. The
+/// time of a place is the least of its passes; quantiles are over places.
 
 #include "tests/bench/cases.hpp"
 #include "tests/bench/least_times.hpp"
@@ -19,10 +19,10 @@ namespace
 {
 
 constexpr std::size_t kMovedVertices = 180;
-/// Vertices move by this much, there and back: a fraction of an edge.
+/// Displacement of vertices, there and back: a fraction of an edge.
 constexpr double kMove_diag = 1e-4;
 
-/// A row of a block that a vertex has there.
+/// Row of a block that holds a vertex.
 struct VertexRow
 {
     std::uint32_t block{0};
@@ -30,7 +30,7 @@ struct VertexRow
     Vec3f position_m{};
 };
 
-/// All vertex rows of a tree; equal positions are one vertex.
+/// Vertex rows of a tree by position.
 using VertexRows = std::map<Vec3f, std::vector<VertexRow>>;
 
 VertexRows vertex_rows(const AbTree& tree)

@@ -10,29 +10,29 @@
 namespace tactus::bench
 {
 
-/// What lies between two networks, each way.
+/// Properties of the link between two networks, each way.
 struct LinkManner
 {
     double delay_ms{10.0};
     double loss{0.0};
 };
 
-/// One end: where a program has to live, and what its DDS has to know. Unless it is made, this
-/// machine's loopback interface, which programs of ours configure themselves.
+/// One end: the network of a program and its DDS configuration. Default: this machine's loopback
+/// interface, which our programs configure themselves.
 struct NetworkEnd
 {
     std::string network; ///< ProgramSetup::network.
     std::string dds_uri;
 };
 
-/// UDP payload that the relay has seen, both ways together.
+/// UDP payload through the relay, both directions together.
 struct LinkTraffic
 {
     std::uint64_t payload_bytes{0};
     std::uint64_t datagrams{0};
 };
 
-/// Two networks and the relay between them (tests/relay). Needs root and /dev/net/tun.
+/// Two networks and the relay between them (tests/relay). Requires root and /dev/net/tun.
 class RelayedNetworks
 {
 public:

@@ -21,19 +21,19 @@ namespace
 {
 
 constexpr std::uint32_t kRigidFaces = 20'480;
-constexpr std::uint32_t kTurnedFaces = 2'000; ///< Of plate, socket and peg.
+constexpr std::uint32_t kTurnedFaces = 2'000; ///< Faces of plate, socket and peg.
 constexpr double kRigidSpeed_m_per_s = 0.1;
-/// So much that nothing is clamped.
+/// Limits so high that nothing is clamped.
 constexpr double kRigidForceMax_n = 1'000.0;
 constexpr double kRigidTorqueMax_nm = 100.0;
-/// What friction may cost a frame's force stage.
+/// Goal for the cost of friction in a frame's force stage.
 constexpr double kFrictionCost_us = 10.0;
 constexpr Touch kRigidTouch{2e-3, 1e-3, 1'000.0};
 
-/// Every case begins in the air, and is counted once it slides.
+/// Frames of the descent, which are not counted.
 constexpr std::size_t kComingFrames = 200;
 
-/// A tool that turns, and its way over a shape; places in the shape's own frame.
+/// 6-DoF tool with its path over a shape, in the shape's frame.
 struct RigidCase
 {
     const char* name;
@@ -41,19 +41,19 @@ struct RigidCase
     std::uint32_t faces;
     ToolCore core;
     double radius_m;
-    Vec3 start_m; ///< In the air; the way comes from here.
-    /// Where the hand is after so many metres of its way.
+    Vec3 start_m; ///< Start of the path, above the surface.
+    /// Device position by path length.
     Vec3 (*at)(double way_m);
 };
 
-/// To and fro between -most and most, from the middle.
+/// Triangle wave between -most and most, from the middle, by path length.
 double swing(double way_m, double most)
 {
     const double turn = std::fmod(way_m / (4.0 * most) + 0.25, 1.0);
     return most * (1.0 - 4.0 * std::abs(turn - 0.5));
 }
 
-/// Round the bumpy sphere as a ball goes that is pressed into it.
+/// Path around the bumpy sphere of a sphere that is pressed into it.
 Vec3 round_bumps(double way_m)
 {
     const double angle = way_m / 0.05;
@@ -76,7 +76,8 @@ std::vector<RigidCase> rigid_cases()
              [](double way_m) { return Vec3(0.05 + swing(way_m, 0.02), 0.045, 0.012); }},
             {"box over an edge", "plate", kTurnedFaces, box, 1e-3, Vec3(0.1, 0.045, 0.04),
              [](double way_m) { return Vec3(0.1 + swing(way_m, 0.004), 0.045, 0.012); }},
-            // With 0.2 mm of room; the hand leans 1 mm towards the wall, up and down and round.
+            // Peg with a clearance of 0.2 mm; the device leans 1 mm towards the wall, up and down
+            // and around.
             {"peg in a hole", "socket", kTurnedFaces, pin, 0.01, Vec3(0.0, 0.0, 0.06),
              [](double way_m)
              {

@@ -7,9 +7,9 @@
 namespace tactus::bench
 {
 
-/// A capsule and a box sweep round the bumpy sphere, a box over a plane and its edge, a peg in its
-/// hole and a cylinder across another one, each without friction and with it: times, forces and
-/// torques felt, and what friction costs a frame.
+/// A capsule and a box sweep around the bumpy sphere, a box over a plane and its edge, a peg in its
+/// hole and a cylinder across another one, each with and without friction: times, rendered forces
+/// and torques, and the cost of friction.
 void run_rigid_sweeps(const CaseContext& context);
 
 } // namespace tactus::bench

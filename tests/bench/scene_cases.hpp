@@ -9,13 +9,13 @@
 namespace tactus::bench
 {
 
-/// What a host's objects cost on the wire and to those who join.
+/// Cost of a model server's objects on the wire and for joining controllers.
 [[nodiscard]] std::vector<Case> scene_wire_cases();
 
-/// What poses from outside do to a force, and what they cost a frame.
+/// Effect of external poses on a force, and their cost in a frame.
 [[nodiscard]] std::vector<Case> scene_pose_cases();
 
-/// In how much memory scenes start.
+/// Memory in which scenes start.
 [[nodiscard]] std::vector<Case> scene_memory_cases();
 
 } // namespace tactus::bench

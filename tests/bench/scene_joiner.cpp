@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// scene_joiner: what a controller does to have a host's objects, or its models, without the rest
-/// of one. Says how long it took, and stays until it is told to end.
+/// scene_joiner: obtains a model server's objects or models as a controller does, without the rest
+/// of one. Prints the time it took, and stays until told to end.
 
 #include "platform/program/command_line.hpp"
 #include "platform/program/run_program.hpp"
@@ -26,8 +26,8 @@ namespace tactus::bench
 namespace
 {
 
-/// Between two looks: longer than a controller's transport thread has, so that many of them find
-/// room on few processors.
+/// Pause between two polls: longer than that of a controller's transport thread, so that many run
+/// on few processors.
 constexpr auto kPause = std::chrono::milliseconds(5);
 
 struct Options

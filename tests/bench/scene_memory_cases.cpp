@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The least pools in which a scene of large models starts.
+/// Smallest pools in which a scene of large models starts.
 
 #include "tests/bench/scene_cases.hpp"
 #include "tests/shared/frame_rig.hpp"
@@ -26,7 +26,7 @@ struct PoolCase
     double goal_mib;
 };
 
-/// What `--pool-mib` counts, where each model is shown by one object; and that a frame runs in it.
+/// Memory by `--pool-mib` if each model is shown by one object; checks that a frame runs in it.
 void run_pool_case(const CaseContext& context, const PoolCase& test_case)
 {
     const Scene& scene = context.scenes.get(kLarge);

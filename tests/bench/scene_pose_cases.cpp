@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// What poses from outside do to a force, and what they cost a frame.
+/// Effect of external poses on a force, and their cost in a frame.
 
 #include "host_tools/shapes/shapes.hpp"
 #include "platform/loop/pose_door.hpp"
@@ -38,7 +38,7 @@ struct GlideCase
     double goal_n;
 };
 
-/// Where the object stands: to and fro at the speed.
+/// Position of the object: a triangle wave at the speed.
 double offset_m(double speed_m_per_s, std::int64_t frame)
 {
     constexpr double kSwing_m = 0.003;
@@ -53,7 +53,7 @@ struct ForceSteps
     std::uint64_t hash{0};
 };
 
-/// A tool that is held 6 mm below the top of a plate of 500 N/m, which goes up and down.
+/// Force steps of a tool held 6 mm below the top of a plate of 500 N/m that moves up and down.
 ForceSteps force_steps(const Scene& scene, const GlideCase& test_case, bool glides,
                        std::uint32_t frames)
 {
@@ -82,7 +82,7 @@ ForceSteps force_steps(const Scene& scene, const GlideCase& test_case, bool glid
     {
         if (frame % kFramesAPose == 0)
         {
-            arrives = frame + static_cast<std::int64_t>(random.below(4)); // Up to 3 ms under way.
+            arrives = frame + static_cast<std::int64_t>(random.below(4)); // Delay up to 3 ms.
         }
         if (frame == arrives)
         {
@@ -131,7 +131,7 @@ void run_glide_case(const CaseContext& context, const GlideCase& test_case)
 struct DoorCase
 {
     std::uint32_t objects;
-    std::uint32_t moving; ///< 100 times a second.
+    std::uint32_t moving; ///< Objects that move 100 times a second.
 };
 
 void run_door_case(const CaseContext& context, const DoorCase& test_case)
@@ -163,7 +163,7 @@ void run_door_case(const CaseContext& context, const DoorCase& test_case)
         {
             put(i);
         }
-        for (; frame < 200; ++frame) // All are followed, and rest.
+        for (; frame < 200; ++frame) // All objects are tracked, and rest.
         {
             hear_all();
             static_cast<void>(door.refresh(time_of(frame)));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// What a host's objects cost on the wire and to those who join, between processes, on a loopback
-/// of their own.
+/// Cost of a model server's objects on the wire and for joining controllers, between processes on a
+/// separate loopback network.
 
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/bench/child_process.hpp"
@@ -42,11 +42,11 @@ constexpr std::uint32_t kJoiners = 64;
 constexpr std::uint32_t kModels = 256;
 constexpr std::chrono::seconds kJoinTimeout{60};
 
-/// Controllers that begin at the same instant, and stay.
+/// Controllers that start together and stay.
 class Joiners
 {
 public:
-    /// Returns when each has what it wants, which the arguments say.
+    /// Returns when each controller has the data that its arguments request.
     static Joiners join(const std::filesystem::path& folder, const std::string& name,
                         std::uint32_t count, const std::vector<std::string>& arguments)
     {
@@ -82,7 +82,7 @@ public:
     }
 
     [[nodiscard]] double longest_ms() const { return longest_ms_; }
-    /// What went over the network meanwhile.
+    /// Bytes sent over the network meanwhile.
     [[nodiscard]] double bytes() const { return bytes_; }
 
 private:
@@ -93,7 +93,7 @@ private:
 
 double kilobytes_per_s()
 {
-    constexpr auto kTime = 4s; // Five rounds of the search for hosts.
+    constexpr auto kTime = 4s; // Five rounds of discovery.
     const std::uint64_t before = loopback_bytes();
     const auto begin = BenchClock::now();
     std::this_thread::sleep_for(kTime);
@@ -106,19 +106,19 @@ std::vector<std::string> all_objects()
     return {"--objects", fmt::format("{}", kObjects)};
 }
 
-/// What every case does, in a process of its own: returns its figures as JSON.
+/// Body of a case, in its own process: returns its figures as JSON.
 using Measure = Json (*)(ShowingHost& host, const std::filesystem::path& folder);
 
 std::string measured(const Files& files, const std::filesystem::path& folder, std::uint32_t objects,
                      Measure measure)
 {
     enter_own_network();
-    ::unsetenv("CYCLONEDDS_URI"); // As for the programs.
+    ::unsetenv("CYCLONEDDS_URI"); // The environment is that of the programs.
     auto host = ShowingHost::start(kDomain, files, objects);
     return measure(*host, folder).dump();
 }
 
-/// Of some hundred faces or more, each a little larger than the one before.
+/// Scene of at least `faces` faces, each slightly larger than the one before.
 const Scene& wire_scene(const CaseContext& context, std::uint32_t number, std::uint32_t faces)
 {
     return context.scenes.get(
@@ -131,7 +131,7 @@ struct WireCase
     std::uint32_t models;
     std::uint32_t objects;
     Measure measure;
-    /// A row of each figure, with its goal.
+    /// Row of a figure, with its goal.
     struct Figure
     {
         const char* key;
@@ -191,7 +191,7 @@ Json measure_joins(ShowingHost& host, const std::filesystem::path& folder)
     const double single_bytes = Joiners::join(folder, "single", 1, all_objects()).bytes();
     for (const bool moves : {false, true})
     {
-        std::this_thread::sleep_for(2s); // Those that were killed are gone.
+        std::this_thread::sleep_for(2s); // Killed processes are gone by then.
         host.move(moves ? kMoving : 0);
         const auto all = Joiners::join(folder, moves ? "loaded" : "all", kJoiners, all_objects());
         told[moves ? kLoaded : kTogether] = all.longest_ms() * 1e-3;
@@ -208,14 +208,15 @@ constexpr const char* kFarModel = "a far model at the start";
 constexpr const char* kLoop = "hrtc with 256 guests, until its loop begins";
 constexpr const char* kWhole = "hrtc with 256 whole models, until its loop begins";
 
-/// From the start of the program to the line that tells what it touches, in ms.
+/// Time from the program's start to its line about objects, in ms.
 double start_of_hrtc(const std::filesystem::path& folder, const std::vector<std::string>& arguments)
 {
     ProgramSetup setup;
     setup.words = {program_path("hrtc"),       "--allow-no-rt", "--domain",
                    fmt::format("{}", kDomain), "--duration",    "1"};
     setup.words.insert(setup.words.end(), arguments.begin(), arguments.end());
-    setup.output = folder / fmt::format("hrtc-{}.log", arguments.size()); // A fresh one.
+    // A new file for each count.
+    setup.output = folder / fmt::format("hrtc-{}.log", arguments.size());
     const auto begin = BenchClock::now();
     auto started = Program::start(setup);
     started.wait_for("touches", kJoinTimeout);
@@ -244,11 +245,11 @@ struct GuestCase
 {
     std::uint32_t models;
     std::uint32_t objects;
-    std::uint32_t visits; ///< Of objects, one after the other.
+    std::uint32_t visits; ///< Objects visited, in turn.
     const char* pool_mib;
 };
 
-/// A scene file in the folder, of small objects on a grid that show the files in turn.
+/// Writes a scene file of small objects on a grid, which show the files in turn.
 std::filesystem::path write_scene(const Files& files, double diagonal_m, std::uint32_t objects,
                                   const std::filesystem::path& folder)
 {
@@ -274,7 +275,7 @@ std::filesystem::path write_scene(const Files& files, double diagonal_m, std::ui
     return path;
 }
 
-/// A hand at 2 m/s over 20 ms, in pools that don't hold all models.
+/// A device moves at 2 m/s with 20 ms delay, in pools that do not hold all models.
 void run_guest_case(const CaseContext& context, const GuestCase& test_case)
 {
     Files files;

@@ -40,7 +40,7 @@ test::TestModel described(const std::string& name, const PreparedMesh& prepared)
     return model;
 }
 
-/// Everything that an encoded file depends on: the mesh on its grid and the encoder.
+/// Name from all inputs of an encoded file: the mesh on its grid and the encoder.
 std::string encoded_name(const std::string& name, const PreparedMesh& prepared)
 {
     const ContentHash positions = content_hash(std::as_bytes(std::span(prepared.mesh.positions)));

@@ -25,13 +25,14 @@ namespace tactus::bench
 
 inline constexpr std::size_t kMiB = std::size_t{1} << 20U;
 
-/// Where a scene's mesh comes from.
+/// Source of a scene's mesh.
 struct SceneSource
 {
     const char* name;
-    const char* mesh_file;        ///< In TACTUS_MESHES; null: always the stand-in.
-    std::uint32_t subdivisions;   ///< Each face into four, so often; then noise, when not 0.
-    std::uint32_t stand_in_faces; ///< Of the bumpy sphere that stands in for it.
+    const char* mesh_file; ///< File in TACTUS_MESHES; null: always the stand-in.
+    /// Number of subdivisions of each face into four; then noise, unless 0.
+    std::uint32_t subdivisions;
+    std::uint32_t stand_in_faces; ///< Faces of the bumpy sphere that replaces a missing mesh.
 };
 
 inline constexpr SceneSource kTiny{"tiny", nullptr, 0, 4'000};
@@ -44,7 +45,7 @@ inline constexpr SceneSource kFineIgea{"igea-4.3M", "igea.ply", 2, 4'300'000};
 /// Noise of a subdivided mesh: uniform, up to this share of the mean edge length at the vertex.
 inline constexpr double kNoiseShare = 0.05;
 
-/// A model on disk and the true mesh that it was made of.
+/// Model on disk with its true source mesh.
 struct Scene
 {
     test::TestModel model;
@@ -59,31 +60,31 @@ struct NamedMesh
     TriangleMesh mesh;
 };
 
-/// A mesh whose lengths are `scale` times as large.
+/// Mesh with all lengths multiplied by `scale`.
 [[nodiscard]] TriangleMesh scaled(TriangleMesh mesh, double scale);
-/// A mesh's faces in single precision, in a frame whose origin lies there in the mesh's own.
+/// Faces of a mesh in single precision, relative to `origin` of the mesh frame.
 [[nodiscard]] std::vector<test::Face> faces_of(const TriangleMesh& mesh,
                                                const std::array<double, 3>& origin = {});
 
-/// The well-known mesh where it is at hand, a generated stand-in of about its size elsewhere, which
-/// its name says.
+/// Well-known mesh if available, otherwise a generated stand-in of about its size, marked in the
+/// name.
 [[nodiscard]] NamedMesh source_mesh(const SceneSource& source);
-/// A whole model; a failure when anything in it is damaged.
+/// Whole model; a failure if any part is damaged.
 [[nodiscard]] DecodedModel decode_all(const ModelStore& store);
-/// The finest mesh of at most so many faces that a model has, or its base mesh.
+/// Finest mesh of a model with at most `faces` faces, or its base mesh.
 [[nodiscard]] NamedMesh coarser_mesh(const std::string& name, const test::TestModel& model,
                                      std::uint32_t faces);
 
-/// Makes scenes when they are first asked for and keeps them. Encoded models go into the cache
-/// folder, under a name made of the mesh and of the encoder's sources, or into a folder that goes
-/// when the store goes. Encoding takes about 20 us a face on all cores.
+/// Scenes, made at the first request and kept. Encoded models are stored in the cache folder, named
+/// after the mesh and the encoder's sources, or in a folder that is removed with the store.
+/// Encoding takes about 20 us a face on all cores.
 class SceneStore
 {
 public:
     explicit SceneStore(std::filesystem::path cache);
 
     [[nodiscard]] const Scene& get(const SceneSource& source);
-    /// The scene of this mesh, in metres, on a grid of so many bits; its name stands for both.
+    /// Scene of this mesh, in metres, on a grid of `position_bits`; the name identifies both.
     [[nodiscard]] const Scene& get(const NamedMesh& named,
                                    std::uint32_t position_bits = kMinPositionBits);
 
@@ -91,7 +92,7 @@ private:
     [[nodiscard]] std::unique_ptr<Scene> make(const NamedMesh& named,
                                               std::uint32_t position_bits) const;
 
-    std::optional<test::TemporaryFolder> own_folder_; ///< Without a cache.
+    std::optional<test::TemporaryFolder> own_folder_; ///< Folder if there is no cache.
     std::filesystem::path folder_;
     std::map<std::string, std::unique_ptr<Scene>> scenes_;
 };

@@ -16,7 +16,7 @@ namespace
 constexpr std::chrono::milliseconds kMoveEvery{10};
 constexpr double kStep_m = 0.001; ///< 0.1 m/s.
 
-/// On a grid.
+/// Grid position.
 Pose place_of(std::uint32_t object)
 {
     Pose pose;

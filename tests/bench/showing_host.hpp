@@ -15,11 +15,11 @@
 namespace tactus::bench
 {
 
-/// A host in a thread of its own, that shows objects and moves some of them 100 times a second.
+/// Model server in its own thread, which shows objects and moves some of them 100 times a second.
 class ShowingHost
 {
 public:
-    /// Serves these files as "model-0" and so on; the objects, in the scene "bench", show them in
+    /// Serves these files as "model-0" and so on; the objects in the scene "bench" show them in
     /// turn.
     [[nodiscard]] static std::unique_ptr<ShowingHost>
     start(std::uint32_t domain, const std::vector<std::filesystem::path>& files,
@@ -28,7 +28,7 @@ public:
     ShowingHost(const ShowingHost&) = delete;
     ShowingHost& operator=(const ShowingHost&) = delete;
 
-    /// So many move from now on, the first ones.
+    /// Number of objects that move from now on, the first ones.
     void move(std::uint32_t objects) { moving_ = objects; }
 
 private:

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// Simplification beside the peers: the same mesh on its integer grid, the same number of faces.
+/// Simplification compared with the peers: the same mesh on its integer grid, the same number of
+/// faces.
 
 #include "host_tools/mesh/prepare.hpp"
 #include "host_tools/simplify/simplify.hpp"
@@ -19,12 +20,12 @@ namespace tactus::bench
 namespace
 {
 
-/// To how many faces a mesh is simplified.
+/// Target of the simplification: one face of this many.
 constexpr std::uint32_t kOneFaceIn = 100;
 constexpr double kSharpAngle_deg = 40.0;
 constexpr unsigned kFeaturePoints = 10'000;
 
-/// A mesh in quanta: what everybody's result is measured in.
+/// Mesh in quanta, the unit of all results.
 TriangleMesh on_grid(const QuantisedMesh& mesh)
 {
     TriangleMesh made;
@@ -37,7 +38,7 @@ TriangleMesh on_grid(const QuantisedMesh& mesh)
     return made;
 }
 
-/// Ours, with certificate and collapses; building the adjacency is in its time.
+/// Our simplifier, with certificate and collapses; building the adjacency is in its time.
 template <unsigned kThreads>
 SimplifiedMesh simplify_by_us(const QuantisedMesh& mesh, std::uint32_t faces)
 {
@@ -62,7 +63,7 @@ std::vector<Segment> edges_of(const TriangleMesh& mesh, Feature feature)
                                              : std::vector<Segment>{};
 }
 
-/// FNV-1a over the faces' corners: what was timed is looked at.
+/// FNV-1a over the faces' corners, so that the timed result is used.
 std::uint64_t hash_of(const TriangleMesh& mesh)
 {
     std::uint64_t hash = 0xCBF2'9CE4'8422'2325;
@@ -76,7 +77,7 @@ std::uint64_t hash_of(const TriangleMesh& mesh)
     return hash;
 }
 
-/// Measures simplified versions of one mesh and turns them into rows.
+/// Measures simplified versions of one mesh and adds their rows.
 class Comparison
 {
 public:
@@ -109,7 +110,7 @@ private:
     TriangleMesh original_;
     std::vector<Segment> features_;
     double diagonal_quanta_;
-    std::uint32_t samples_; ///< Of each surface.
+    std::uint32_t samples_; ///< Samples of each surface.
     SurfaceReference reference_;
 };
 

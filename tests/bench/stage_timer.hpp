@@ -11,18 +11,18 @@
 namespace tactus::bench
 {
 
-/// Takes the time at the end of each stage.
+/// Measures the time at the end of each stage.
 class StageTimer
 {
 public:
     void begin() { last_ = BenchClock::now(); }
     [[nodiscard]] StageMark mark() { return {&end_stage, this}; }
     [[nodiscard]] double us(Stage stage) const { return us_[static_cast<std::size_t>(stage)]; }
-    /// Of all stages.
+    /// Sum of all stages.
     [[nodiscard]] double sum_us() const { return std::accumulate(us_.begin(), us_.end(), 0.0); }
 
 private:
-    // Reads a clock, and no more.
+    // Reads a clock, nothing else.
     TACTUS_TRUSTED_BEGIN
     static void end_stage(void* context, Stage stage) noexcept TACTUS_NONBLOCKING
     {

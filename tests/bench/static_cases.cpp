@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The queries of a static model: one probe in the touching motion, beside the peers, over trees
-/// that hold the whole mesh.
+/// Queries of a static model: one sphere in the touching motion, compared with the peers, over
+/// trees of the whole mesh.
 
 #include "tests/bench/cases.hpp"
 #include "tests/bench/measuring.hpp"
@@ -19,7 +19,7 @@ namespace
 {
 
 constexpr double kStaticNear_diag = 2.0 * kRadius_diag;
-/// Ours is exact to rounding; the peers work in float on coordinates of about a diagonal.
+/// Tolerances: ours is exact to rounding, the peers use float on coordinates of about a diagonal.
 constexpr double kOurTolerance_diag = 1e-9;
 constexpr double kStaticTolerance_diag = 2e-6;
 constexpr std::uint32_t kColdFrames = 1'000;
@@ -39,7 +39,7 @@ Questions touch_questions(const CaseContext& context, const Scene& scene)
     return ask(scene, touch_motion(scene.touch(), frames));
 }
 
-/// Ours and the peers' times for the same questions; ours first.
+/// Times for the same questions; ours first, then the peers'.
 std::vector<QueryTimes> time_all(const CaseContext& context, TactusQuery& ours,
                                  const std::vector<std::unique_ptr<PointQuery>>& peers,
                                  const Scene& scene, const Questions& questions, double band_m)
@@ -58,8 +58,8 @@ std::vector<QueryTimes> time_all(const CaseContext& context, TactusQuery& ours,
     return all;
 }
 
-/// A line of rows: our quantiles beside the first peer's, whose share is the goal; the other peers
-/// get rows of their own.
+/// Adds our quantiles and the first peer's, with the share as the goal; the other peers have their
+/// own rows.
 void add_against_peers(CaseRows& rows, const std::string& figure,
                        const std::vector<QueryTimes>& times,
                        const std::vector<std::unique_ptr<PointQuery>>& peers,
@@ -87,7 +87,7 @@ void add_against_peers(CaseRows& rows, const std::string& figure,
     rows.add(figure + ".raw_max", times[0].us.raw_max(), "us");
 }
 
-/// What a near question takes, the same on every machine.
+/// Adds the work of a near question, the same on every machine.
 void add_near_work(CaseRows& rows, TactusQuery& ours, const Questions& questions,
                    const std::vector<bool>& near, double band_m)
 {
@@ -113,7 +113,7 @@ void add_near_work(CaseRows& rows, TactusQuery& ours, const Questions& questions
     rows.add("T_Q near, triangles", triangles / asked, "a question");
 }
 
-/// Near questions with the caches driven out before each; rehearsed or not.
+/// Times of near questions with evicted caches, optionally warmed.
 Spread cold_spread(TactusQuery& ours, const Questions& questions, const std::vector<bool>& near,
                    double band_m, bool rehearsed)
 {

@@ -15,9 +15,9 @@ namespace tactus::bench
 namespace
 {
 
-/// Far beyond what any query here needs: nothing is to be cut short.
+/// Budget beyond the needs of all queries here, so that none is truncated.
 constexpr std::uint32_t kUnlimited = std::numeric_limits<std::uint32_t>::max();
-/// Memory for a whole model: pages 100, faces and tree 110, tables and the usual shares the rest.
+/// Memory of a whole model: pages 100, faces and tree 110, tables and the usual shares the rest.
 constexpr std::size_t kBytesPerFace = 400;
 
 } // namespace
@@ -29,10 +29,10 @@ std::size_t ample_pool_bytes(const Scene& scene)
 
 std::size_t static_pool_bytes(const Scene& scene)
 {
-    const auto store = ModelStore::open(scene.model.path); // Its scene was made of it.
+    const auto store = ModelStore::open(scene.model.path); // The scene was made from it.
     const ModelHeader& header = store.value().header();
     const ModelCounts counts = header.counts();
-    // What belongs to no model, and the courier.
+    // Memory that belongs to no model, and the loader.
     const std::size_t beside =
         (std::size_t{1} << 20U) + Courier::required_bytes(counts.chunks(), counts.index_pages());
     std::size_t bytes = 64 * scene.model.faces.size();
@@ -50,7 +50,7 @@ std::size_t static_pool_bytes(const Scene& scene)
 namespace
 {
 
-/// What a record depends on is split first. False when one can't be split or the tree has no room.
+/// Splits all records, dependencies first. False if one cannot be split or the tree is full.
 bool refine_fully(Model& model)
 {
     std::vector<RecordId> open;

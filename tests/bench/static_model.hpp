@@ -14,18 +14,18 @@
 namespace tactus::bench
 {
 
-/// Pools for all of a scene's model.
+/// Pools for a scene's whole model.
 [[nodiscard]] std::size_t ample_pool_bytes(const Scene& scene);
 
-/// The least pools in which all of a scene's model fits, within 2 %: what static mode takes.
+/// Smallest pools that hold a scene's whole model, within 2 %: the memory of static mode.
 [[nodiscard]] std::size_t static_pool_bytes(const Scene& scene);
 
-/// A rig with pools for all of a scene's model, refined to the source mesh without a frame; a
-/// failure when it can't be. The pools of `options` don't count.
+/// Rig with pools for a scene's whole model, refined to the source mesh without a frame; a failure
+/// if that is impossible. The pools of `options` are ignored.
 [[nodiscard]] std::unique_ptr<test::FrameRig> refined_rig(const Scene& scene,
                                                           test::RigOptions options = {});
 
-/// A model refined to the source mesh: the tree that every query of a static model sees.
+/// Model refined to the source mesh: the tree of all static queries.
 class StaticModel
 {
 public:
@@ -33,7 +33,7 @@ public:
 
     [[nodiscard]] AbTree& tree() const { return model().tree; }
     [[nodiscard]] Model& model() const { return rig_->model(); }
-    /// Of its pools, tables and records included, without the room that nothing is in.
+    /// Bytes in use of its pools, tables and records included.
     [[nodiscard]] std::size_t bytes() const
     {
         return required_bytes({&model().header, 1}, {&model().capacities, 1});
@@ -43,8 +43,8 @@ private:
     std::unique_ptr<test::FrameRig> rig_;
 };
 
-/// The controller's distance query over a static model, as a contestant. One probe: it keeps where
-/// the last answer was found.
+/// Distance query over a static model, as a contestant with one sphere. It remembers the place of
+/// the last answer.
 class TactusQuery final : public TouchQuery
 {
 public:
@@ -56,11 +56,11 @@ public:
     [[nodiscard]] Vec3 nearest_m() const override { return nearest_m_; }
     void forget() override { memory_ = {}; }
 
-    /// The last question once more, into scratch memory and by the same machine code: what a loop
-    /// does in the wait before its deadline.
+    /// Repeats the last question into scratch memory with the same machine code, as a loop does in
+    /// the wait before its deadline.
     void rehearse();
 
-    /// Of all questions so far.
+    /// Counts over all questions so far.
     [[nodiscard]] std::uint64_t nodes_visited() const { return nodes_visited_; }
     [[nodiscard]] std::uint64_t triangles_tested() const { return triangles_tested_; }
 

@@ -9,10 +9,10 @@
 namespace tactus::bench
 {
 
-/// The tool of all tours follows its hand at this times the tour's speed.
+/// Proxy speed limit of all tours, relative to the tour's speed.
 inline constexpr double kTourFollow = 1.5;
 
-/// Splits and merges that a tour's frames may make.
+/// Splits and merges of a tour's frames.
 [[nodiscard]] constexpr std::uint32_t tour_splits(double speed_diag_per_s)
 {
     return speed_diag_per_s < 1.0 ? 64 : 128;
@@ -26,7 +26,7 @@ struct PredictionCase
     double cache_mib;
     double tremor_diag{0.0};
 };
-/// A tour with each way to foretell, in virtual time.
+/// A tour with each prediction method, in virtual time.
 void run_prediction_case(const CaseContext& context, const PredictionCase& test_case);
 
 struct CacheCase
@@ -35,8 +35,8 @@ struct CacheCase
     double small_mib;
     double larger_mib;
 };
-/// The four regimes of figure 5 of the 3DIM 2005 paper: no cache, a small one, a larger one, all of
-/// the model.
+/// The four regimes of figure 5 of the 3DIM 2005 paper: no cache, a small one, a larger one, the
+/// whole model.
 void run_cache_case(const CaseContext& context, const CacheCase& test_case);
 
 /// Goals in percent of the frames, counts and milliseconds.
@@ -45,13 +45,13 @@ struct TourCase
     SceneSource scene;
     double speed_diag_per_s;
     double cache_mib;
-    double delay_ms; ///< Each way; negative: on loopback.
+    double delay_ms; ///< Delay each way; negative: loopback.
     double loss{0.0};
     double open_max{kNoGoal};
     double late_taps_max{kNoGoal};
     double arrival_p99_ms{kNoGoal};
 };
-/// spm_publish and hrtc, whole programs, over DDS: a tour.
+/// A tour with the whole programs spm_publish and hrtc over DDS.
 void run_tour_case(const CaseContext& context, const TourCase& test_case);
 
 struct FirstTouchCase
@@ -61,7 +61,7 @@ struct FirstTouchCase
     double payload_kb{kNoGoal};
     double time_ms{kNoGoal};
 };
-/// Whole programs: hrtc starts in touch and knows nothing of the model but its header and base.
+/// Whole programs: hrtc starts in touch, with only the model's header and base mesh.
 void run_first_touch_case(const CaseContext& context, const FirstTouchCase& test_case);
 
 struct ThroughputCase
@@ -69,7 +69,7 @@ struct ThroughputCase
     SceneSource scene;
     double mb_per_s;
 };
-/// spm_publish and one client on loopback, as fast as pieces come.
+/// spm_publish and one client on loopback, as fast as chunks arrive.
 void run_throughput_case(const CaseContext& context, const ThroughputCase& test_case);
 
 struct FanOutCase
@@ -77,7 +77,7 @@ struct FanOutCase
     SceneSource scene;
     std::uint32_t clients;
     double rate_hz;
-    bool stops_one; ///< Halfway one of them is stopped as by SIGSTOP.
+    bool stops_one; ///< One client is stopped halfway, like by SIGSTOP.
     double p99_ms{kNoGoal};
 };
 /// spm_publish and many clients on loopback, each at a rate.
@@ -86,10 +86,11 @@ void run_fan_out_case(const CaseContext& context, const FanOutCase& test_case);
 struct BesideDdsCase
 {
     SceneSource scene;
-    bool is_beside; ///< A client in another thread of the process asks as fast as pieces come.
+    /// A client in another thread of the process requests as fast as chunks arrive.
+    bool is_beside;
 };
-/// A slide's frames: the same states and counters whatever DDS does beside them. For counting
-/// instructions each takes one pass with --count.
+/// Frames of a slide: states and counters are the same with and without DDS traffic. With --count,
+/// each takes one pass.
 void run_beside_dds_case(const CaseContext& context, const BesideDdsCase& test_case);
 
 } // namespace tactus::bench

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// stream_client: the transport of a controller without the rest of it. Asks a host for chunks at a
-/// rate, or as fast as they come, and tells how long they took.
+/// stream_client: the transport of a controller without the rest. Requests chunks at a rate, or as
+/// fast as they arrive, and prints the times.
 
 #include "platform/program/command_line.hpp"
 #include "platform/program/run_program.hpp"
@@ -27,7 +27,7 @@ struct Options
     std::string model;
     std::string name{"client"};
     std::uint32_t domain{0};
-    double rate_hz{0.0}; ///< 0: as fast as they come.
+    double rate_hz{0.0}; ///< Rate; 0: as fast as chunks arrive.
     double seconds{5.0};
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// A publisher and many clients on loopback: how much, how many, and what it does to frames.
+/// A publisher and many clients on loopback: throughput, number of clients, and effect on frames.
 
 #include "tests/bench/asking_client.hpp"
 #include "tests/bench/frame_replay.hpp"
@@ -42,7 +42,7 @@ Program start_client(const std::filesystem::path& folder, std::uint32_t number, 
                      fmt::format("{}", rate_hz), "--seconds", fmt::format("{}", seconds)});
 }
 
-/// What it says at its end.
+/// Final report of a client.
 Json client_report(Program& client, const std::filesystem::path& folder, std::uint32_t number)
 {
     client.wait();
@@ -88,7 +88,7 @@ void run_throughput_case(const CaseContext& context, const ThroughputCase& test_
 void run_fan_out_case(const CaseContext& context, const FanOutCase& test_case)
 {
     constexpr double kSeconds = 10.0;
-    constexpr double kServedGoal = 95.0; // The last ones are on their way at the end.
+    constexpr double kServedGoal = 95.0; // The last chunks are in transit at the end.
     const Scene& scene = context.scenes.get(test_case.scene);
     const test::TemporaryFolder folder("fan-out");
     const auto host = publish(scene, {}, folder.path());
@@ -139,14 +139,14 @@ void run_fan_out_case(const CaseContext& context, const FanOutCase& test_case)
 namespace
 {
 
-/// Asks a host for pieces in a thread of its own while it lives.
+/// Requests chunks in its own thread while it exists.
 class Flood
 {
 public:
     static std::unique_ptr<Flood> begin()
     {
         auto flood = std::make_unique<Flood>();
-        ::unsetenv("CYCLONEDDS_URI"); // As for the programs on loopback.
+        ::unsetenv("CYCLONEDDS_URI"); // The environment is that of the programs on loopback.
         flood->client_ = needed(dds::DdsClient::create(dds_domain(), "flood", {}));
         flood->model_ = needed(flood->client_->find({"model", std::nullopt}, kStartTimeout));
         flood->asking_.emplace(flood->model_, 0.0);
@@ -164,7 +164,7 @@ public:
             thread_.join();
         }
     }
-    /// Ends it; what it moved, in MB/s.
+    /// Ends the thread; returns the throughput in MB/s.
     [[nodiscard]] double end()
     {
         stop_ = true;

@@ -17,10 +17,10 @@ namespace
 
 constexpr std::uint32_t kTaps = 40;
 constexpr std::uint32_t kQuickTaps = 6;
-/// How much more of the frames the automatic choice may leave open than the best way.
+/// Frames that the automatic choice may leave open beyond the best method.
 constexpr double kAutomaticGoal = 2.0;
 
-/// Pools beside the pages: enough that they are never what is short.
+/// Pools besides the pages, large enough not to limit.
 constexpr std::size_t kFacePool_bytes = std::size_t{4} << 20U;
 
 StreamRun make_run(const Scene& scene, const TapTour& tour, double speed_diag_per_s,

@@ -8,7 +8,7 @@ namespace tactus::bench
 namespace
 {
 
-/// Reloads closer together than this are of one burst.
+/// Reloads closer together belong to one burst.
 constexpr std::uint64_t kBurstFrames = 500;
 
 bool is_settled(AnswerKind kind)

@@ -15,21 +15,22 @@
 namespace tactus::bench
 {
 
-/// What streaming did for a tour.
+/// Result of streaming for a tour.
 struct StreamFigures
 {
     std::uint64_t frames{0};
     std::uint64_t exact{0};
-    std::uint64_t open{0};    ///< Frames whose answer was neither exact nor decided.
+    std::uint64_t open{0};    ///< Frames with neither an exact nor a separated answer.
     std::uint64_t waiting{0}; ///< Frames in which the proxy waited for data.
     std::uint64_t taps{0};
-    std::uint64_t late_taps{0}; ///< Their first frame in touch was open, or the proxy waited.
-    std::uint64_t hits{0};      ///< Looks at wanted chunks that were here.
-    std::uint64_t misses{0};    ///< Wishes.
+    /// Taps whose first frame in touch was open or had a waiting proxy.
+    std::uint64_t late_taps{0};
+    std::uint64_t hits{0};   ///< Lookups of wanted chunks that were resident.
+    std::uint64_t misses{0}; ///< Requests.
     std::uint64_t loads{0};
-    std::uint64_t reloads{0};       ///< Of chunks that were here before.
-    std::uint64_t reload_bursts{0}; ///< Runs of reloads without half a second's rest in them.
-    std::uint64_t bytes{0};         ///< Coded.
+    std::uint64_t reloads{0};       ///< Reloads of chunks that were resident before.
+    std::uint64_t reload_bursts{0}; ///< Sequences of reloads without a pause of half a second.
+    std::uint64_t bytes{0};         ///< Coded bytes.
     std::uint64_t hash{0};
 
     [[nodiscard]] double percent(std::uint64_t count) const
@@ -42,13 +43,13 @@ struct StreamFigures
     }
 };
 
-/// Counts what frames did, one after another.
+/// Counts the results of consecutive frames.
 class StreamCounter
 {
 public:
     explicit StreamCounter(const TapTour& tour) : tour_(tour) {}
 
-    /// The output of a tour's next frame.
+    /// Adds the output of a tour's next frame.
     void add(const FrameOutput& output);
     [[nodiscard]] const StreamFigures& figures() const { return figures_; }
 
@@ -61,7 +62,7 @@ private:
     std::uint64_t burst_ends_{0};
 };
 
-/// A tour over a model whose pieces come so many frames after they were asked for.
+/// Tour over a model whose chunks arrive a fixed number of frames after their request.
 struct StreamRun
 {
     const Scene& scene;

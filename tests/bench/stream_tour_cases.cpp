@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// spm_publish and hrtc, whole programs, on loopback and across two networks with a delay between
-/// them.
+/// The whole programs spm_publish and hrtc on loopback and across two networks with a delay.
 
 #include "platform/recording/replay.hpp"
 #include "tests/bench/published.hpp"
@@ -31,7 +30,7 @@ constexpr std::uint32_t kQuickTourTaps = 3;
 constexpr double kFacePool_mib = 4.0;
 constexpr double kKilo = 1e3;
 
-/// A file that hrtc's replay device plays: the tool at these places of the model's frame.
+/// Writes a file for hrtc's replay device: the tool at these positions of the model frame.
 void write_motion(const CaseContext& context, const Scene& scene, const std::vector<Vec3>& goals_m,
                   const std::filesystem::path& file)
 {
@@ -55,7 +54,7 @@ void write_motion(const CaseContext& context, const Scene& scene, const std::vec
     }
 }
 
-/// Either both ends on loopback or each in a network of its own.
+/// Both ends on loopback, or each in its own network.
 struct Place
 {
     std::optional<RelayedNetworks> networks;
@@ -83,7 +82,7 @@ struct HrtcRun
     std::size_t frames{0};
 };
 
-/// Plays motion.rec and leaves out.rec; returns the report.
+/// Plays motion.rec and writes out.rec; returns the report.
 Json run_hrtc(const Scene& scene, const NetworkEnd& end, const HrtcRun& run,
               const std::filesystem::path& folder)
 {
@@ -117,7 +116,7 @@ Json run_hrtc(const Scene& scene, const NetworkEnd& end, const HrtcRun& run,
     return Json::parse(report);
 }
 
-/// Calls `look` with what each frame of out.rec returned.
+/// Calls `look` with each frame's output in out.rec.
 void look_at_frames(const std::filesystem::path& folder,
                     const std::function<void(const FrameOutput&)>& look)
 {
@@ -194,7 +193,7 @@ void run_first_touch_case(const CaseContext& context, const FirstTouchCase& test
     std::uint64_t first_exact = 0;
     std::uint64_t loads = 0;
     std::uint64_t hash = 0;
-    // What a run costs that asks for nothing comes off.
+    // The cost of a run without requests is subtracted.
     for (const bool touches : {false, true})
     {
         const std::vector<Vec3> goals_m(kFrames, touches ? touching_m : away_m);

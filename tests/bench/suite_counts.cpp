@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The suite `counts`: what frames do on three fixed scenes that need no mesh from elsewhere, in
-/// counts that are the same on every machine; no times. Under callgrind, instructions as well:
-/// counts.py.
+/// Suite `counts`: work of frames on three fixed scenes without external meshes, as counts that are
+/// the same on every machine; no times. Under callgrind also instructions, see counts.py.
 
 #include "tests/bench/frame_replay.hpp"
 #include "tests/bench/static_model.hpp"
@@ -20,7 +19,7 @@ namespace
 constexpr SceneSource kLarger{"larger", nullptr, 0, 60'000};
 constexpr std::uint32_t kFrames = 2'000;
 
-/// A proxy slides, everything streams and comes 10 ms late.
+/// Slide with a proxy; all chunks stream and arrive 10 ms late.
 FrameRun slide(const Scene& scene)
 {
     FrameRun run = make_slide(scene, 0.5, 64, kMiB, kFrames);
@@ -57,7 +56,8 @@ void run_count_case(const CaseContext& context, const CountCase& test_case)
     common.frames = run.counted();
     common.hash = replay.hash();
     CaseRows rows(context.rows, common);
-    // Those before the slide included, as callgrind counts them; all else is of the counted ones.
+    // Includes the frames before the slide, which callgrind counts; all other figures are of the
+    // counted ones.
     rows.add("frames in all", static_cast<double>(run.goals_m.size()), "");
     const WorkCounters& work = replay.work().counters;
     rows.add("splits", work.splits, "");

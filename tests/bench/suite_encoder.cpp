@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The suite `encoder`: our encoder on well-known and on nasty meshes, beside the peers that
-/// simplify. Which meshes, and what is to be reached on each.
+/// Suite `encoder`: our encoder on well-known and on difficult meshes, compared with the peers that
+/// simplify. Lists the meshes with their goals.
 
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/bench/encoder_cases.hpp"
@@ -48,7 +48,7 @@ MakeMesh uv_sphere(std::uint32_t rings, std::uint32_t segments)
     };
 }
 
-/// What is asked of every mesh.
+/// Goals of every mesh.
 EncoderGoals usual_goals()
 {
     EncoderGoals goals;
@@ -61,7 +61,7 @@ EncoderGoals usual_goals()
     return goals;
 }
 
-/// What is asked of the well-known meshes besides; nothing of those that stand in for them.
+/// Additional goals of the well-known meshes; none for their stand-ins.
 EncoderGoals known_goals()
 {
     EncoderGoals goals = usual_goals();
@@ -81,7 +81,7 @@ EncoderGoals with_size(EncoderGoals goals, double bytes_per_face, double fine_by
     return goals;
 }
 
-/// From a million faces on: what is fixed no longer hides what grows.
+/// Goals from a million faces on, where fixed costs no longer hide the growth.
 EncoderGoals large_goals()
 {
     EncoderGoals goals = with_size(usual_goals(), 4.3, 5.1);
@@ -127,8 +127,8 @@ std::vector<EncoderMesh> all_meshes()
     };
 }
 
-/// The parts of the suite in the order in which they run. Files first: the processes that measure
-/// memory begin with what this one has.
+/// Parts of the suite in their order. Files are first, since processes that measure memory inherit
+/// ours.
 constexpr std::array kEncoderParts{measure_files, compare_simplifiers, measure_bounds};
 
 void run_mesh(const CaseContext& context, const EncoderMesh& mesh)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The suite `error_time`: run time against error.
+/// Suite `error_time`: run time against error.
 
 #include "host_tools/encode/extract.hpp"
 #include "tests/bench/answer_errors.hpp"
@@ -27,17 +27,17 @@ namespace
 constexpr double kSpeed_diag_per_s = 0.5;
 constexpr std::uint32_t kSplits = 64;
 constexpr std::uint32_t kLatency_ms = 4;
-/// The rows that can't be held against the peers'.
+/// Part of the rows that cannot be compared with the peers'.
 constexpr const char* kOthers = "Other motions and models";
-/// What a tool asks for round itself: a little more than its radius and what it moves in a frame.
+/// Reach of a tool in radii: slightly more than its radius and its motion in a frame.
 constexpr double kReach = 1.1;
 
 struct ErrorTimeCase
 {
     SceneSource scene;
-    double pool_mib; ///< Of the settings that vary something else.
+    double pool_mib; ///< Pools of the settings that vary something else.
 };
-/// One way to run ours: what differs from the usual.
+/// One configuration of ours: its differences from the usual one.
 struct Setting
 {
     std::string name;
@@ -46,14 +46,14 @@ struct Setting
     double speed_diag_per_s{kSpeed_diag_per_s};
     double radius_diag{kRadius_diag};
 
-    /// Asked where the peers are.
+    /// True if the peers have the same motion.
     [[nodiscard]] bool is_of_the_motion() const
     {
         return speed_diag_per_s == kSpeed_diag_per_s && radius_diag == kRadius_diag;
     }
 };
 
-/// What stands in the table for one point of the plane.
+/// Figures of one point of the plane.
 struct ErrorTimeFigures
 {
     std::string name;
@@ -64,7 +64,7 @@ struct ErrorTimeFigures
 
 void set_latency(FrameRun& run, std::uint32_t latency_ms)
 {
-    run.rig.courier_steps_per_frame = 1; // So a poll is a frame.
+    run.rig.courier_steps_per_frame = 1; // One poll is one frame.
     run.rig.faults.delay_polls_min = run.rig.faults.delay_polls_max = latency_ms;
 }
 
@@ -123,7 +123,7 @@ Setting with_latency(std::uint32_t latency_ms, double loss, bool is_quick)
             }};
 }
 
-/// Nothing streams: the tool's first frames load and refine all of it.
+/// Nothing streams: the tool's first frames load and refine the whole model.
 Setting whole_model()
 {
     return {"whole model, static", true,
@@ -134,7 +134,7 @@ Setting whole_model()
             }};
 }
 
-/// `pool_mib`: the usual pools.
+/// All settings; `pool_mib` is the usual size of the pools.
 std::vector<Setting> all_settings(double pool_mib)
 {
     return {{"usual", true},
@@ -169,7 +169,7 @@ std::vector<Vec3> counted(const std::vector<Vec3>& goals_m)
     return {goals_m.begin() + kApproachFrames, goals_m.end()};
 }
 
-/// Counted points of a slide with these figures, and what they truly are.
+/// Counted points of a slide with these figures, and their truth.
 class Slides
 {
 public:
@@ -193,7 +193,7 @@ private:
     std::map<std::pair<double, double>, std::optional<TrueAnswers>> known_;
 };
 
-/// What double precision rounds is no error.
+/// Rounding of double precision is not an error.
 double beyond_rounding(double error)
 {
     constexpr double kRounding = 1e-12;
@@ -258,7 +258,7 @@ public:
         }
         if (context_.options.count)
         {
-            return; // Ours alone.
+            return; // Figures of ours only.
         }
         const auto decoded = decode_all(needed(ModelStore::open(scene_.model.path)));
         const std::size_t whole = scene_.model.faces.size();
@@ -301,7 +301,7 @@ private:
         }
     }
 
-    /// A model of so many bits, judged by the mesh that it was made of: what rounding costs.
+    /// Model of `bits`, judged by its source mesh: the cost of rounding.
     void run_position_bits(std::uint32_t bits)
     {
         auto named = source_mesh(test_case_.scene);
@@ -317,7 +317,7 @@ private:
         measure(scene, setting, truth, kOthers);
     }
 
-    /// The tool is where `truth` was asked.
+    /// Measures a setting; the tool is at the points of `truth`.
     ErrorTimeFigures measure(const Scene& scene, const Setting& setting, const TrueAnswers& truth,
                              const char* part)
     {
@@ -326,7 +326,7 @@ private:
         std::ranges::copy(truth.questions().points_m, run.goals_m.begin() + kApproachFrames);
         ToolSpec& tool = run.rig.tools[0];
         tool.radius_m = truth.radius_m();
-        tool.passes_through = true; // It is where the peers are asked.
+        tool.passes_through = true; // The tool is at the peers' points.
         set_latency(run, kLatency_ms);
         setting.change(run);
         if (run.rig.static_when_it_fits)
@@ -345,7 +345,7 @@ private:
         return figures;
     }
 
-    /// Frames at the first goal, not counted: some records a frame, everything twice over.
+    /// Adds uncounted frames at the first position, twice as many as refinement needs.
     void stay_until_all_is_there(FrameRun& run) const
     {
         const std::size_t frames = 2 * scene_.model.faces.size() / kSplits + 1'000;
@@ -380,7 +380,7 @@ private:
         }
     }
 
-    /// Whether some setting of ours is as right and as small in at most twice the time.
+    /// Adds whether some setting of ours is as accurate and small in at most twice the time.
     void add_verdict(CaseRows& rows, const ErrorTimeFigures& peer) const
     {
         constexpr double kSlower = 2.0;
@@ -407,12 +407,12 @@ private:
     const Scene& scene_;
     std::uint32_t frames_;
     Slides slides_;
-    std::vector<ErrorTimeFigures> ours_; ///< Of the motion that the peers are asked about.
+    std::vector<ErrorTimeFigures> ours_; ///< Figures of the motion that the peers share.
 };
 
-/// A measuring tool slides over the model. For every setting of ours, and for every peer over the
-/// whole mesh and over coarser ones that our own simplifier makes of it: time against error,
-/// memory and bytes on the wire.
+/// A query-only tool slides over the model. Time against error, memory and bytes on the wire, for
+/// every setting of ours, and for every peer over the whole mesh and over coarser ones of our
+/// simplifier.
 void run_error_time_case(const CaseContext& context, const ErrorTimeCase& test_case)
 {
     const Scene& scene = context.scenes.get(test_case.scene);

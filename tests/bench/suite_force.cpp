@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The suite `force`: forces on a surface where they are known (docs/benchmarks.md). A
-/// device sweeps round the bumpy sphere, held 1 mm below where the proxy's centre rests.
+/// Suite `force`: forces on a surface where they are known (docs/benchmarks.md). A device sweeps
+/// around the bumpy sphere, 1 mm below the rest position of the proxy's centre.
 
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/bench/body_cases.hpp"
@@ -29,16 +29,17 @@ namespace
 
 constexpr double kDepth_m = 1e-3;
 constexpr double kStiffness_n_per_m = 1'000.0;
-/// The device's, for all sweeps alike; beyond the fastest, as the ways over bumps and edges are.
+/// Proxy speed limit of all sweeps, above the fastest one, since paths over bumps and edges are
+/// longer.
 constexpr double kSpeedMax_m_per_s = 1.5;
-/// So much that nothing is clamped: errors show in full.
+/// Limit so high that nothing is clamped and errors show in full.
 constexpr double kForceMax_n = 1'000.0;
-/// What a force may be off beside the mesh's own error, as a share of it.
+/// Allowed error of a force besides the mesh's own error, as a share of it.
 constexpr double kTolerance = 0.02;
-/// Goals in newtons hold up to this speed.
+/// Goals in newtons are valid up to this speed.
 constexpr double kGoalSpeed_m_per_s = 0.3;
 
-/// A speed, and the goals of the stage's and the frame's p99: 2 mm on the finest mesh.
+/// A speed with the goals of the stage's and the frame's p99: 2 mm on the finest mesh.
 struct SpeedCase
 {
     double speed_m_per_s;
@@ -47,12 +48,12 @@ struct SpeedCase
 };
 constexpr std::array<SpeedCase, 4> kSpeeds{
     {{0.02, 7.0, 20.0}, {0.1, 12.0, 20.0}, {0.3, 16.0, 20.0}, {1.0, 22.0, 40.0}}};
-/// With friction, likewise.
+/// Speeds with friction, and the goals.
 constexpr double kFriction = 0.3;
 constexpr double kDynamicShare = 0.8;
 constexpr std::array<SpeedCase, 2> kRoughSpeeds{{{0.3, kNoGoal, 35.0}, {1.0, kNoGoal, 60.0}}};
-/// Faster than a hand on a surface is as a rule, and a device that lets the proxy be so fast. Then
-/// the hand slows.
+/// Speed above the usual one of a hand on a surface, with a device that permits it to the proxy.
+/// Then the hand slows down.
 constexpr SpeedCase kFast{3.0, kNoGoal, kNoGoal};
 constexpr double kSlow_m_per_s = 1.0;
 constexpr std::uint32_t kSlowFrames = 200;
@@ -68,8 +69,8 @@ struct MeshCase
     double error_p99_n{kNoGoal};
     bool has_goals{true};
 };
-/// On a grid of 16 bits, 2 um, the corners' rounding alone turns the faces of the finest mesh by
-/// some 10 mrad; with 20 bits by less than one.
+/// On a grid of 16 bits, 2 um, rounding of the corners alone rotates the faces of the finest mesh
+/// by about 10 mrad; with 20 bits by less than one.
 constexpr std::array<MeshCase, 6> kMeshes{{{"5k", When::always, 5'120, 16},
                                            {"20k", When::always, 20'480, 16},
                                            {"82k", When::always, 81'920, 16, 0.1},
@@ -97,7 +98,7 @@ NamedMesh bumpy_mesh(std::uint32_t faces, std::uint32_t bits, double scale)
             scaled(make_shape(Shape::bumpy_sphere, faces).value(), scale)};
 }
 
-/// The points of a sweep in the frame of a scene that is `scale` times as large.
+/// Points of a sweep in the frame of a scene that is `scale` times as large.
 std::vector<Vec3> in_model(const std::vector<Vec3>& points_m, const Scene& scene, double scale)
 {
     const auto& origin = scene.model.origin_m;
@@ -123,7 +124,7 @@ ForceRun make_run(const Scene& scene, const Sweep& sweep, const Touch& touch, do
     return run;
 }
 
-/// Whether the mesh and the ball are those that times have goals for.
+/// True if goals of times exist for the mesh and the sphere.
 bool is_timed(const SweepContext& context, double radius_m)
 {
     return context.mesh.name == std::string(kFinest) && radius_m > 1e-3;
@@ -157,7 +158,7 @@ void run_sweep(const SweepContext& context, double radius_m, const SpeedCase& sp
     const ForceRun run = make_run(context.scene, sweep, touch, 1.0);
     const auto trace = replay_forces(run, context.options.passes_or(5, 3));
     const ForceGoals goals = goals_of(context, touch, speed);
-    // The ball may be one period behind the device, and off by what the mesh is.
+    // The sphere may be one period behind the device, and off by the error of the mesh.
     const double lag_m = step_m + context.faceting.force_error_n(touch) / touch.stiffness_n_per_m +
                          kTolerance * touch.depth_m;
     const ForceFigures figures = measure_forces(
@@ -176,8 +177,7 @@ void run_sweep(const SweepContext& context, double radius_m, const SpeedCase& sp
     context.coarser[{speed_m_per_s, radius_m}] = figures.error_n.p99;
 }
 
-/// A sweep whose true force is not known: under friction, or with a hand that leaves the proxy
-/// behind.
+/// Sweep without a known true force: with friction, or with a device that outruns the proxy.
 void run_felt_sweep(const SweepContext& context, const SpeedCase& speed, double friction,
                     double speed_max_m_per_s)
 {
@@ -259,8 +259,8 @@ void run_mesh(const CaseContext& of_case, const MeshCase& mesh, CoarserErrors& c
     }
 }
 
-/// The forces of one sweep on the coarsest mesh when all lengths are `scale` times as large and the
-/// stiffness as much smaller.
+/// Forces of one sweep on the coarsest mesh with all lengths multiplied by `scale` and the
+/// stiffness divided by it.
 ForceTrace scaled_forces(SceneStore& scenes, std::uint32_t frames, double scale)
 {
     const Touch touch{kRadii_m[0], kDepth_m, kStiffness_n_per_m};
@@ -270,8 +270,8 @@ ForceTrace scaled_forces(SceneStore& scenes, std::uint32_t frames, double scale)
     return replay_forces(make_run(scene, sweep, touch, scale), 1);
 }
 
-/// A power of two changes no bit. Any other factor rounds differently: corners by a part in 2^24 of
-/// the box, which with what the proxy tolerates stays below a thousandth of the force.
+/// A power of two changes no bit. Any other factor rounds differently: corners by one part in 2^24
+/// of the box, which with the proxy's tolerances stays below a thousandth of the force.
 void run_units(const CaseContext& context)
 {
     const std::uint32_t frames = context.options.frames_or(10'000, 2'000);

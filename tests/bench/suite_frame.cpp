@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The suite `frame`: the goals' table. What each case is, and its goals; how they are measured is
-/// in the cases' own files.
+/// Suite `frame`: the goals' table. Lists the cases with their goals; the cases' own files measure
+/// them.
 
 #include "tests/bench/measuring.hpp"
 #include "tests/bench/suites.hpp"
@@ -18,7 +18,7 @@ void run_clock_case(const CaseContext& context)
     CaseRows(context.rows, context.common_row("none")).add("two readings", clock_cost_us(), "us");
 }
 
-/// What the pages call the goals' table, row by row.
+/// Rows of the goals' table, in order.
 std::vector<Case> frame_cases()
 {
     const auto frame = [](const char* name, When when, const FrameCase& test_case)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The suite `growth`: how costs grow with the model.
+/// Suite `growth`: growth of the costs with the model.
 
 #include "host_tools/encode/write_spm.hpp"
 #include "host_tools/mesh/prepare.hpp"
@@ -28,7 +28,7 @@ constexpr double kGrowthSpeed_diag_per_s = 0.5;
 constexpr std::uint32_t kGrowthSplits = 128;
 constexpr std::size_t kPool_bytes = 8 * kMiB;
 
-/// A model's faces, and the splits that a frame made on it.
+/// Faces of a model, and splits of a frame on it.
 struct Size
 {
     double n;
@@ -40,7 +40,7 @@ struct Figure
 {
     const char* name;
     const char* unit;
-    double (*law)(const Size& size); ///< What it should follow, up to a factor.
+    double (*law)(const Size& size); ///< Expected law, up to a factor.
     std::vector<double> values{};
 };
 
@@ -54,14 +54,14 @@ double linear(const Size& size)
     return size.n;
 }
 
-/// The bound of the 3DIM 2005 paper for k faces that change together.
+/// Law of the 3DIM 2005 paper for k faces that change together.
 double clustered(const Size& size)
 {
     return size.k * (std::log2(size.n) - std::log2(size.k) + 2.0);
 }
 
-/// The tool covers a share of the surface, and each frame it comes to a share that is new: what is
-/// done there grows with n, what leads there with log n.
+/// Figures with their laws. The tool covers a share of the surface, a new one in each frame: the
+/// work there grows with n, the path to it with log n.
 std::vector<Figure> all_figures()
 {
     return {{"frame p50", "us", linear},
@@ -89,7 +89,7 @@ std::pair<double, double> encode(const NamedMesh& named)
                      static_cast<double>(std::filesystem::file_size(path)));
 }
 
-/// Scaled to go through the middle of the points, in the sense of the geometric mean.
+/// Law, scaled to pass through the geometric mean of the points.
 std::vector<double> fitted_law(const Figure& figure, const std::vector<Size>& sizes)
 {
     std::vector<double> law;
@@ -104,7 +104,7 @@ std::vector<double> fitted_law(const Figure& figure, const std::vector<Size>& si
     return law;
 }
 
-/// What all figures are at one size.
+/// All figures at one size.
 struct SizeFigures
 {
     Size size;
@@ -137,7 +137,7 @@ SizeFigures measure(const CaseContext& context, std::uint32_t faces, std::uint32
                         encoded.second * 1e-6}};
 }
 
-/// The exponent b of the power law a n^b with the least squares of the logarithms.
+/// Exponent b of the power law a n^b, by least squares of the logarithms.
 double fitted_exponent(const std::vector<double>& n, const std::vector<double>& values)
 {
     const auto count = static_cast<double>(n.size());
@@ -159,11 +159,12 @@ double fitted_exponent(const std::vector<double>& n, const std::vector<double>& 
 
 struct GrowthLawCase
 {
-    std::vector<std::uint32_t> quick_faces; ///< Of bumpy spheres, ascending.
-    std::vector<std::uint32_t> faces;       ///< Without --quick.
+    /// Faces of the bumpy spheres in quick runs, ascending.
+    std::vector<std::uint32_t> quick_faces;
+    std::vector<std::uint32_t> faces; ///< Faces without --quick.
 };
-/// What a slide costs on one surface of more and more faces, what encoding it does, and the
-/// exponent of each figure: that of n in the power law that fits it best.
+/// Cost of a slide and of encoding on one surface with increasing numbers of faces, and the
+/// exponent of n for each figure in the power law of best fit.
 void run_growth_law_case(const CaseContext& context, const GrowthLawCase& test_case)
 {
     const std::uint32_t frames = context.options.frames_or(3'000, 500);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The suite `peers`: the same work for our queries and for those of the libraries that a user
-/// could take instead. Without peers in the build, ours alone.
+/// Suite `peers`: the same work for our queries and for those of alternative libraries. Without
+/// peers in the build, ours alone.
 
 #include "tests/bench/peer_cases.hpp"
 #include "tests/bench/suites.hpp"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The suite `scene`: what a touch costs among many objects, and what a scene at rest does; with
-/// the largest error of what is said of distances, against all objects.
+/// Suite `scene`: cost of a touch among many objects and of a scene at rest, with the greatest
+/// error of the reported distances against all objects.
 
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/bench/instruction_count.hpp"
@@ -29,11 +29,11 @@ namespace tactus::bench
 namespace
 {
 
-/// How a scene goes without a shortcut.
+/// Variant of a scene without a shortcut.
 struct WithoutShortcut
 {
     const char* name;
-    bool FrameVariant::*shortcut; ///< Null: with all.
+    bool FrameVariant::*shortcut; ///< Shortcut to leave out; null: none.
 };
 constexpr std::array<WithoutShortcut, 5> kWithoutShortcut{
     {{"all shortcuts", nullptr},
@@ -46,15 +46,16 @@ struct SceneCase
 {
     std::uint32_t objects;
     std::uint32_t tools;
-    std::uint32_t moving;                    ///< Objects that move a little in each frame.
-    const WithoutShortcut* without{nullptr}; ///< Null: with all, and nothing to compare.
+    std::uint32_t moving; ///< Objects that move a little in each frame.
+    /// Variant; null: all shortcuts, and nothing to compare.
+    const WithoutShortcut* without{nullptr};
 };
 
 constexpr SceneSource kObject{"bumpy-20k", nullptr, 0, 20'000};
-/// Between the middles of neighbours, in diagonals: none touches another.
+/// Distance between the centres of neighbours in diagonals: none touches another.
 constexpr double kApart_diag = 1.5;
 constexpr double kSlide_diag_per_s = 0.5;
-/// How many frames pass between two looks at all distances.
+/// Frames between two checks of all distances.
 constexpr std::uint32_t kJudgedEvery = 97;
 
 /// Objects on a grid, the touched one at its corner.
@@ -86,9 +87,9 @@ public:
         goals_m_ = slide_motion(scene.touch(), kSlide_diag_per_s, frames);
     }
 
-    /// Every frame once, timed, or with a look at the truth now and then, which leaves the caches
-    /// cold: the first tool touches the first object, the others are still between
-    /// four objects; or all are still.
+    /// Runs every frame once, timed, or with occasional checks of the truth, which evict the
+    /// caches. The first tool touches the first object while the others rest between four objects;
+    /// or all rest.
     void run(bool touches, std::size_t frames, LeastTimes* us)
     {
         test::FrameRig rig(scene_.model, options_);
@@ -130,14 +131,14 @@ public:
 
     [[nodiscard]] double error_m() const { return error_m_; }
     [[nodiscard]] std::uint64_t hash() const { return hash_; }
-    /// Of the times, those of frames in which the last run's first tool was in contact.
+    /// Times of frames in which the last run's first tool was in contact.
     [[nodiscard]] std::vector<double> touching(const std::vector<double>& times_us) const
     {
         return chosen(times_us, touching_);
     }
 
 private:
-    /// The last ones, to and fro.
+    /// Moves the last objects to and fro.
     void move(test::FrameRig& rig, std::size_t frame)
     {
         const auto objects = static_cast<std::uint32_t>(options_.objects.size());
@@ -151,7 +152,7 @@ private:
         }
     }
 
-    /// A failure when a bracket or a clearance doesn't hold.
+    /// Checks bounds and clearances; a failure if one does not hold.
     void judge(const test::FrameRig& rig, const FrameOutput& output)
     {
         for (std::uint32_t tool = 0; tool < output.tools.size(); ++tool)
@@ -195,11 +196,11 @@ private:
     test::RigOptions options_;
     std::vector<Vec3> goals_m_;
     double error_m_{0.0};
-    std::vector<bool> touching_; ///< By frame.
+    std::vector<bool> touching_; ///< Contact flags by frame.
     std::uint64_t hash_{0};
 };
 
-/// What one more object takes from the pools.
+/// Bytes of one more object in the pools.
 double bytes_an_object(std::uint32_t tools)
 {
     const std::vector<ToolSpec> specs(tools);
@@ -311,7 +312,8 @@ std::vector<Case> scene_cases()
     }
     for (const WithoutShortcut& without : kWithoutShortcut)
     {
-        const SceneCase test_case{kMaxPairs / 4, 4, 0, &without}; // All may be near each tool.
+        // All objects may be near each tool.
+        const SceneCase test_case{kMaxPairs / 4, 4, 0, &without};
         cases.push_back(
             make_case(fmt::format("{} objects, 4 tools, {}", test_case.objects, without.name),
                       When::always, run_scene_case, test_case));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The suite `skip`: what each of a frame's shortcuts saves, off one at a time and all off; exact
-/// answers stay the same to the bit, or the case fails.
+/// Suite `skip`: savings of each shortcut of a frame, disabled one at a time and together. Exact
+/// answers must stay the same to the bit, or the case fails.
 
 #include "tests/bench/frame_replay.hpp"
 #include "tests/bench/instruction_count.hpp"
@@ -19,7 +19,7 @@ namespace tactus::bench
 namespace
 {
 
-/// How a frame goes without a shortcut.
+/// Variant of a frame without a shortcut.
 struct Without
 {
     const char* name;
@@ -33,8 +33,8 @@ void keep_splits(FrameRun& run)
     run.budgets.scanned = 0;
 }
 
-/// Also without certificates: every face within a radius in which, on these scenes, nearly every
-/// answer is exact.
+/// Radius, in place of certificates, that includes every face; nearly every answer on these scenes
+/// is exact in it.
 constexpr double kFixedRadius = 1.5;
 
 constexpr std::array<Without, 14> kWithout{{
@@ -75,11 +75,12 @@ struct SkipCase
 {
     SceneSource scene;
     double pool_mib;
-    std::uint32_t models; ///< One object each; the tool touches the first.
+    std::uint32_t models; ///< Models with one object each; the tool touches the first.
     Without without;
 };
 
-/// From the touched object to the next, farther than the tool ever is from the first.
+/// Distance from the touched object to the next, greater than any distance of the tool from the
+/// first.
 constexpr double kModelsApart_diag = 4.0;
 
 std::string name_of(const SkipCase& test_case)
@@ -89,17 +90,17 @@ std::string name_of(const SkipCase& test_case)
                : fmt::format("{}, {} models", test_case.scene.name, test_case.models);
 }
 
-/// Half flight, half touch: a shortcut may be for either.
+/// Half flight, half touch, since a shortcut may be for either.
 FrameRun make_run(const CaseContext& context, const SkipCase& test_case, const Scene& scene)
 {
     constexpr std::uint32_t kSplits = 64;
-    constexpr double kSpeed_diag_per_s = 2.0; // As fast as the flight.
+    constexpr double kSpeed_diag_per_s = 2.0; // Speed of the flight.
     const std::uint32_t frames = context.options.frames_or(2 * kCycleFrames, kCycleFrames);
     FrameRun run = make_slide(scene, kSpeed_diag_per_s, kSplits,
                               static_cast<std::size_t>(test_case.pool_mib * 0x1p20), 1);
     run.goals_m = touch_motion(scene.touch(), frames);
     run.lead_in = 0;
-    run.rig.tools[0].passes_through = true; // The same way whatever is known.
+    run.rig.tools[0].passes_through = true; // The path does not depend on known data.
     run.rig.courier_steps_per_frame = 1;
     run.rig.faults.delay_polls_min = run.rig.faults.delay_polls_max = 10;
     run.models = test_case.models;
@@ -117,7 +118,8 @@ bool is_exact(const PairOutput& pair)
     return pair.kind == AnswerKind::exact;
 }
 
-/// A line when an answer that is exact both times is not the same, or too few are.
+/// Compares the answers; a failure if one that is exact both times differs, or if too few are
+/// exact.
 void compare(const std::vector<PairOutput>& usual, const std::vector<PairOutput>& other)
 {
     std::size_t exact = 0;
@@ -171,7 +173,7 @@ void run_skip_case(const CaseContext& context, const SkipCase& test_case)
              "");
     if (context.options.count)
     {
-        return; // The comparison's frames are not to be counted.
+        return; // The comparison's frames must not be counted.
     }
     const auto counted = count_instructions(context);
     if (counted)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The suite `stability`: what is claimed to hold always, tried as often as there is time for.
-/// Nothing is measured but errors; a claim that doesn't hold makes the program leave with code 1.
+/// Suite `stability`: claims that must always hold, tried as often as time permits. Only errors are
+/// measured; a violated claim causes exit code 1.
 
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/bench/suites.hpp"
@@ -33,35 +33,35 @@ namespace
 using test::TrialFigures;
 using Report = std::function<void(const TrialFigures&)>;
 
-/// How much of everything a run does.
+/// Amounts of work of a run.
 struct Sizes
 {
-    int kernel_cases;             ///< A class, of 15.
-    std::uint32_t bracket_frames; ///< A model and hardship.
-    std::uint32_t twin_frames;    ///< A model.
-    std::uint64_t operations;     ///< Splits and merges, a model.
-    std::uint32_t touches;        ///< Of test::kTouchFrames frames of 1 ms.
+    int kernel_cases;             ///< Cases of each of 15 classes.
+    std::uint32_t bracket_frames; ///< Frames for each model and hardship.
+    std::uint32_t twin_frames;    ///< Frames for each model.
+    std::uint64_t operations;     ///< Splits and merges for each model.
+    std::uint32_t touches;        ///< Touches of test::kTouchFrames frames of 1 ms.
     std::uint64_t press_frames;
-    std::uint32_t garbage_frames;   ///< A kind.
-    std::uint32_t mesh_frames;      ///< An object and hardship.
-    std::uint32_t mesh_twin_frames; ///< An object.
-    std::uint32_t proxy_frames;     ///< A model and hardship.
+    std::uint32_t garbage_frames;   ///< Frames for each kind.
+    std::uint32_t mesh_frames;      ///< Frames for each object and hardship.
+    std::uint32_t mesh_twin_frames; ///< Frames for each object.
+    std::uint32_t proxy_frames;     ///< Frames for each model and hardship.
     std::uint32_t closing_rounds;
-    std::uint32_t force_frames; ///< A model and hardship.
-    std::uint32_t scene_frames; ///< A hardship.
-    std::uint32_t rigid_frames; ///< A tool and object, of 15.
+    std::uint32_t force_frames; ///< Frames for each model and hardship.
+    std::uint32_t scene_frames; ///< Frames for each hardship.
+    std::uint32_t rigid_frames; ///< Frames for each of 15 combinations of tool and object.
 };
 
 constexpr Sizes kSized{200, 100, 2'000, 100'000, 100, 50'000, 4'000,
                        40,  150, 40,    10,      500, 400,    400};
-/// A million frames of brackets, of proxies without and with smooth normals, of rigid tools and
-/// cases of each kernel, ten million splits and merges, 24 hours of touching.
+/// A million frames of bounds, of proxies with and without force shading, and of rigid tools; a
+/// million cases of each kernel; ten million splits and merges; 24 hours of touching.
 constexpr Sizes kFull{67'000, 4'000,  25'000, 2'500'000, 43'200, 3'600'000, 100'000,
                       1'000,  25'000, 3'600,  1'000,     10'000, 20'000,    70'000};
 
 constexpr std::uint64_t kStabilitySeed = 20'261'600;
 
-/// What there is of well-known meshes; the largest in full runs only.
+/// Available well-known meshes; the largest in full runs only.
 std::vector<const test::TestModel*> known_models(bool full)
 {
     std::vector<const test::TestModel*> models;
@@ -123,7 +123,7 @@ void try_brackets(const Sizes& sizes, bool full, const Report& report)
     }
 }
 
-/// That the checks can fail: lying models, of which none may pass.
+/// Shows that the checks can fail: every model with false bounds must be found.
 void try_liars(const Sizes& sizes, bool /*full*/, const Report& report)
 {
     using test::lying_model;
@@ -171,7 +171,7 @@ void try_twins(const Sizes& sizes, bool full, const Report& report)
     }
 }
 
-/// Tools that are meshes: torus, gear and bumpy sphere, by turns.
+/// Mesh tools: torus, gear and bumpy sphere in turn.
 void try_meshes(const Sizes& sizes, bool full, const Report& report)
 {
     constexpr std::array<Shape, 3> kTools{Shape::torus, Shape::gear, Shape::bumpy_sphere};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The suite `starve`: what a tool in contact feels while others use up what they share.
+/// Suite `starve`: force on a tool in contact while others use up the shared budgets.
 
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/bench/measuring.hpp"

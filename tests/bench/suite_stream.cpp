@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The suite `stream`: prediction, cache and transport for a hand on a model that is larger than
-/// the controller's memory. What each case is, and its goals.
+/// Suite `stream`: prediction, cache and transport for a hand on a model larger than the
+/// controller's memory. Lists the cases with their goals.
 
 #include "tests/bench/stream_cases.hpp"
 #include "tests/bench/suites.hpp"

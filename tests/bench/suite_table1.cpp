@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The suite `table1`: the models of Table 1 of the 3DIM 2005 paper, encoded by us, and how high
-/// the AB-Tree over each is when it is fully refined.
+/// Suite `table1`: the models of Table 1 of the 3DIM 2005 paper, encoded by us, and the height of
+/// the fully refined AB-Tree over each.
 
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/bench/scenes.hpp"
@@ -46,7 +46,7 @@ NamedMesh bunny()
     return source_mesh(kBunny);
 }
 
-/// The finest mesh of so many faces that our own encoder makes of the public scan.
+/// Finest mesh of this many faces that our encoder makes of the public scan.
 NamedMesh small_bunny()
 {
     auto named = bunny();
@@ -79,8 +79,8 @@ std::uint32_t height_below(const AbTree& tree, TreeRef ref)
     return highest + 1;
 }
 
-/// Edges from the root down to the lowest face of the paper's binary tree, which must be active
-/// from each face up to the root; nothing when it isn't.
+/// Edges from the root down to the lowest face of the paper's binary tree. Every face must be
+/// active up to the root; otherwise empty.
 std::optional<std::uint32_t> binary_height(Model& model)
 {
     const std::vector<FaceId> order = test::faces_by_path(model);

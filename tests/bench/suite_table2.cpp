@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The suite `table2`: Table 2 of the 3DIM 2005 paper, a mesh that touches a mesh. The same motion
-/// against the whole object, its base mesh alone, and the object refined where the tool is.
+/// Suite `table2`: Table 2 of the 3DIM 2005 paper, a mesh that touches a mesh. The same motion
+/// against the whole object, its base mesh alone, and the object refined locally at the tool.
 
 #include "rt_core/math/vec3.hpp"
 #include "tests/bench/measuring.hpp"
@@ -24,23 +24,23 @@ namespace tactus::bench
 namespace
 {
 
-/// The motion's slide and turn together, and more.
+/// Speed limit, above the motion's slide and rotation together.
 constexpr double kFastest_diag_per_s = 0.5;
-/// Room for what the tool needs beside the object, and for tables.
+/// Memory of the tool's model and of tables.
 constexpr std::size_t kToolBytes = 8 * kMiB;
 constexpr double kActiveGoal_percent = 5.0;
 
 struct Table2Case
 {
     SceneSource scene;
-    std::size_t local_bytes; ///< Pools of the object that is refined locally, and of the tool.
+    std::size_t local_bytes; ///< Pools of the locally refined object and the tool.
     double refine_us{kNoGoal};
     double query_to_static{kNoGoal};
     double frame_to_static{kNoGoal};
     bool is_in_paper{false};
 };
 
-/// What the paper measured, in microseconds; its bunny has 37,576 faces.
+/// Times of the paper in microseconds; its bunny has 37,576 faces.
 struct PaperTimes
 {
     const char* by;
@@ -55,7 +55,7 @@ constexpr std::array kPaperTimes{
     PaperTimes{"local", Stage::refit, 1'800.0},
 };
 
-/// What one of the three is to reach.
+/// Goals of one of the three variants.
 struct Table2Goals
 {
     double refine_us{kNoGoal};
@@ -185,8 +185,8 @@ private:
         return 100.0 * static_cast<double>(open) / static_cast<double>(frames.answers.size());
     }
 
-    /// How far answers are off the object's own surface. One that is decided says that nothing is
-    /// within the skin. A failure when one that is to hold the truth doesn't.
+    /// Greatest error of answers against the object's own surface; a separated answer denies
+    /// contact within the skin. A failure if bounds that must hold the truth do not.
     [[nodiscard]] double largest_error_m(const PairRun& run, const PairFrames& frames,
                                          bool holds_truth) const
     {

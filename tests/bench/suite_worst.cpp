@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The suite `worst`: the most that a frame costs under motions made to cost much, for every kind
-/// of tool. With --instructions in instructions, which are the same on every machine.
+/// Suite `worst`: greatest cost of a frame under motions made to be expensive, for every kind of
+/// tool. With --instructions in instructions, which are the same on every machine.
 
 #include "tests/bench/instruction_count.hpp"
 #include "tests/bench/least_times.hpp"
@@ -28,11 +28,11 @@ struct Rate
 {
     const char* name;
     std::int64_t period_ns;
-    double instructions; ///< Goal.
+    double instructions; ///< Goal in instructions.
 };
 constexpr std::array<Rate, 2> kRates{{{"1 kHz", 1'000'000, 600'000}, {"4 kHz", 250'000, 150'000}}};
 
-/// Most of a frame.
+/// Greatest amounts in a frame.
 struct MostWork
 {
     std::uint32_t splits{0};
@@ -54,7 +54,7 @@ struct MostWork
 class WorstReplay
 {
 public:
-    /// As hrtc does, a frame may take half of the period.
+    /// Replays with half of the period for each frame, like hrtc.
     WorstReplay(const WorstRun& run, std::int64_t period_ns)
         : run_(run), frame_us_(run.moments.size())
     {
@@ -69,7 +69,7 @@ public:
         budgets_.work = Budgets::work_of(period_ns / 2, times);
     }
 
-    /// A failure when the frames differ from those of an earlier pass.
+    /// A failure if the frames differ from those of an earlier pass.
     void run(std::uint32_t passes)
     {
         for (std::uint32_t pass = 0; pass < passes; ++pass)

@@ -60,7 +60,7 @@ std::optional<std::string> run_suite(const Suite& suite, const BenchOptions& opt
             one.run({suite.name, one.name, options, scenes, rows});
             check_hashes(std::span(rows).subspan(rows_before));
         }
-        catch (const std::exception& error) // A library's or the system's, too.
+        catch (const std::exception& error) // Includes exceptions of libraries and the system.
         {
             return fmt::format("{} {}: {}", suite.name, one.name, error.what());
         }

@@ -13,15 +13,15 @@
 namespace tactus::bench
 {
 
-/// A set of cases.
+/// Set of cases.
 struct Suite
 {
     const char* name;
-    /// In their order; those that only run when named included.
+    /// Cases in order, including those that only run if named.
     std::vector<Case> (*cases)();
-    /// Its goals are laws: the program leaves with code 1 when one isn't met, asked or not.
+    /// True if a missed goal always causes exit code 1, even without a request.
     bool always_checks{false};
-    /// What is printed unless every row is asked for.
+    /// Rows that are printed unless all are requested.
     Figures printed{Figures::all};
 };
 
@@ -41,18 +41,18 @@ struct Suite
 [[nodiscard]] Suite table2_suite();
 [[nodiscard]] Suite worst_suite();
 
-/// In the order in which they are told.
+/// All suites in the order of printing.
 [[nodiscard]] std::vector<Suite> all_suites();
 [[nodiscard]] std::optional<Suite> find_suite(const std::string& name);
 [[nodiscard]] std::vector<std::string> case_names(const Suite& suite);
 
-/// Runs the chosen cases, each on one core, and adds what they bring. Returns a line when a case
-/// failed, or measured a time whose result nothing looks at.
+/// Runs the chosen cases, each on one core, and adds their rows. Returns a line if a case failed,
+/// or timed a result that nothing uses.
 [[nodiscard]] std::optional<std::string> run_suite(const Suite& suite, const BenchOptions& options,
                                                    SceneStore& scenes, Rows& rows);
 
-/// A failure when a row has the time of frames but no hash over them: what was timed may then be
-/// nothing at all.
+/// A failure if a row has a time of frames without a hash over them, since nothing may have been
+/// timed.
 void check_hashes(std::span<const Row> rows);
 
 } // namespace tactus::bench

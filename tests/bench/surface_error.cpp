@@ -35,7 +35,7 @@ double area_of(const Corners& corners)
     return 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
 }
 
-/// 0 .. 1, three independent values for each index.
+/// Three independent values in 0 .. 1 for each index.
 double unit(std::uint64_t seed, std::uint64_t index, std::uint64_t which)
 {
     return 0.5 + 0.5 * test::signed_unit(seed, 3 * index + which);
@@ -51,7 +51,7 @@ Vec3 point_on(const Corners& corners, double s, double t)
     return corners[0] + s * (corners[1] - corners[0]) + t * (corners[2] - corners[0]);
 }
 
-/// Adds what the distances of points to a surface amount to.
+/// Adds the distances of points to a surface.
 void add_distances(const std::vector<Vec3>& points, const test::FaceTree& tree, SurfaceError& sum)
 {
     for (const Vec3& point : points)

@@ -13,20 +13,20 @@
 namespace tactus::bench
 {
 
-/// `count` points, at least one, of a mesh with an area: spread evenly by area, one at a random
-/// place of each equal share.
+/// `count` points, at least one, of a mesh with an area: one at a random place of each equal share
+/// of the area.
 [[nodiscard]] std::vector<Vec3> surface_samples(const TriangleMesh& mesh, std::uint32_t count,
                                                 std::uint64_t seed);
 
-/// How far two surfaces lie apart, in the meshes' unit.
+/// Distance between two surfaces, in the meshes' unit.
 struct SurfaceError
 {
     double rms{0.0};
     double max{0.0};
 };
 
-/// Measures other meshes against one: samples of each surface to the other surface, as many of
-/// both; the root of the mean square of all of them and the largest. Corners are rounded to float.
+/// Measures other meshes against one: as many samples of each surface to the other surface; root of
+/// the mean square and maximum. Corners are rounded to float.
 class SurfaceReference
 {
 public:
@@ -34,7 +34,7 @@ public:
     SurfaceReference(const SurfaceReference&) = delete;
     SurfaceReference& operator=(const SurfaceReference&) = delete;
 
-    /// About a microsecond a sample.
+    /// Error of the other mesh; about a microsecond a sample.
     [[nodiscard]] SurfaceError error_of(const TriangleMesh& other) const;
 
 private:

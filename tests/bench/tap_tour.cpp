@@ -48,10 +48,10 @@ public:
     }
 
 private:
-    /// Half a swing: where a slide is deepest.
+    /// Frame of the greatest depth of a slide: half a swing.
     static constexpr std::uint32_t kDeepest = test::SurfaceSlide::kSwingFrames / 2;
 
-    /// Straight to where it begins, then along the surface.
+    /// Moves straight to the start of the slide, then along the surface.
     void glide(double radius_diag, std::uint32_t first_frame, std::uint32_t steps)
     {
         go_to_distance(test::SurfaceSlide::wanted_distance_diag(radius_diag, first_frame));
@@ -70,7 +70,7 @@ private:
         }
     }
 
-    /// Straight to or from the nearest point of the surface.
+    /// Moves straight to or from the nearest point of the surface.
     void go_to_distance(double distance_diag)
     {
         const Vec3 from = goals_m_.back();

@@ -10,15 +10,15 @@
 namespace tactus::bench
 {
 
-/// How a hand goes round a model, tapping and sliding.
+/// Parameters of a tour around a model with taps and slides.
 struct TourManner
 {
     double speed_diag_per_s{0.5};
     std::uint32_t taps{40};
-    double tremor_m{0.0}; ///< Noise on each axis of each sample, uniform, up to this.
+    double tremor_m{0.0}; ///< Uniform noise on each axis of each sample, up to this.
 };
 
-/// A tour and the frames in which its taps meet the surface.
+/// Tour and the frames in which its taps meet the surface.
 struct TapTour
 {
     std::vector<Vec3> goals_m;
@@ -26,9 +26,9 @@ struct TapTour
 };
 
 /// Taps all over the model, each after a flight of a quarter of a second at 3 % of the diagonal
-/// above the surface and followed by a slide of half a second on it; everything, the way down
-/// included, at the manner's speed on average. Headings turn by up to 3 rad/s. Computed from the
-/// mesh alone, for a tool of kRadius_diag.
+/// above the surface, and followed by a slide of half a second. Everything, the descent included,
+/// is at the manner's speed on average. Headings change by up to 3 rad/s. Computed from the mesh
+/// alone, for a tool of kRadius_diag.
 [[nodiscard]] TapTour tap_tour(const TouchScene& scene, const TourManner& manner);
 
 } // namespace tactus::bench

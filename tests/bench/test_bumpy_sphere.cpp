@@ -17,7 +17,7 @@ namespace tactus::bench
 namespace
 {
 
-/// The formula of the page, by the C library's sine in long double.
+/// Formula of the page, with the C library's sine in long double.
 double value_by_hand(const Vec3& x)
 {
     const long double length = std::sqrt(static_cast<long double>(x.squaredNorm()));
@@ -29,7 +29,7 @@ double value_by_hand(const Vec3& x)
     return static_cast<double>(length - 0.05L * (1.0L + 0.02L * bumps));
 }
 
-/// The point of the surface in a direction, by bisection of the formula along the ray.
+/// Point of the surface in a direction, by bisection of the formula along the ray.
 Vec3 surface_by_hand(const Vec3& direction)
 {
     const Vec3 unit = direction.normalized();
@@ -53,8 +53,8 @@ Vec3 random_direction(test::Random& random)
     return direction.normalized();
 }
 
-/// Where a ball rests whose device pulls it to a goal, by trying directions: on each the place
-/// where the mesh first leaves room, of which the nearest counts.
+/// Rest position of a sphere that a device pulls to a goal, by trial: the nearest of the places at
+/// which each direction leaves the mesh.
 Vec3 rest_by_trial(const test::FaceTree& tree, const Vec3& goal, const Vec3& normal,
                    double radius_m)
 {
@@ -92,14 +92,14 @@ Vec3 rest_by_trial(const test::FaceTree& tree, const Vec3& goal, const Vec3& nor
     return place(best);
 }
 
-/// The bounds hold for a ball that rests where the mesh lets it, and are not far too large.
+/// The bounds hold for a sphere that rests on the mesh, and are not far too large.
 TEST(Faceting, bounds_the_force_of_a_ball_that_rests_on_the_mesh)
 {
     const std::vector<test::Face> faces = faces_of(make_shape(Shape::bumpy_sphere, 5'120).value());
     const test::FaceTree tree(faces);
     const Faceting sut = measure_faceting(faces, {});
     test::Random random(905);
-    // The device stays outside the mesh, where its distance alone tells where there is room.
+    // The device stays outside the mesh, where its distance alone determines the free space.
     const Touch touch{2e-3, 1.8e-3, 1'000.0};
     double farthest_m = 0.0;
     double worst_rad = 0.0;

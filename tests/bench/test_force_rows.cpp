@@ -16,7 +16,7 @@ namespace
 
 constexpr Touch kTouch{0.5e-3, 1e-3, 1'000.0};
 
-/// Ten frames on a plane, the ball always where it would rest.
+/// Ten frames on a plane, the sphere always at its rest position.
 struct PlaneTouch
 {
     PlaneTouch()
@@ -86,9 +86,9 @@ TEST(ForceRows, each_law_that_is_broken_misses_its_goal)
     sut.trace.outputs[2].frozen = true;
     EXPECT_EQ(missed(sut), 2U);
     sut.trace.outputs[9].force_n.x() = 0.2;
-    EXPECT_EQ(missed(sut), 5U); // p99 and maximum of ten, and the step.
+    EXPECT_EQ(missed(sut), 5U); // Missed: p99 and maximum of ten, and the step.
     sut.trace.outputs[9].force_n.x() = 1.1;
-    EXPECT_EQ(missed(sut), 6U); // And it is more than on the coarser mesh.
+    EXPECT_EQ(missed(sut), 6U); // Missed too: the error exceeds that on the coarser mesh.
     sut.trace.outputs[9].force_n.x() = std::numeric_limits<double>::quiet_NaN();
     EXPECT_EQ(missed(sut), 6U);
 }

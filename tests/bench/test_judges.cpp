@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// That what judges can find something: one that sees nothing wrong would show rows without a
-/// fault.
+/// Shows that the judges can find errors: one that finds none would show rows without a fault.
 
 #include "rt_core/math/infinity.hpp"
 #include "tests/bench/judged_queries.hpp"
@@ -56,12 +55,12 @@ TEST(Judges, of_nearest_points_see_those_beside_the_surface_and_those_too_far_aw
                                      {{Vec3(0, 0, 1)}, {1.0}}, tree);
     };
     EXPECT_EQ(error_of(Vec3(0, 0, 0), 1.0), 0.0);
-    EXPECT_DOUBLE_EQ(error_of(Vec3(0, 0, 2), 1.0), 2.0); // As near, but not on the surface.
+    EXPECT_DOUBLE_EQ(error_of(Vec3(0, 0, 2), 1.0), 2.0); // Equally near, but not on the surface.
     EXPECT_DOUBLE_EQ(error_of(Vec3(0, 0.75, 0), 1.0), 0.25);
-    EXPECT_EQ(error_of(Vec3(5, 5, 5), kInfinity), 0.0); // Nothing was told.
+    EXPECT_EQ(error_of(Vec3(5, 5, 5), kInfinity), 0.0); // No answer.
 }
 
-/// Three faces a side, the last of each a twin of the first; at two places.
+/// Three faces a side, the last of each equal to the first; at two places.
 TEST(Judges, of_pairs_count_what_is_planted)
 {
     const PairTruth truth{{{{0, 0}, {1, 1}}, {}}, {0.0, 0.5}, {0, 1, 0}, {0, 1, 0}};
@@ -74,7 +73,8 @@ TEST(Judges, of_pairs_count_what_is_planted)
 
     EXPECT_EQ(errors(PairQuestion::any).missed, 1U);
     EXPECT_EQ(errors(PairQuestion::any).invented, 1U);
-    EXPECT_EQ(errors(PairQuestion::all_pairs).missed, 0U); // The twins stand for the first faces.
+    // The duplicates stand for the first faces.
+    EXPECT_EQ(errors(PairQuestion::all_pairs).missed, 0U);
     EXPECT_EQ(errors(PairQuestion::contacts).invented, 2U);
     EXPECT_EQ(errors(PairQuestion::distance).largest_m, 0.25);
     answers.meeting[0].clear();

@@ -14,7 +14,7 @@ namespace tactus::bench
 namespace
 {
 
-/// Whether the answer is right for a question; on the band's edge either is.
+/// True if the answer is right for a question; either answer is right on the band's edge.
 bool is_right(double answer_m, double truth_m, double band_m, double tolerance_m)
 {
     if (std::isinf(answer_m))

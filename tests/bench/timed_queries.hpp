@@ -13,13 +13,13 @@
 namespace tactus::bench
 {
 
-/// The points of a motion and the true distances there.
+/// Points of a motion with their true distances.
 struct Questions
 {
     std::vector<Vec3> points_m;
     std::vector<double> truth_m;
 
-    /// Frames in which the probe's centre is within `distance_m`.
+    /// Frames in which the sphere's centre is within `distance_m`.
     [[nodiscard]] std::vector<bool> nearer_than(double distance_m) const;
 };
 [[nodiscard]] Questions ask(const Scene& scene, std::vector<Vec3> points_m);
@@ -27,12 +27,12 @@ struct Questions
 struct QueryTimes
 {
     LeastTimes us;
-    std::uint64_t hash{0}; ///< Over the answers' bits: they were used.
+    std::uint64_t hash{0}; ///< Hash of the answers' bits, so that they are used.
 };
 
-/// Asks one contestant all questions in turn, `passes` times. A failure when an answer is farther
-/// from the truth than `tolerance_m`, when one beyond the band is given or one within is not, and
-/// when passes differ.
+/// Asks one contestant all questions in turn, `passes` times. A failure if an answer differs from
+/// the truth by more than `tolerance_m`, if one beyond the band is given or one within it is
+/// missing, or if passes differ.
 [[nodiscard]] QueryTimes time_queries(PointQuery& query, const Questions& questions, double band_m,
                                       double tolerance_m, std::uint32_t passes);
 

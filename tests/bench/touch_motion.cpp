@@ -22,7 +22,7 @@ double smoothstep(double t)
     return t * t * (3.0 - 2.0 * t);
 }
 
-/// Straight, gently at both ends; ends at `to`.
+/// Straight motion to `to` with a smooth start and end.
 void move(std::vector<Vec3>& path, const Vec3& from, const Vec3& to, std::uint32_t frames)
 {
     for (std::uint32_t i = 1; i <= frames; ++i)
@@ -31,7 +31,7 @@ void move(std::vector<Vec3>& path, const Vec3& from, const Vec3& to, std::uint32
     }
 }
 
-/// Where a slide begins that is reached from `from`.
+/// Start of a slide that is reached from `from`.
 Vec3 slide_start(const TouchScene& scene, const Vec3& from)
 {
     const test::FaceTree::Nearest nearest = scene.tree.nearest(from);

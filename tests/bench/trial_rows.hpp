@@ -10,8 +10,8 @@
 namespace tactus::bench
 {
 
-/// The figures of one claim as rows: trials, worst error and violations; the latter two with goals
-/// that are met when the claim holds.
+/// Adds the figures of one claim: trials, worst error and violations; the goals of the latter two
+/// are met if the claim holds.
 void add_trial_rows(const test::TrialFigures& figures, const std::string& part, Rows& rows);
 
 } // namespace tactus::bench

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The bounding volume as a choice: the same faces in a tree of boxes and in one of 18-DOPs, asked
-/// and changed alike. Both run on the portable kernels, since the 18-DOP's loops have no others.
+/// Choice of the bounding volume: the same faces in a tree of boxes and in one of 18-DOPs, with the
+/// same queries and changes. Both use the portable kernels, since the 18-DOP's loops have no
+/// others.
 
 #include "rt_core/abtree/ab_tree.hpp"
 #include "rt_core/math/infinity.hpp"
@@ -25,7 +26,7 @@ namespace
 constexpr double kVolumeNear_diag = 2.0 * kRadius_diag;
 constexpr double kTolerance_diag = 1e-9;
 
-/// All of a model's faces as they are when it is fully refined, in the order of their ids.
+/// All faces of a fully refined model, in the order of their ids.
 std::vector<ChangedFace> faces_of(const Model& model)
 {
     std::vector<ChangedFace> faces;
@@ -40,7 +41,7 @@ std::vector<ChangedFace> faces_of(const Model& model)
     return faces;
 }
 
-/// A tree over all faces, and its memory.
+/// Tree over all faces, with its memory.
 template <typename Tree>
 class WholeTree
 {
@@ -62,7 +63,7 @@ public:
     }
 
     [[nodiscard]] Tree& tree() { return tree_; }
-    /// Of what is in use, not of the pools.
+    /// Memory in use, not that of the pools.
     [[nodiscard]] double used_mib() const
     {
         const double bytes =
@@ -109,16 +110,16 @@ private:
     test::NearestWalk<Tree> walk_;
 };
 
-/// What is measured of one volume.
+/// Figures of one volume.
 struct VolumeFigures
 {
     Spread near_us;
     Spread flight_us;
-    double visits{0.0}; ///< Nodes and blocks, in the mean of near questions.
+    double visits{0.0}; ///< Nodes and blocks, mean of the near questions.
     Spread refit_us;
     double node_bytes{0.0};
     double used_mib{0.0};
-    std::uint64_t hash{0}; ///< Of the answers: the same for every volume.
+    std::uint64_t hash{0}; ///< Hash of the answers, the same for every volume.
 };
 
 template <typename Tree>

@@ -21,7 +21,7 @@ namespace
 constexpr std::uint32_t kObjectFaces = 200'000;
 constexpr std::uint32_t kEqualFaces = 20'000;
 constexpr std::size_t kPoolBytes = 32 * kMiB;
-/// In this frame the force goes and the hand is deep in, or pages begin to come.
+/// Frame in which the force is lost while the hand is deep inside, or pages begin to arrive.
 constexpr std::uint32_t kSunkFrom = 24;
 constexpr double kPressed_m = 1e-3;
 constexpr double kSlide_m_per_s = 0.1;
@@ -31,7 +31,7 @@ constexpr std::uint32_t kCrowd = 32;
 constexpr double kCrowdScale = 0.2;
 constexpr double kCrowdHalf_m = 0.012;
 
-/// Seven teeth, and eight that they fit between: a tenth of a millimetre is free on each side.
+/// Teeth of one comb; the other has eight gaps for them, with 0.1 mm of clearance on each side.
 constexpr std::uint32_t kTeeth = 7;
 constexpr double kTooth_m = 2.4e-3;
 constexpr double kPitch_m = 5e-3;
@@ -39,7 +39,7 @@ constexpr std::uint32_t kCells = 5;
 constexpr std::uint32_t kFineCells = 40;
 constexpr double kCombTurn_rad_per_s = 1.0;
 
-/// Plates one over the other, round the origin.
+/// Plates stacked around the origin.
 TriangleMesh make_comb(std::uint32_t teeth, std::uint32_t cells)
 {
     const TriangleMesh tooth = make_thin_plate(cells, kTooth_m).value();
@@ -123,7 +123,7 @@ ToolSpec tool_of(const WorstCase& worst, double diagonal_m)
     return tool;
 }
 
-/// How far a tool that touches stands off, from its middle.
+/// Height of a touching tool's middle.
 double height_m(const WorstCase& worst, const ToolSpec& tool, double diagonal_m)
 {
     switch (worst.tool)
@@ -141,7 +141,7 @@ double height_m(const WorstCase& worst, const ToolSpec& tool, double diagonal_m)
     }
 }
 
-/// Places of hands over or in an object that is about a ball.
+/// Hand positions above or inside an object that is roughly a sphere.
 class Hands
 {
 public:
@@ -191,7 +191,7 @@ private:
         return Eigen::AngleAxisd(angle_rad, Vec3(1.0, 2.0, 2.0) / 3.0).toRotationMatrix();
     }
 
-    /// On a way round the object.
+    /// Position on a path around the object.
     [[nodiscard]] Vec3 along(double time_s, double above_m) const
     {
         const double angle_rad = kSlide_m_per_s * time_s / 0.05;
@@ -224,7 +224,7 @@ void add_crowd(test::RigOptions& rig, const Vec3& middle_m)
     }
 }
 
-/// The tools go, and come where the hands are.
+/// Removes the tools and adds them at the hands.
 std::vector<SceneChange> stall(std::uint32_t tools)
 {
     std::vector<SceneChange> changes;

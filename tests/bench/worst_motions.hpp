@@ -13,27 +13,27 @@
 namespace tactus::bench
 {
 
-/// Shapes of tools; lengths of those that slide over an object 0.1 m across.
+/// Shapes of tools; lengths of those that slide over an object of 0.1 m.
 enum class WorstTool : std::uint8_t
 {
-    ball,    ///< Of 10 mm: some 2,000 faces of a fine object are in its reach.
+    ball,    ///< Radius 10 mm: about 2,000 faces of a fine object are in its reach.
     capsule, ///< 40 mm long.
     box,     ///< 30 x 16 x 10 mm.
-    hull,    ///< A spike, 30 mm long.
-    mesh,    ///< A bumpy sphere of 980 faces, 0.15 diagonals of the object across.
+    hull,    ///< Spike, 30 mm long.
+    mesh,    ///< Bumpy sphere of 980 faces, 0.15 diagonals of the object across.
 };
 
-/// What is done to the frame. Tools are felt, but where it says that they measure: then they go
-/// where the hand is, and want contacts and all pairs of faces.
+/// Stress on the frame. Tools render forces, unless they are query-only: then they follow the hand
+/// and request contacts and all pairs of faces.
 enum class WorstMotion : std::uint8_t
 {
-    sinks,     ///< Touches; then without a force, as after a stall, deep in, where it turns.
-    waits,     ///< The same; no page comes while it touches, then all at once.
-    turns,     ///< Measures, deep in from the first frame, turning at 5 rad/s.
-    teleports, ///< Measures, each frame elsewhere on the surface.
-    in_crowd,  ///< Sinks among 32 objects that meet one another.
-    equals,    ///< A mesh in the very place of an object that is the same mesh.
-    in_comb,   ///< A comb's teeth between those of another, then through them.
+    sinks,     ///< Touches; then, without a force as after a stall, deep inside and rotating.
+    waits,     ///< The same; no page arrives while it touches, then all at once.
+    turns,     ///< Query-only tool, deep inside from the first frame, rotating at 5 rad/s.
+    teleports, ///< Query-only tool, elsewhere on the surface in each frame.
+    in_crowd,  ///< Sinks among 32 objects that overlap.
+    equals,    ///< A mesh in the pose of an object with the same mesh.
+    in_comb,   ///< Teeth of a comb between those of another, then through them.
 };
 
 struct WorstCase
@@ -42,10 +42,10 @@ struct WorstCase
     WorstTool tool;
     WorstMotion motion;
     bool measures{false};
-    std::uint32_t tools{1}; ///< All alike, on one spot.
+    std::uint32_t tools{1}; ///< Tools, all alike, at one place.
 };
 
-/// What one frame gets.
+/// Inputs of one frame.
 struct WorstMoment
 {
     std::vector<ToolState> tools;
@@ -53,7 +53,7 @@ struct WorstMoment
     bool is_delivered{true}; ///< The transport side works before the frame.
 };
 
-/// A scene and what becomes of it, frame by frame.
+/// Scene and its development, frame by frame.
 struct WorstRun
 {
     std::vector<const test::TestModel*> models;

@@ -10,10 +10,10 @@
 namespace tactus::bench
 {
 
-/// Bullet's contactPairTest() of a sphere with a btBvhTriangleMeshShape (quantised boxes, as most
-/// use it), asked for contacts within the band; the least distance that it tells. In float, the
-/// mesh scaled to a diagonal of 10: Bullet's tolerances are made for objects of some units. Without
-/// a band it would test every triangle.
+/// Bullet's contactPairTest() of a sphere with a btBvhTriangleMeshShape (quantised boxes, the usual
+/// choice), asked for contacts within the band; returns the least distance. The mesh is in float,
+/// scaled to a diagonal of 10, since Bullet's tolerances are for objects of some units. Without a
+/// band, every triangle would be tested.
 [[nodiscard]] std::unique_ptr<TouchQuery> make_bullet_query(const std::vector<test::Face>& faces,
                                                             double radius_m);
 

@@ -10,8 +10,8 @@
 namespace tactus::bench
 {
 
-/// CGAL's AABB_tree of triangles in double precision, Simple_cartesian<double>; the closest point
-/// with the last answer's as the hint, the first corner for the first question. It knows no band.
+/// CGAL's AABB_tree of triangles in double precision, Simple_cartesian<double>. The hint for the
+/// closest point is the last answer's, the first corner for the first question. No band.
 [[nodiscard]] std::unique_ptr<TouchQuery> make_cgal_query(const std::vector<test::Face>& faces,
                                                           double radius_m);
 

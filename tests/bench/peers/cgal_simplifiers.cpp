@@ -24,7 +24,7 @@ using Kernel = CGAL::Simple_cartesian<double>;
 using CgalMesh = CGAL::Surface_mesh<Kernel::Point_3>;
 using Quadrics = sms::GarlandHeckbert_plane_policies<CgalMesh, Kernel>;
 
-/// Its own stop predicates count edges.
+/// CGAL's own stop predicates count edges.
 struct StopAtFaces
 {
     std::uint32_t wanted;
@@ -75,7 +75,7 @@ TriangleMesh from_cgal(const CgalMesh& from)
     return mesh;
 }
 
-/// `collapse(mesh, stop)` is the call whose time counts.
+/// Simplifies by `collapse(mesh, stop)`, the only call that is timed.
 template <typename Collapse>
 SimplifiedMesh simplify(const QuantisedMesh& from, std::uint32_t faces, const Collapse& collapse)
 {

@@ -43,13 +43,13 @@ private:
     void check(const char* step) const;
 
     const std::vector<test::Face>& faces_;
-    std::atomic<std::ptrdiff_t> bytes_{0}; ///< Of the device: buffers and trees.
+    std::atomic<std::ptrdiff_t> bytes_{0}; ///< Bytes of the device: buffers and trees.
     Vec3 nearest_m_{0.0, 0.0, 0.0};
     RTCDevice device_;
     RTCScene scene_;
 };
 
-/// What one query knows; the callback's user pointer.
+/// State of one query, passed as the callback's user pointer.
 struct Search
 {
     const test::Face* faces{nullptr};

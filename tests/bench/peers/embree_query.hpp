@@ -10,9 +10,9 @@
 namespace tactus::bench
 {
 
-/// Embree's point query (rtcPointQuery) over a scene of triangles with shared vertices as separate
-/// corners, built at high quality by one thread. In float throughout, as its users have it. Its
-/// memory is what its device's monitor counts, which the heap knows a part of only.
+/// Embree's point query (rtcPointQuery) over a scene of triangles with separate corners, built at
+/// high quality by one thread, in float. Its memory is that of its device's monitor, since the heap
+/// counts only a part.
 [[nodiscard]] std::unique_ptr<TouchQuery> make_embree_query(const std::vector<test::Face>& faces,
                                                             double radius_m);
 

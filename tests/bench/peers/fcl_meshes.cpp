@@ -56,7 +56,7 @@ struct Mesh::Content
 {
     fcl::BVHModel<fcl::OBBRSSd> model;
 
-    /// The deepest of all contacts; none where nothing touches. FCL tells depths of spheres in
+    /// Deepest of all contacts; empty if nothing touches. FCL reports depths of spheres in
     /// triangles as negative numbers.
     [[nodiscard]] std::optional<Nearest> deepest(const fcl::Sphered& sphere,
                                                  const fcl::Transform3d& place) const

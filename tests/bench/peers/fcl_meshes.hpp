@@ -8,44 +8,43 @@
 #include <span>
 #include <vector>
 
-/// FCL behind plain numbers, in a shared library of its own: it needs Eigen as FCL's package was
-/// built with it, vectorised and aligned. Ours is not, so what FCL's headers define must not meet
-/// what ours do.
+/// FCL behind plain numbers, in a separate shared library: it needs Eigen vectorised and aligned,
+/// as in FCL's package. Our Eigen is not, so that definitions of FCL's headers must not meet ours.
 namespace tactus::bench::fcl_meshes
 {
 
 using Point = std::array<double, 3>;
 
-/// From a mesh's own frame into the other's.
+/// Transform from a mesh's own frame to the other's.
 struct Place
 {
-    std::array<double, 9> rotation{}; ///< Column by column.
+    std::array<double, 9> rotation{}; ///< Rotation, column by column.
     Point origin{};
 };
 
 struct Nearest
 {
-    double distance{0.0}; ///< From a sphere's surface; negative inside.
+    double distance{0.0}; ///< Distance from a sphere's surface; negative inside.
     Point on_mesh{};
 };
 
-/// A BVHModel<OBBRSS<double>>.
+/// Mesh as a BVHModel<OBBRSS<double>>.
 class [[gnu::visibility("default")]] Mesh
 {
 public:
-    /// Three corners a face. Throws std::runtime_error when FCL refuses them.
+    /// Builds from three corners a face. Throws std::runtime_error if FCL refuses them.
     explicit Mesh(std::span<const std::array<Point, 3>> faces);
     Mesh(const Mesh&) = delete;
     Mesh& operator=(const Mesh&) = delete;
     ~Mesh();
 
-    /// By collide(), where it finds contacts, else by distance(); a sphere without a radius is
-    /// asked for its distance alone.
+    /// Result of collide() if it finds contacts, otherwise of distance(); a sphere without a radius
+    /// uses distance() only.
     [[nodiscard]] Nearest nearest_to_sphere(const Point& center, double radius) const;
 
     [[nodiscard]] bool does_meet(const Place& place, const Mesh& other) const;
-    /// Places of faces of this mesh and of the other that meet; FCL computes where each two touch,
-    /// and how deep, when it is asked to.
+    /// Appends pairs of faces of this mesh and the other that meet; with contacts, FCL also
+    /// computes where each pair touches and how deep.
     void find_meeting(const Place& place, const Mesh& other, bool with_contacts,
                       std::vector<std::array<std::uint32_t, 2>>& pairs) const;
     [[nodiscard]] double distance_to(const Place& place, const Mesh& other) const;

@@ -11,14 +11,13 @@
 namespace tactus::bench
 {
 
-/// FCL's distance between a BVHModel<OBBRSS<double>> and a sphere without a radius. It knows no
-/// band.
+/// FCL's distance between a BVHModel<OBBRSS<double>> and a sphere without a radius. No band.
 [[nodiscard]] std::unique_ptr<TouchQuery> make_fcl_query(const std::vector<test::Face>& faces,
                                                          double radius_m);
 
-/// The same with the probe as a sphere of its radius: collide() tells whether it touches and the
-/// greatest depth of all contacts, distance() the gap where it doesn't (of what overlaps it says 0
-/// or so, of either sign). The radius is added, for the distance of the centre.
+/// The same with a sphere of the probe's radius: collide() reports a touch and the greatest depth
+/// of all contacts, distance() the gap otherwise (about 0, of either sign, if they overlap). The
+/// radius is added to obtain the distance of the centre.
 [[nodiscard]] std::unique_ptr<TouchQuery>
 make_fcl_sphere_query(const std::vector<test::Face>& faces, double radius_m);
 

@@ -14,25 +14,25 @@ namespace tactus::bench
 
 struct SimplifiedMesh
 {
-    TriangleMesh mesh; ///< In quanta; may have vertices that no face uses.
+    TriangleMesh mesh; ///< Mesh in quanta; may have vertices that no face uses.
     double seconds{0.0};
 };
 
-/// A library that simplifies as its users have it, on one thread and with its defaults.
+/// Library that simplifies with its defaults, on one thread.
 struct MeshSimplifier
 {
     std::string name;
-    /// Simplifies to `faces` faces or as near to it as the library comes. The time is that of the
-    /// library's own call: making its mesh of ours and ours of its is left out, in its favour.
+    /// Simplifies to `faces` faces or the nearest number that the library reaches. The time is that
+    /// of the library's own call; conversions of meshes are not included, in its favour.
     SimplifiedMesh (*simplify)(const QuantisedMesh& mesh, std::uint32_t faces);
 };
 
-/// The names of those that goals are set against.
+/// Names of the peers that goals refer to.
 inline constexpr const char* kGarlandHeckbert = "CGAL Garland-Heckbert";
 inline constexpr const char* kMeshoptimizer = "meshoptimizer";
 
-/// The peers that this build was configured with (TACTUS_BENCH_PEERS) and that simplify. They throw
-/// std::runtime_error when they refuse a mesh.
+/// Configured peers (TACTUS_BENCH_PEERS) that simplify. They throw std::runtime_error if they
+/// refuse a mesh.
 [[nodiscard]] std::vector<MeshSimplifier> mesh_simplifiers();
 
 } // namespace tactus::bench

@@ -7,7 +7,7 @@
 namespace tactus::bench
 {
 
-/// meshopt_simplify with no bound on the error: an index list over the vertices as they are.
+/// meshopt_simplify without a bound on the error: an index list over unchanged vertices.
 [[nodiscard]] SimplifiedMesh simplify_by_meshoptimizer(const QuantisedMesh& mesh,
                                                        std::uint32_t faces);
 

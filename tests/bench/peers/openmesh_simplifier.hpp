@@ -7,7 +7,7 @@
 namespace tactus::bench
 {
 
-/// OpenMesh's decimater with its quadric module alone, over its default triangle mesh, in float:
+/// OpenMesh's decimater with its quadric module only, over its default triangle mesh in float:
 /// half-edge collapses, no bound on the error.
 [[nodiscard]] SimplifiedMesh simplify_by_openmesh(const QuantisedMesh& mesh, std::uint32_t faces);
 

@@ -13,8 +13,8 @@
 namespace tactus::bench
 {
 
-/// Two meshes, one of them moving: the questions as every contestant answers them. One
-/// virtual call is in each one's time.
+/// Questions about two meshes, one of them moving, for every contestant. Each time includes one
+/// virtual call.
 class PairQuery
 {
 public:
@@ -24,33 +24,33 @@ public:
     virtual ~PairQuery() = default;
 
     [[nodiscard]] virtual std::string name() const = 0;
-    /// From here on the tool's frame lies so in the object's; of scale 1. Not timed.
+    /// Sets the pose of the tool's frame in the object's, with scale 1. Not timed.
     virtual void place(const Similarity& tool) = 0;
 
-    /// Whether any two faces share a point.
+    /// True if any two faces share a point.
     [[nodiscard]] virtual bool do_meet() = 0;
-    /// All pairs that do, in any order, named as the contestant has it; valid until the next
-    /// question.
+    /// All pairs of meeting faces in any order, with the contestant's own names; valid until the
+    /// next question.
     [[nodiscard]] virtual const std::vector<test::FacePair>& meeting() = 0;
-    /// The same, and of each where the two touch, as far as the contestant keeps that.
+    /// The same with points of contact, as far as the contestant keeps them.
     [[nodiscard]] virtual const std::vector<test::FacePair>& contacts() = 0;
-    /// The least distance of two faces; 0 where some meet.
+    /// Least distance of two faces; 0 if some meet.
     [[nodiscard]] virtual double distance_m() = 0;
 
-    /// The places of a pair in the lists that it was made of. Not timed.
+    /// Places of a pair in the source lists. Not timed.
     [[nodiscard]] virtual test::FacePair in_source(const test::FacePair& own) const { return own; }
-    /// Drops what is kept of earlier questions.
+    /// Drops the memory of earlier questions.
     virtual void forget() {}
 };
 
-/// Triangles of the tool's frame and of the object's.
+/// Triangles in the tool's frame and in the object's.
 struct PairMeshes
 {
     std::vector<Triangle> tool;
     std::vector<Triangle> object;
 };
 
-/// A peer that this build was configured with (TACTUS_BENCH_PEERS).
+/// Peer that this build was configured with (TACTUS_BENCH_PEERS).
 struct PairPeer
 {
     std::string name;

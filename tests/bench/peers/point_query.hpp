@@ -14,7 +14,7 @@
 namespace tactus::bench
 {
 
-/// The distance question as every contestant answers it. One virtual call is in each one's time.
+/// Distance question for every contestant. Each time includes one virtual call.
 class PointQuery
 {
 public:
@@ -28,34 +28,35 @@ public:
     [[nodiscard]] virtual double distance_m(const Vec3& point_m, double band_m) = 0;
 };
 
-/// A contestant that is judged by more than its time. What knows no band answers beyond it, too.
+/// Contestant that is judged by more than its time. One without a band also answers beyond it.
 class TouchQuery : public PointQuery
 {
 public:
-    /// Where on the surface the last answer that was finite has its nearest point.
+    /// Nearest point on the surface of the last finite answer.
     [[nodiscard]] virtual Vec3 nearest_m() const = 0;
-    /// Drops what is kept of earlier questions: the next one is asked as the first one was.
+    /// Drops the memory of earlier questions, so that the next one is as the first.
     virtual void forget() {}
-    /// True: it has to be asked with a finite band, without one it would look at every face.
+    /// True if a finite band is required; without one every face would be tested.
     [[nodiscard]] virtual bool needs_band() const { return false; }
-    /// What it holds by its own account; none: what the heap has grown by is all.
+    /// Memory by the contestant's own account; empty: the growth of the heap is all.
     [[nodiscard]] virtual std::optional<std::size_t> own_bytes() const { return std::nullopt; }
 };
 
-/// A peer that this build was configured with (TACTUS_BENCH_PEERS).
+/// Peer that this build was configured with (TACTUS_BENCH_PEERS).
 struct PointPeer
 {
     std::string name;
-    /// Builds it over the whole mesh, for a probe of this radius; `faces` must outlive it. Throws
-    /// std::runtime_error when the peer refuses the mesh.
+    /// Builds the peer over the whole mesh, for a sphere of this radius; `faces` must outlive it.
+    /// Throws std::runtime_error if the peer refuses the mesh.
     std::unique_ptr<TouchQuery> (*make)(const std::vector<test::Face>& faces, double radius_m);
-    std::size_t most_faces{static_cast<std::size_t>(-1)}; ///< Over more it is left out,
-    const char* why_no_more{""};                          ///< and this is said.
+    /// Greatest number of faces; the peer is skipped above it.
+    std::size_t most_faces{static_cast<std::size_t>(-1)};
+    const char* why_no_more{""}; ///< Printed reason for the skip.
 };
 [[nodiscard]] std::vector<PointPeer> point_peers();
 
-/// The peers whose times are the goals of other suites, over the whole mesh, as PointPeer::make
-/// has it: Embree, if it was configured.
+/// Peers whose times are goals of other suites, over the whole mesh, see PointPeer::make: Embree,
+/// if configured.
 [[nodiscard]] std::vector<std::unique_ptr<PointQuery>>
 make_peers(const std::vector<test::Face>& faces);
 
