@@ -24,7 +24,7 @@ namespace
 
 constexpr std::array<double, 3> kScales{1.0, 0.2, 3.0};
 
-/// The frames of one trial and what is to be said of them.
+/// Frames of one trial and their evaluation.
 class BracketRun
 {
 public:
@@ -66,7 +66,7 @@ private:
         const bool is_exact = pair.kind == AnswerKind::exact;
         figures_.exact += is_exact ? 1 : 0;
         figures_.answered += is_exact || pair.kind == AnswerKind::decided ? 1 : 0;
-        // A point that has no way yet reaches nothing, so that it asks for nothing.
+        // A point in its first frame has no reach, so it requests nothing.
         const bool reaches_nothing = frame_ == 0 && radius_m_ == 0.0;
         for (const Verdict& verdict : {broken_budget(output, trial_.hardship.budgets),
                                        reaches_nothing ? std::nullopt : unexplained(output)})
@@ -133,7 +133,7 @@ struct WorstPoint
     Vec3 point_m{0.0, 0.0, 0.0};
 };
 
-/// One a face that some vertex is nearest to.
+/// One place for each face that some vertex is nearest to.
 std::vector<WorstPoint> worst_points(const std::vector<Face>& base, const TestModel& model)
 {
     const FaceTree tree(base);
@@ -170,7 +170,7 @@ BracketVerdict judge_bracket(const ToolOracle& oracle, const PairOutput& pair,
     BracketVerdict verdict;
     if (!is_between(pair.lower_m, distance, pair.upper_m))
     {
-        // Where long double might not tell, 113 bits do.
+        // 113 bits decide if long double is not certain.
         const double doubt = 1e-12 * (pair.point_m.norm() + pair.upper_m);
         const bool is_clear = !is_between(pair.lower_m - doubt, distance, pair.upper_m + doubt);
         const Quad judged = is_clear ? static_cast<Quad>(distance)
@@ -206,7 +206,7 @@ TrialFigures query_worst_points(const TestModel& model)
     figures.name = model.name + ", worst points of the base mesh";
     for (const WorstPoint& worst : worst_points(base_faces(rig), model))
     {
-        // The hand stays at the origin, exactly, and the object is brought to it.
+        // The hand stays exactly at the origin, and the object is moved to it.
         ObjectPose pose;
         pose.translation_m = -worst.point_m;
         rig.place_object(pose);

@@ -16,8 +16,8 @@ namespace tactus::test
 struct BracketTrial
 {
     const TestModel& model;
-    const FaceTree& tree;     ///< Of the model, for the motion.
-    const ToolOracle& oracle; ///< Of the tool.
+    const FaceTree& tree;     ///< Tree of the model, for the motion.
+    const ToolOracle& oracle; ///< Oracle of the tool.
     Hardship hardship;
     std::uint64_t seed{0};
     std::uint32_t frames{0};
@@ -25,21 +25,22 @@ struct BracketTrial
 
 struct BracketFigures
 {
-    /// L <= d <= U, budgets kept, and open questions explained; the error is that of exact answers,
-    /// as a share of what their bracket allows.
+    /// L <= d <= U, budgets kept, and open answers explained. The error is that of exact answers,
+    /// as a share of their bounds' width.
     TrialFigures bracket;
-    std::uint64_t answered{0}; ///< Exact or decided.
+    std::uint64_t answered{0}; ///< Frames with an exact or separated answer.
     std::uint64_t exact{0};
     FrameFault seen{FrameFault::none};
 };
 
-/// Every frame against the oracle; every kCheckedFrames the oracle's tree against brute force.
+/// Compares every frame with the oracle, and every kCheckedFrames the oracle's tree with brute
+/// force.
 [[nodiscard]] BracketFigures run_bracket_trial(const BracketTrial& trial);
 
 inline constexpr std::uint32_t kCheckedFrames = 500;
 
-/// One answer against the truth, the pair's object at `pose`: how far the true distance is from the
-/// bracket's middle, in half widths; above 1 it is outside. `text` names the face then.
+/// One answer against the truth, the pair's object at `pose`: distance of the true value from the
+/// middle of the bounds, in half widths; above 1 it is outside, and `text` names the face.
 struct BracketVerdict
 {
     double error{0.0};
@@ -48,9 +49,9 @@ struct BracketVerdict
 [[nodiscard]] BracketVerdict judge_bracket(const ToolOracle& oracle, const PairOutput& pair,
                                            const ObjectPose& pose);
 
-/// Frames that see the base mesh only, each at the vertex of the source that is farthest from the
-/// face of the base mesh that is nearest to it: one a face. The true distance is 0, so a face's
-/// bound that is too small makes L > 0, unless another face's covers the point.
+/// Frames on the base mesh only, one for each of its faces: at the source vertex that is farthest
+/// from this face among those it is nearest to. The true distance is 0, so a face's bound that is
+/// too small makes L > 0, unless another face's bound covers the point.
 [[nodiscard]] TrialFigures query_worst_points(const TestModel& model);
 
 } // namespace tactus::test

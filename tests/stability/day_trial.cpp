@@ -23,7 +23,7 @@ namespace tactus::test
 namespace
 {
 
-/// What must be the same whenever nothing is refined.
+/// State that must recur whenever nothing is refined.
 struct RestState
 {
     std::uint64_t hash{0};
@@ -32,8 +32,9 @@ struct RestState
     std::uint32_t blocks{0};
     std::uint32_t nodes{0};
 
-    /// Blocks merge later than they part, so that a face that comes and goes moves nothing: which
-    /// blocks there are tells of what was before. They may not become more and more.
+    /// True if the state of the start recurs. Blocks merge later than they split, so that a face
+    /// that flickers moves nothing; their number depends on the history but must not grow without
+    /// bound.
     [[nodiscard]] bool is_again(const RestState& start) const
     {
         return hash == start.hash && refined == start.refined && faces == start.faces &&
@@ -58,13 +59,13 @@ std::string describe(const RestState& now, const RestState& start)
     return one(now) + "; at the start " + one(start);
 }
 
-constexpr std::size_t kPlaces = 8; ///< Different touches.
+constexpr std::size_t kPlaces = 8; ///< Number of different touches.
 
-/// One touch: down from afar, a slide, a press, back, and a rest.
+/// One touch: descent from afar, slide, press, retreat and rest.
 struct Touch
 {
     std::vector<Vec3> goals;
-    std::size_t press_begin{0}; ///< From here to `press_end` the goal is still.
+    std::size_t press_begin{0}; ///< First frame of the still goal, which ends at `press_end`.
     std::size_t press_end{0};
 };
 
@@ -87,7 +88,7 @@ Touch touch_at(const TestModel& model, const FaceTree& tree, const Vec3& rest, R
     manner.step_m = random.between(0.05e-3, 0.5e-3) * diag;
     manner.turn_rate = [rate = random.between(-1.0, 1.0)](std::uint64_t) { return rate; };
     const Vec3 corner = to_vec3(model.faces[random.below(model.faces.size())][0]);
-    // Radially down from as far as the rest is, so that nothing is in the way.
+    // The descent is radial from the distance of the rest, so that nothing is in the way.
     const Vec3 middle = 0.5 * (tree.low_m() + tree.high_m());
     const Vec3 outward = (corner - middle).normalized();
     const Vec3 above = middle + (rest - middle).norm() * outward;
@@ -100,7 +101,7 @@ Touch touch_at(const TestModel& model, const FaceTree& tree, const Vec3& rest, R
     {
         touch.goals.push_back(slide.next());
     }
-    // Into the surface by a third of the radius.
+    // The goal is a third of the radius deep in the surface.
     const Vec3 foot = tree.nearest(touch.goals.back()).point_m;
     const Vec3 inward = (foot - touch.goals.back()).normalized();
     go(touch.goals, foot - 0.67 * kRadius_diag * diag * inward, 50);
@@ -113,10 +114,10 @@ Touch touch_at(const TestModel& model, const FaceTree& tree, const Vec3& rest, R
     return touch;
 }
 
-/// Frames in which a pressed proxy comes to rest.
+/// Frames until a pressed proxy is at rest.
 constexpr std::size_t kSettling = 60;
 
-/// A rig, its rest, and its touches.
+/// Rig with its rest position and touches.
 class Day
 {
 public:
@@ -223,9 +224,9 @@ private:
 };
 
 constexpr std::uint32_t kWave = 50'000;   ///< Operations between two returns to the base.
-constexpr std::uint32_t kRefitEvery = 64; ///< Operations, as many as a frame makes.
+constexpr std::uint32_t kRefitEvery = 64; ///< Operations between refits, as many as in a frame.
 
-/// The boxes, lists and links of the tree against the forest's faces.
+/// Compares the boxes, lists and links of the tree with the forest's faces.
 std::string faults_of(LoadedForest& sut)
 {
     std::vector<ChangedFace> faces;
@@ -236,7 +237,7 @@ std::string faults_of(LoadedForest& sut)
     return tree_faults(sut.tree(), faces);
 }
 
-/// One operation, or several where a record needs others; `grows` is the wave's direction.
+/// One operation, or several if a record depends on others; `grows` is the direction of the wave.
 std::uint32_t change(LoadedForest& sut, bool grows, Random& random)
 {
     const RecordId record = sut.random_record(random);
@@ -251,7 +252,7 @@ std::uint32_t run_wave(LoadedForest& sut, Random& random)
 {
     std::uint32_t operations = 0;
     std::uint32_t refitted = 0;
-    // In shrinking phases fewer and fewer records can be merged, so attempts are counted there.
+    // Fewer and fewer records can be merged in shrinking phases, so attempts are counted there.
     for (std::uint32_t attempt = 0; operations < kWave; ++attempt)
     {
         const bool grows = (attempt / 4'000) % 3 != 2;

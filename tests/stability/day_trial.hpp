@@ -12,17 +12,17 @@ namespace tactus::test
 
 struct DayFigures
 {
-    /// Touches, after each of which the tool rests far away: state hash and pools are those of the
-    /// start, the proxy is the goal to the last bit, and there is no force.
+    /// After each touch the tool rests far away: state hash and pools are those of the start, the
+    /// proxy equals the goal to the last bit, and there is no force.
     TrialFigures returns;
-    /// Of a proxy that is pressed against the surface, over the tolerance of contact. Counts
-    /// touches.
+    /// Creep of a proxy that is pressed against the surface, relative to the contact tolerance.
+    /// Counts touches.
     TrialFigures creep;
     std::uint64_t frames{0};
     double simulated_s{0.0};
 };
 
-/// A day's work: touches of kTouchFrames frames of 1 ms, in a cycle of some different ones.
+/// A day's work: touches of kTouchFrames frames of 1 ms, in a cycle of a few different ones.
 [[nodiscard]] DayFigures run_day_trial(const TestModel& model, std::uint32_t touches,
                                        std::uint64_t seed);
 
@@ -33,7 +33,7 @@ inline constexpr std::uint32_t kTouchFrames = 2'000;
                                            std::uint64_t seed);
 
 /// Random splits, each with its closure, and merges, in waves between base and source. After each
-/// wave everything is merged: then hash, faces, records and tree must be those of the start. Counts
+/// wave everything is merged: hash, faces, records and tree must then be those of the start. Counts
 /// operations.
 [[nodiscard]] TrialFigures run_split_merge_trial(const TestModel& model, std::uint64_t operations,
                                                  std::uint64_t seed);

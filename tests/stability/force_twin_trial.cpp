@@ -18,16 +18,16 @@ namespace tactus::test
 namespace
 {
 
-/// 4 to 8 mm: hundreds of faces are in reach of it.
+/// Radius of 4 to 8 mm, with hundreds of faces in reach.
 constexpr double kPressedRadius_diag = 0.04;
-/// Proxies in one place, with one force: as far as 0.5 mN push a spring.
+/// Proxies coincide within the travel of a spring at 0.5 mN, and forces within 0.5 mN.
 constexpr double kTogether_m = 1e-6;
 constexpr double kTogether_n = 5e-4;
-/// A proxy that ends so near to the end of what is certified was held back by it: more than the
-/// skin of a point, and than what is not worth a step.
+/// A proxy this close to the end of the certified range was limited by it: more than the skin of a
+/// point, and more than the smallest step.
 constexpr double kStepEnd_m = 1e-6;
 constexpr double kStepEnd = 1e-3;
-/// Where there are few pages: enough for two such tools, so that others are evicted.
+/// Pages for two such tools, few enough that others are evicted.
 constexpr std::size_t kCache_bytes = 40 * sizeof(Page);
 
 bool touches(const ToolOutput& tool)
@@ -113,7 +113,8 @@ private:
         return goals;
     }
 
-    /// An answer, and the proxy went as far as it would, not as far as the surface is known.
+    /// True if the answer is settled and the proxy moved as far as it needed, not just as far as
+    /// the surface is known.
     [[nodiscard]] bool is_certified(const FrameRig& rig, const FrameOutput& output,
                                     std::uint32_t tool) const
     {
@@ -157,7 +158,7 @@ private:
         }
     }
 
-    /// A force that has waited goes on from what it was: the hand's own way changes it by the
+    /// A force after a wait continues from its last value: the hand's motion changes it by the
     /// spring at most.
     void judge_wait(std::uint32_t tool, const ToolOutput& now, const Vec3& goal_m)
     {

@@ -14,38 +14,39 @@
 namespace tactus::test
 {
 
-/// The same tools on the same object twice: streamed and refined round the tools under a hardship,
-/// and refined fully. The object is 0.1 to 0.2 m large; each tool has a PressMotion of its own.
+/// The same tools on the same object twice: streamed and refined around the tools under a hardship,
+/// and refined fully. The object is 0.1 to 0.2 m large; each tool has its own PressMotion.
 struct ForceTwinTrial
 {
     const TestModel& model;
-    const FaceTree& tree; ///< Of the model.
+    const FaceTree& tree; ///< Tree of the model.
     Hardship hardship;
     std::uint64_t seed{0};
     std::uint32_t frames{0};
     std::uint32_t tools{1};
 };
 
-/// What the level of detail may add to a frame's change of force: 0.05 N, less than the other
-/// bound, 1 % of a device's 8 N.
+/// Change of force per frame that the level of detail may add: 0.05 N, below the other bound, 1 %
+/// of a device's 8 N.
 inline constexpr double kForceStep_n = 0.05;
 
-/// One tool and its twin, frame by frame.
+/// Judge of one tool and its twin, frame by frame.
 class ForceStepJudge
 {
 public:
     struct Step
     {
-        /// By which the force's change since the last frame, as a vector, differs from the twin's.
+        /// Difference between the force's change since the last frame and the twin's, as vectors.
         double newtons{0.0};
-        /// In both frames both were certified, and they are in one place with one force since: a
-        /// proxy that waited for data may have come to another side of an edge, and catches up.
+        /// True if in both frames both were certified, and both have since coincided in place and
+        /// force. A proxy that waited for data may have come to another side of an edge, and must
+        /// catch up first.
         bool is_certified{false};
     };
 
-    /// None unless both were in contact in this frame and the last one, and none of them frozen or
-    /// squeezed. `is_answered`: both answers are exact or decided, and both proxies came to rest
-    /// before the end of what is certified.
+    /// Step of a frame; empty unless both were in contact in this frame and the last one, and
+    /// neither is halted or over-constrained. `is_answered`: both answers are exact or separated,
+    /// and both proxies came to rest before the end of the certified range.
     [[nodiscard]] std::optional<Step> judge(const ToolOutput& ours, const ToolOutput& twins,
                                             bool is_answered);
 
@@ -61,21 +62,22 @@ struct ForceTwinFigures
 {
     /// Certified steps, in newtons.
     TrialFigures steps;
-    double apart_n{0.0};         ///< Largest difference of the forces in those frames.
-    std::uint64_t refining{0};   ///< Those frames with splits,
-    std::uint64_t coarsening{0}; ///< with merges,
-    std::uint64_t adopting{0};   ///< and with pages that came in.
-    /// Other frames in contact: the proxy is held back by what isn't certified yet or has more to
-    /// go than a frame's steps, or was so and came to another place.
+    double apart_n{0.0};         ///< Greatest difference of the forces in those frames.
+    std::uint64_t refining{0};   ///< Those frames with splits.
+    std::uint64_t coarsening{0}; ///< Those frames with merges.
+    std::uint64_t adopting{0};   ///< Those frames with adopted pages.
+    /// Other frames in contact: the proxy is data-limited or needs more than a frame's steps, or
+    /// was so and came to another place.
     std::uint64_t held_back{0};
-    double held_back_n{0.0}; ///< Largest step in those.
-    /// Frames in contact right after one in which the proxy waited for data: by how much more the
-    /// force changed than the hand's way makes it, in newtons.
+    double held_back_n{0.0}; ///< Greatest step in those.
+    /// Frames in contact right after one in which the proxy waited for data: change of the force
+    /// beyond that of the hand's motion, in newtons.
     TrialFigures after_waits;
-    /// Frames in which the streamed proxy was frozen or squeezed: its force fades by design.
+    /// Frames in which the streamed proxy was halted or over-constrained; its force fades by
+    /// design.
     std::uint64_t fading{0};
 
-    /// The same claim, tried elsewhere.
+    /// Adds figures of the same claim from other trials.
     void add(const ForceTwinFigures& other)
     {
         steps.add(other.steps);
@@ -92,8 +94,8 @@ struct ForceTwinFigures
     [[nodiscard]] bool hold() const { return steps.holds() && after_waits.holds(); }
 };
 
-/// Those of hardships() in which tools can be pressed: points or 0.04 diag large, with pages enough
-/// for these.
+/// Those of hardships() in which tools can be pressed: points or 0.04 diag large, with enough pages
+/// for them.
 [[nodiscard]] std::vector<Hardship> force_hardships(const TestModel& model);
 
 [[nodiscard]] ForceTwinFigures run_force_twin_trial(const ForceTwinTrial& trial);

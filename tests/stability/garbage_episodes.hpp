@@ -10,25 +10,25 @@
 namespace tactus::test
 {
 
-/// kSampleHold_s in frames of 1 ms; and kFadeTime_s, and one on either side; and what a tool takes
-/// to be well again.
+/// Frames of 1 ms: kSampleHold_s; kFadeTime_s with one more on either side; and the recovery of a
+/// tool.
 inline constexpr std::uint32_t kHeldFrames = 20;
 inline constexpr std::uint32_t kGoneFrames = 72;
 inline constexpr std::uint32_t kRecoveryFrames = 200;
 
-/// When a device gives garbage: for some frames, or for so many that all force is gone; then long
-/// good times, in which everything must be well again. Good at first. And what must hold of every
+/// Episodes in which a device sends garbage, for some frames or until all force is gone, each
+/// followed by a long sound period in which everything must recover. Begins sound. Checks every
 /// tool meanwhile.
 class GarbageEpisodes
 {
 public:
-    /// `figures` has its name, and must outlive it.
+    /// Starts with `figures`, which have the name and must outlive this object.
     GarbageEpisodes(const Garbage& garbage, std::uint64_t seed, TrialFigures& figures)
         : garbage_(garbage), seed_(seed), figures_(figures), random_(Random::seeded(seed))
     {
     }
 
-    /// What the device sends in the next frame, where the hand is so.
+    /// Sample of the device in the next frame, for a true sample of the hand.
     [[nodiscard]] ToolState next(ToolState sample)
     {
         ++frame_;
@@ -51,7 +51,8 @@ public:
         return sample;
     }
 
-    /// The fault is told, without a sample the force ends, and the tool's faults end as well.
+    /// Checks that the fault is reported, that the force ends without a sample, and that the tool's
+    /// faults end too.
     void check(const FrameOutput& output, bool has_force)
     {
         const auto tells = [&](FrameFault fault)
@@ -71,7 +72,7 @@ public:
             expect(!has_fault(output.faults, kOfTool), "the tool's faults don't end");
         }
     }
-    /// Long after an episode, in good times.
+    /// True long after an episode, with sound samples.
     [[nodiscard]] bool is_recovered() const
     {
         return !in_episode_ && frame_ > kRecoveryFrames && age_ >= kRecoveryFrames;
@@ -93,7 +94,7 @@ private:
     std::uint64_t seed_;
     TrialFigures& figures_;
     Random random_;
-    ToolState good_; ///< The last one.
+    ToolState good_; ///< Last sound sample.
     std::uint32_t frame_{0};
     std::uint32_t age_{0}; ///< Frames of this episode, or since it.
     std::uint32_t frames_left_{0};

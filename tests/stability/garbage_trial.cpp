@@ -57,7 +57,7 @@ void spoil_invalid(ToolState& sample, const ToolState& /*good*/, Random& /*rando
 {
     sample.valid = false;
 }
-/// Another one in each frame.
+/// Another jump in each frame.
 void spoil_jump(ToolState& sample, const ToolState& good, Random& random)
 {
     sample.position_m = good.position_m + 10.0 * random.in_cube(1.0).normalized();
@@ -82,7 +82,7 @@ void spoil_all(ToolState& sample, const ToolState& good, Random& random)
     spoilers[random.below(spoilers.size())](sample, good, random);
 }
 
-/// One tool, its device, and what is known of the episode.
+/// One tool with its device and the state of the episode.
 class GarbageRun
 {
 public:
@@ -117,7 +117,8 @@ private:
     {
         SlideManner manner;
         manner.diagonal_m = model.diagonal_m;
-        manner.radius_diag = kPressed * kRadius_diag; // Always in contact, so that there is force.
+        // The tool is always in contact, so that there is force.
+        manner.radius_diag = kPressed * kRadius_diag;
         manner.step_m = 0.1e-3 * model.diagonal_m;
         manner.turn_rate = [](std::uint64_t turn) { return turn % 2 == 0 ? 0.5 : -0.5; };
         return manner;

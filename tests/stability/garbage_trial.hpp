@@ -15,38 +15,38 @@
 namespace tactus::test
 {
 
-/// What a broken device may send instead of a sample.
+/// Faulty samples of a broken device.
 struct Garbage
 {
     const char* name;
-    /// Makes it of a good sample; `good` is the last one before the episode.
+    /// Makes one from a sound sample; `good` is the last one before the episode.
     void (*spoil)(ToolState& sample, const ToolState& good, Random& random);
-    FrameFault fault;         ///< What the frame must say in its first frame,
-    FrameFault lasting_fault; ///< and what after kSampleHold_s.
-    bool fades{false};        ///< It leaves the frame without a sample.
+    FrameFault fault;         ///< Fault that the first frame must report.
+    FrameFault lasting_fault; ///< Fault that frames after kSampleHold_s must report.
+    bool fades{false};        ///< True if the frame has no usable sample.
 };
 
 inline constexpr std::size_t kGarbageKinds = 9;
 [[nodiscard]] const std::array<Garbage, kGarbageKinds>& garbage_kinds();
 
-/// A tool slides over the surface, pressed against it, and again and again its device sends garbage
-/// for a while. In each frame the force must be finite, within the device's range and, without a
-/// sample, on its way to zero; the proxy finite, L <= d <= U; the fault told; and everything as
-/// before soon after. The error is the largest force by the largest allowed one.
+/// A tool slides over the surface, pressed against it, while its device repeatedly sends garbage.
+/// In each frame the force must be finite, within the device's range and, without a sample, fading
+/// to zero; the proxy finite; L <= d <= U; the fault reported; and everything as before soon after.
+/// The error is the greatest force divided by the allowed one.
 [[nodiscard]] TrialFigures run_garbage_trial(const TestModel& model, const CenterOracle& oracle,
                                              const Garbage& garbage, std::uint32_t frames,
                                              std::uint64_t seed);
 
-/// Those of garbage_kinds(), and what is wrong with rotations alone: none at all, turns of another
-/// angle in each frame, and one turn that stays.
+/// The kinds of garbage_kinds(), and faults of the rotation alone: invalid, another angle in each
+/// frame, and one rotation that stays.
 [[nodiscard]] std::span<const Garbage> rigid_garbage_kinds();
 
-/// A box lies on a plate, pressed on it, is drawn round and turned, and again and again its device
-/// sends garbage for a while. In each frame force and torque must be finite and within the device's
-/// range; while their gain is not whole neither may change faster than the ramps of SafeState;
-/// without a sample both are on their way to zero; the box never meets the plate, by exact
-/// arithmetic; the fault is told, and all is well soon after. The error is the largest force or
-/// torque by the largest allowed one.
+/// A box lies on a plate, pressed on it, is dragged around and rotated, while its device repeatedly
+/// sends garbage. In each frame force and torque must be finite and within the device's range;
+/// while their gain is below one neither may change faster than the ramps of SafeState; without a
+/// sample both fade to zero; the box never meets the plate, by exact arithmetic; the fault is
+/// reported and everything recovers soon after. The error is the greatest force or torque divided
+/// by the allowed one.
 [[nodiscard]] TrialFigures run_rigid_garbage_trial(const Garbage& garbage, std::uint32_t frames,
                                                    std::uint64_t seed);
 

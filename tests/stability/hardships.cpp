@@ -23,7 +23,7 @@ Budgets with_splits(std::uint32_t splits)
     return budgets;
 }
 
-/// A third of what a frame at 4 kHz may do.
+/// Third of the work of a frame at 4 kHz.
 Budgets with_little_work()
 {
     Budgets budgets;
@@ -80,7 +80,7 @@ RigOptions kept_whole()
     return options;
 }
 
-/// Hardly more than the base mesh and some pages need.
+/// Pools for little more than the base mesh and some pages.
 std::size_t least_pools(const TestModel& model)
 {
     return (std::size_t{512} << 10U) + model.faces.size() / 4 + 400 * std::size_t{model.base_faces};

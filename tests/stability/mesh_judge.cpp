@@ -26,7 +26,7 @@ std::string text_of(const FacePair& faces)
            std::to_string(faces.face) + " of the object";
 }
 
-/// The first that is in one of them only.
+/// First pair that is in one list only.
 FacePair first_difference(const std::vector<FacePair>& a, const std::vector<FacePair>& b)
 {
     std::vector<FacePair> differing;
@@ -81,7 +81,7 @@ void MeshJudge::judge_bracket(const PairOutput& pair)
     }
 }
 
-/// The pair that an exact answer names is as near as it says, as its points are.
+/// Checks that the pair of an exact answer is as near as it claims, and its points too.
 void MeshJudge::judge_nearest(const PairOutput& pair)
 {
     if (pair.kind != AnswerKind::exact)
@@ -100,7 +100,7 @@ void MeshJudge::judge_nearest(const PairOutput& pair)
         flag(text_of(faces) + " are said to be the nearest and are " + exactly(distance_m) +
              " apart, not " + exactly(pair.lower_m) + " .. " + exactly(pair.upper_m));
     }
-    // On needles points are less good than distances.
+    // Points on needles are less accurate than distances.
     if (std::abs(points_m - distance_m) > 1e5 * doubt_m_)
     {
         flag("the nearest points are " + exactly(points_m) + " apart, their faces " +
@@ -137,7 +137,7 @@ void MeshJudge::judge_meeting(const MeshReport& report)
     }
 }
 
-/// With both models refined fully every id of the truth is known, and the lowest are kept.
+/// If both models are refined fully, every true id is known and the lowest are kept.
 void MeshJudge::judge_truncated(const MeshReport& report)
 {
     if (report.is_complete || report.meeting.size() != kMaxMeetingFaces)
@@ -234,7 +234,7 @@ void MeshJudge::judge_contacts(const ContactReport& report)
     }
 }
 
-/// All that are clearly within the skin, and none that is clearly not.
+/// Expects all pairs that are clearly within the skin, and none that is clearly outside.
 void MeshJudge::judge_complete_contacts(const NamedPairs& named_pairs)
 {
     constexpr std::size_t kEnough = kMaxContacts + 1;

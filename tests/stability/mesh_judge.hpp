@@ -14,19 +14,19 @@
 namespace tactus::test
 {
 
-/// Judges what a frame says of a tool that is a mesh, and an object, against all faces of both.
+/// Compares the answers of a frame about a mesh tool and an object with all faces of both.
 class MeshJudge
 {
 public:
-    /// Both must outlive the judge. The tool's skin is this thick.
+    /// Judges a tool with a skin of `radius_m`. Both models must outlive the judge.
     MeshJudge(const TestModel& tool, const TestModel& object, double radius_m);
 
-    /// What is wrong, a line each. `rig` has just run the frame; the object's model is its first,
-    /// the tool's its second.
+    /// Faults, one line each. `rig` has just run the frame; the object's model is its first, the
+    /// tool's its second.
     [[nodiscard]] std::vector<std::string> judge(FrameRig& rig, const MeshMoment& moment,
                                                  const PairOutput& pair);
 
-    /// Of the last frame: whether any faces meet.
+    /// True if any faces met in the last frame.
     [[nodiscard]] bool is_meeting() const { return !meeting_.empty(); }
     [[nodiscard]] double distance_m() const { return static_cast<double>(nearest_.distance_m); }
 
@@ -42,7 +42,7 @@ private:
     void judge_complete_contacts(const NamedPairs& named);
 
     void flag(const std::string& what) { wrong_.push_back(what); }
-    /// Of active faces that are the source's; flagged if not.
+    /// Name of a pair of active faces; a fault if they are not the source's.
     [[nodiscard]] FacePair named(FaceId tool_face, FaceId face);
     [[nodiscard]] NamedPairs sorted_names(const std::vector<FacePair>& pairs) const;
 
@@ -51,9 +51,9 @@ private:
     FaceNames names_;
     double radius_m_;
 
-    // Of the frame that is being judged.
+    // Rig of the judged frame.
     FrameRig* rig_{nullptr};
-    double doubt_m_{0.0}; ///< What distances in double may be off by.
+    double doubt_m_{0.0}; ///< Possible error of distances in double.
     MeshPairOracle::Nearest nearest_;
     NamedPairs meeting_;
     std::vector<std::string> wrong_;

@@ -12,15 +12,15 @@ namespace
 {
 
 constexpr std::uint32_t kLongestGrip = 60;
-constexpr std::array<double, 4> kTurns_rad{0.0, 5e-4, 5e-3, 0.05}; ///< A frame of 1 ms.
+constexpr std::array<double, 4> kTurns_rad{0.0, 5e-4, 5e-3, 0.05}; ///< Rotation in a frame of 1 ms.
 constexpr double kSlideStep_diag = 0.1e-3;
 constexpr double kSlideTurn_rad = 0.5e-3;
-/// Down to the surface, and up from it, in steps of the slide.
+/// Speeds of descent and ascent, in steps of the slide.
 constexpr double kSinking = 10.0;
 constexpr double kPressing = 1.0;
 constexpr double kRising = 1.0;
 
-/// The tool with this place of its frame at a place of the world.
+/// State of the tool with `grip_m` of its frame at `place_m` of the world.
 ToolState held(const Vec3& grip_m, const Vec3& place_m, const Mat3& rotation)
 {
     ToolState state;
@@ -93,7 +93,7 @@ MeshMoment RandomMeshMotion::next()
     return {held(grip_m_, moment.goal_m, rotation_.toRotationMatrix()), moment.pose};
 }
 
-/// From half inside the tool to outside of it.
+/// Chooses a grip from half inside the tool to outside of it.
 void RandomMeshMotion::change_grip()
 {
     frames_left_ = 5 + random_.below(kLongestGrip);

@@ -7,14 +7,14 @@
 namespace tactus::test
 {
 
-/// A tool that is a mesh and the object, in one frame.
+/// State of a mesh tool and of the object in one frame.
 struct MeshMoment
 {
     ToolState tool;
     ObjectPose pose;
 };
 
-/// The smallest ball round the middle of a tool's box, in the tool's frame.
+/// Smallest sphere around the centre of a tool's box, in the tool frame.
 struct ToolBall
 {
     Vec3 middle_m{0.0, 0.0, 0.0};
@@ -22,7 +22,7 @@ struct ToolBall
 };
 [[nodiscard]] ToolBall ball_round(const TestModel& tool);
 
-/// Moves a tool that is a mesh round an object.
+/// Motion of a mesh tool around an object.
 class MeshMotion
 {
 public:
@@ -34,18 +34,18 @@ public:
     virtual ~MeshMotion() = default;
 
     [[nodiscard]] virtual MeshMoment next() = 0;
-    /// How far apart the surfaces were in the last frame, for those who feel their way.
+    /// Receives the distance of the surfaces in the last frame, for motions that depend on it.
     virtual void feel(double distance_m) { static_cast<void>(distance_m); }
-    /// What is being done, for a report.
+    /// Name of the present activity, for a report.
     [[nodiscard]] virtual const char* activity() const = 0;
 };
 
-/// RandomMotion's hand holds some place in or near the tool, another one from time to time, and
-/// turns it: not at all, slowly, fast, or to any other side at once.
+/// Motion of RandomMotion, applied to some place in or near the tool that changes from time to
+/// time. The tool rotates not at all, slowly, fast, or to any orientation at once.
 class RandomMeshMotion final : public MeshMotion
 {
 public:
-    /// All of them must outlive the motion. The object has this scale.
+    /// Starts with an object of this scale. All arguments must outlive the motion.
     RandomMeshMotion(const TestModel& tool, const TestModel& object, const FaceTree& tree,
                      double scale, Random& random);
 
@@ -59,14 +59,14 @@ private:
     Random& random_;
     RandomMotion hand_;
     Eigen::Quaterniond rotation_{Eigen::Quaterniond::Identity()};
-    Vec3 grip_m_{0.0, 0.0, 0.0}; ///< In the tool's frame.
+    Vec3 grip_m_{0.0, 0.0, 0.0}; ///< Grip in the tool frame.
     Vec3 axis_{0.0, 0.0, 1.0};
     double rate_rad_{0.0};
     std::uint32_t frames_left_{0};
 };
 
-/// A tool that is the object's own mesh, where the object is: first exactly, as far as positions
-/// are doubles, then ever farther off, to one side after the other.
+/// A tool with the object's own mesh in the object's pose: first exactly, as far as doubles permit,
+/// then increasingly displaced to one side after the other.
 class CoincidentMotion final : public MeshMotion
 {
 public:
@@ -76,17 +76,17 @@ public:
     [[nodiscard]] const char* activity() const override { return "coincident"; }
 
 private:
-    Vec3 place_m_; ///< Of the tool's frame.
+    Vec3 place_m_; ///< Place of the tool frame.
     double diagonal_m_;
     std::uint32_t frame_{0};
 };
 
-/// Slides along the surface at 0.1 diag/s, turning at half a radian a second: down to the surface,
-/// and up a little whenever faces meet.
+/// Slide along the surface at 0.1 diag/s with rotation at 0.5 rad/s: descends to the surface, and
+/// rises a little when faces meet.
 class MeshSlide final : public MeshMotion
 {
 public:
-    /// All of them must outlive the motion. The object has this scale and is at the origin.
+    /// Starts with an object of this scale at the origin. All arguments must outlive the motion.
     MeshSlide(const TestModel& tool, const TestModel& object, const FaceTree& tree, double scale,
               Random& random);
 
@@ -97,9 +97,10 @@ public:
 private:
     ToolBall ball_;
     const FaceTree& tree_;
-    double step_m_; ///< Of a frame, in the world.
+    double step_m_; ///< Step of a frame, in the world.
     ObjectPose pose_;
-    double sunk_m_{0.0}; ///< Below where the ball round the tool touches, in the world.
+    /// Depth below the place where the sphere around the tool touches, in the world.
+    double sunk_m_{0.0};
     Vec3 axis_;
     SurfaceSlide slide_;
     std::uint32_t frame_{0};

@@ -31,7 +31,7 @@ RigOptions rig_options(const MeshTrial& trial)
     tool.core = MeshCore{ModelId{1}};
     tool.wants_contacts = true;
     tool.wants_pairs = true;
-    tool.passes_through = true; // Where it is held back nothing meets.
+    tool.passes_through = true; // A tool with a proxy would never meet the object.
     options.tools = {tool};
     return options;
 }
@@ -58,7 +58,7 @@ bool is_answered(const PairOutput& pair)
     return pair.kind == AnswerKind::exact || pair.kind == AnswerKind::decided;
 }
 
-/// The frames of one trial and what is to be said of them.
+/// Frames of one trial and their evaluation.
 class MeshRun
 {
 public:
@@ -135,7 +135,7 @@ private:
     int wrong_frames_{0};
 };
 
-/// What differs between two exact answers; empty when nothing does.
+/// Difference between two exact answers; empty if there is none.
 std::string difference(const PairOutput& a, const PairOutput& b)
 {
     if (!same_bits(a.lower_m, b.lower_m) || !same_bits(a.upper_m, b.upper_m))
@@ -154,7 +154,7 @@ std::string difference(const PairOutput& a, const PairOutput& b)
     {
         return "the contacts differ";
     }
-    // Of faces that meet any of them is nearest, and which is known may differ.
+    // Any of several meeting faces is nearest, and the known ones may differ.
     const bool is_known = a.upper_m > 0.0 || (a.mesh->is_complete && b.mesh->is_complete);
     if (is_known &&
         (a.nearest_face != b.nearest_face ||
@@ -166,7 +166,7 @@ std::string difference(const PairOutput& a, const PairOutput& b)
     return "";
 }
 
-/// A rig that has refined both models fully.
+/// Rig with both models refined fully.
 std::unique_ptr<FrameRig> whole_models(const MeshTrial& trial)
 {
     RigOptions options = whole_options(trial.object.faces.size() + trial.tool.faces.size());
@@ -178,7 +178,7 @@ std::unique_ptr<FrameRig> whole_models(const MeshTrial& trial)
     return rig;
 }
 
-/// A tool that wants no contacts, and all pairs or none.
+/// Rig of a tool that requests no contacts, and all pairs or none.
 std::unique_ptr<FrameRig> rig_without_contacts(const MeshTrial& trial, bool wants_pairs)
 {
     RigOptions options = rig_options(trial);
@@ -187,10 +187,10 @@ std::unique_ptr<FrameRig> rig_without_contacts(const MeshTrial& trial, bool want
     return std::make_unique<FrameRig>(std::vector{&trial.object, &trial.tool}, options);
 }
 
-/// What differs although pairs alone are not wanted; empty when nothing does.
+/// Difference between answers with and without pairs; empty if there is none.
 std::string difference_without_pairs(const PairOutput& all, const PairOutput& first)
 {
-    // Beyond the reach brackets hang on what is remembered.
+    // Bounds beyond the reach depend on the pair's memory.
     const bool are_exact = all.kind == AnswerKind::exact && first.kind == AnswerKind::exact;
     if (are_exact &&
         (!same_bits(all.lower_m, first.lower_m) || !same_bits(all.upper_m, first.upper_m)))

@@ -29,9 +29,9 @@ constexpr std::int64_t kCrampedFrame_ns = 1'000'000;
 constexpr double kCrampedTorqueMax_nm = 0.3;
 constexpr double kCrampedRounding = 1e-12;
 constexpr std::uint32_t kCrampedObjects = 3;
-constexpr double kCrampedSize_m = 0.002; ///< Of a tool, more or less.
+constexpr double kCrampedSize_m = 0.002; ///< Approximate size of a tool.
 
-/// Whose assertion it is. One trial runs at a time.
+/// Trial that a failed assertion belongs to. Only one runs at a time.
 struct RunningEpisode
 {
     const char* tool{""};
@@ -51,7 +51,7 @@ void tell_which(const char* condition, const char* file, int line) noexcept
                  running_episode.frame, condition, file, line);
 }
 
-/// While it lives, a failed assertion says whose it is before it ends the program.
+/// Reports the running trial on a failed assertion before the program ends, for its lifetime.
 class TellsAssertions
 {
 public:
@@ -64,7 +64,7 @@ private:
     AssertHandler before_;
 };
 
-/// A closed box round the origin, of 12 faces.
+/// Closed box around the origin, of 12 faces.
 TriangleMesh make_closed_box(const Vec3& half)
 {
     TriangleMesh box;
@@ -79,7 +79,7 @@ TriangleMesh make_closed_box(const Vec3& half)
     return box;
 }
 
-/// What objects show: a plate of 0.1 mm, the same with a crowd of faces, a cube.
+/// Models of the objects: a plate of 0.1 mm, the same with many faces, and a cube.
 const std::array<const TestModel*, 3>& cramping_models()
 {
     static const std::array<const TestModel*, 3> models{
@@ -93,7 +93,7 @@ const TestModel& cramped_tool_model()
     return test_model("no-room-tool", make_closed_box(Vec3(0.003, 0.002, 0.0015)));
 }
 
-/// The middle and the half extents of a model, in its frame.
+/// Centre and half extents of a model, in its frame.
 struct ModelExtent
 {
     Vec3 middle{0.0, 0.0, 0.0};
@@ -120,7 +120,7 @@ Mat3 cramped_turn(const Vec3& axis, double angle_rad)
     return turned_by(axis * angle_rad, Mat3::Identity());
 }
 
-/// One scene and one hand in it.
+/// One scene with one hand in it.
 class CrampedEpisode
 {
 public:
@@ -219,7 +219,7 @@ private:
         return {models, options};
     }
 
-    /// What a server may say; now and then what no wall is made of.
+    /// Material as a server may send it, occasionally an implausible one.
     Material feel()
     {
         Material material;
@@ -260,7 +260,7 @@ private:
         object.rotation = scene_turn_ * rotation;
         objects_.push_back(object);
     }
-    /// Between the middles of two objects of this model whose sides leave so much room.
+    /// Distance between the centres of two objects of this model with `room_m` between their sides.
     [[nodiscard]] static double apart_m(std::uint32_t shown, double room_m)
     {
         return room_m + 2.0 * extent_in_model(*cramping_models()[shown]).half.z();
@@ -329,7 +329,7 @@ private:
         }
     }
 
-    /// Until they overlap, and apart again; now and then in one leap.
+    /// Closes until the objects overlap, then opens; occasionally in one jump.
     void close_in(std::uint32_t frame)
     {
         const double step_m = random_.one_in(40) ? 0.004 : 1e-4;
@@ -370,7 +370,7 @@ private:
         rig_.change(change);
     }
 
-    /// Where a hand is exactly somewhere.
+    /// Hand position at an exact place of an object.
     Vec3 spot()
     {
         const Object& object = objects_[random_.below(objects_.size())];
@@ -413,7 +413,7 @@ private:
         return object.place_m + object.rotation * at;
     }
 
-    /// What the hand does for a while.
+    /// Begins the next activity of the hand.
     void next_leg()
     {
         const Object& object = objects_[random_.below(objects_.size())];
@@ -450,7 +450,7 @@ private:
         rotation_ = turned_by(turn_, rotation_);
     }
 
-    /// Now and then the device has no sample, a broken one, or was away for long.
+    /// Drops or corrupts the device's sample occasionally, or pauses for long.
     void spoil(ToolState& hand)
     {
         switch (random_.below(1'000U))

@@ -24,20 +24,20 @@ namespace
 constexpr double kForceRounding_n = 1e-9;
 constexpr double kStiffnessRounding = 1e-9;
 
-/// Of closing in: the tool's radius, and how long the objects stay where they are.
+/// Tool radius while the objects close in, and frames that they stay.
 constexpr double kSqueezedRadius_diag = 0.05;
 constexpr std::uint32_t kRestFrames = 100;
-/// Of one that comes alone: by more than a tool sees ahead in a frame.
+/// Greatest speed of a single moving object: more than a tool's reach in a frame.
 constexpr double kFastestJaw_m_per_s = 20.0;
 
-/// As often within each power of ten.
+/// Width with a logarithmic distribution.
 double any_smooth_width_m(Random& random)
 {
     return kSmoothWidthMin_m *
            std::pow(kSmoothWidthMax_m / kSmoothWidthMin_m, random.between(0.0, 1.0));
 }
 
-/// What the frames say of one tool, held against the trail that it leaves past each object.
+/// Compares the frames of one tool with its trail past each object.
 class PopThroughJudge
 {
 public:
@@ -48,14 +48,14 @@ public:
         figures_.run_over.name += ", run over";
     }
 
-    /// A proxy that was nowhere yet, and so many objects of one model.
+    /// Starts a proxy without a place, and `objects` of one model.
     void begin(std::size_t objects, const TestModel& model, const FaceTree& tree)
     {
         trails_.assign(objects, ProxyTrail(model, tree));
         are_joined_.assign(objects, true);
     }
 
-    /// The last frame of the rig, of its only tool.
+    /// Judges the last frame of the rig, for its only tool.
     void judge(const FrameRig& rig, const FrameOutput& output, const char* activity)
     {
         const ToolOutput& tool = output.tools[0];
@@ -115,7 +115,8 @@ private:
 
     std::uint64_t seed_;
     std::vector<ProxyTrail> trails_;
-    std::vector<bool> are_joined_; ///< In the last frame: what came round the tool lets it out.
+    /// PairOutput::is_joined of the last frame, by object.
+    std::vector<bool> are_joined_;
     PopThroughFigures figures_;
     std::uint64_t frame_{0};
     std::string activity_;
@@ -162,8 +163,8 @@ PopThroughFigures run_pop_through_trial(const PopThroughTrial& trial)
 namespace
 {
 
-/// Two objects on a line through the origin, one on either side, turned at random. They come to
-/// one another, or one of them to the other, which stays where it is when they are open.
+/// Two objects on a line through the origin, one on either side, with random rotations. Both
+/// approach each other, or one approaches the other, which stays in its open position.
 class Jaws
 {
 public:
@@ -182,7 +183,7 @@ public:
         }
     }
 
-    /// Puts the middles of the objects twice so far from one another.
+    /// Places the centres of the objects 2 x `half_gap_m` apart.
     void open_to(double half_gap_m, FrameRig& rig)
     {
         const double first_m = stays_m_.value_or(half_gap_m);
@@ -209,7 +210,7 @@ private:
     std::array<ObjectPose, 2> poses_;
 };
 
-/// The tool of a round, which the hand keeps at the origin.
+/// Tool of a round, which the hand keeps at the origin.
 class ClosingRound
 {
 public:
@@ -224,7 +225,7 @@ public:
         run_over_before_ = judge_.figures().run_over.trials;
     }
 
-    /// Returns whether the tool is squeezed.
+    /// Returns true if the tool is over-constrained.
     bool step(double half_gap_m, const char* activity)
     {
         jaws_.open_to(half_gap_m, rig_);
@@ -247,7 +248,8 @@ public:
         }
         return tool.squeezed;
     }
-    /// A tool that an object ran over may be within it, in a corner where it has no room.
+    /// Ends the round. A tool that an object ran over may be inside it, in a corner without free
+    /// space.
     void end()
     {
         judge_.figures().let_go += squeezed_s_ > 0.0 ? 0 : 1;

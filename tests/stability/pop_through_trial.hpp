@@ -16,31 +16,31 @@ namespace tactus::test
 struct PopThroughTrial
 {
     const TestModel& model;
-    const FaceTree& tree; ///< Of the model.
+    const FaceTree& tree; ///< Tree of the model.
     Hardship hardship;
     std::uint64_t seed{0};
     std::uint32_t frames{0};
-    bool is_smooth{false}; ///< The tool has smooth normals, of any width that it may have.
+    bool is_smooth{false}; ///< True if the tool has force shading, of any permitted width.
 };
 
 inline constexpr double kFastestTap_m_per_s = 2.0;
 
 struct PopThroughFigures
 {
-    /// Frames in which the proxy's centre met a face of the full mesh on its way relative to the
-    /// object: none, but where the object ran over it and the frame says that it is squeezed. And
-    /// frames with a force beyond its limit, or none that is a number.
+    /// Frames in which the path of the proxy's centre relative to the object met a face of the full
+    /// mesh: none, except where the object ran over it and the frame reports it as
+    /// over-constrained. Also frames with a force beyond its limit or not finite.
     TrialFigures crossings;
-    /// Frames in which an object ran over the proxy; a violation when the frame doesn't say so.
+    /// Frames in which an object ran over the proxy; a violation unless the frame reports it.
     TrialFigures run_over;
     std::uint64_t in_contact{0};
     std::uint64_t frozen{0};
     std::uint64_t squeezed{0};
-    std::uint64_t faded{0};       ///< Frames after kFadeTime_s of a squeeze.
-    std::uint64_t let_go{0};      ///< Rounds after which the tool was squeezed no more.
-    std::uint64_t felt_smooth{0}; ///< Frames in which smooth normals made the wall stiffer.
+    std::uint64_t faded{0};       ///< Frames after kFadeTime_s of an over-constrained proxy.
+    std::uint64_t let_go{0};      ///< Rounds after which the tool was no longer over-constrained.
+    std::uint64_t felt_smooth{0}; ///< Frames in which force shading stiffened the wall.
 
-    /// The same claims, tried elsewhere.
+    /// Adds figures of the same claims from other trials.
     void add(const PopThroughFigures& other)
     {
         crossings.add(other.crossings);
@@ -56,18 +56,19 @@ struct PopThroughFigures
 [[nodiscard]] PopThroughFigures run_pop_through_trial(const PopThroughTrial& trial);
 
 /// Two objects of one model close in on a tool from both sides, at up to 1 m/s each, until it is
-/// squeezed; they stay a while and go again.
+/// over-constrained; they stay a while and retreat.
 struct ClosingTrial
 {
     const TestModel& model;
-    const FaceTree& tree; ///< Of the model.
+    const FaceTree& tree; ///< Tree of the model.
     std::uint64_t seed{0};
     std::uint32_t rounds{0};
-    bool is_smooth{false}; ///< As above.
+    bool is_smooth{false}; ///< True if the tool has force shading.
 };
 
-/// As above. Besides, no force is left after kFadeTime_s of a squeeze, and no squeeze when the
-/// objects are gone. A tool may slip out to a side, and end behind one of them.
+/// Checks the claims of PopThroughFigures, and that no force is left after kFadeTime_s of
+/// over-constraint, which ends when the objects are gone. A tool may slip out to a side, and end
+/// behind one of them.
 [[nodiscard]] PopThroughFigures run_closing_trial(const ClosingTrial& trial);
 
 } // namespace tactus::test

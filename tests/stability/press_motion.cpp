@@ -13,12 +13,12 @@ namespace tactus::test
 namespace
 {
 
-/// Of the ball that slides along the surface, whatever the tool is.
+/// Radius of the sphere that slides along the surface, for every tool.
 constexpr double kGuide_diag = 0.01;
 constexpr double kLeastDepth_m = 0.5e-3;
 constexpr double kMostDepth_m = 1e-3;
 constexpr double kLifted_m = -3e-3;
-/// How fast the hand comes down and goes up.
+/// Speeds of the hand's descent and ascent.
 constexpr double kSlowest_m_per_s = 0.02;
 constexpr double kFastest_m_per_s = 0.3;
 constexpr double kSlowestSlide_diag_per_s = 0.02;
@@ -86,7 +86,7 @@ Vec3 PressMotion::next()
     return foot + (radius_m_ - depth_m_) / scale_ * normal_;
 }
 
-/// A hop is over before its frames are: the hand is down again.
+/// A hop ends before its frames do, with the hand down again.
 double PressMotion::wanted_depth_m()
 {
     const bool taps_up = activity_ == Activity::tap && frame_ % kTapFrames >= kTapFrames / 2;

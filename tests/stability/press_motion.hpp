@@ -12,25 +12,25 @@
 namespace tactus::test
 {
 
-/// A hand that presses a ball 0.5 to 1 mm into an object, chosen at random, each for some hundred
-/// frames of 1 ms: it rests, slides at 0.02 to 0.1 diag/s, taps, or lifts off and comes down
-/// elsewhere. Computed from the full mesh alone. In the model's frame, with lengths of the world
+/// Hand that presses a sphere 0.5 to 1 mm into an object. Activities are random, each for some
+/// hundred frames of 1 ms: it rests, slides at 0.02 to 0.1 diag/s, taps, or lifts off and descends
+/// elsewhere. Computed from the full mesh alone, in the model frame; lengths of the world are
 /// divided by the object's scale.
 class PressMotion
 {
 public:
-    /// All of them must outlive the motion. The radius is the world's.
+    /// Starts with a radius in the world. All arguments must outlive the motion.
     PressMotion(const TestModel& model, const FaceTree& tree, double radius_m, double scale,
                 Random& random);
 
     [[nodiscard]] Vec3 next();
-    /// What is being done, for a report.
+    /// Name of the present activity, for a report.
     [[nodiscard]] const char* activity() const;
 
 private:
     enum class Activity : std::uint8_t
     {
-        hop, ///< The first.
+        hop, ///< First activity.
         rest,
         slide,
         tap,
@@ -46,11 +46,11 @@ private:
     double scale_;
     Random& random_;
     std::optional<SurfaceSlide> slide_;
-    Vec3 guide_m_{0.0, 0.0, 0.0}; ///< The middle of a ball that slides; the goal is beside it.
-    Vec3 normal_{0.0, 0.0, 1.0};  ///< Of the surface, to the guide.
-    double depth_m_{0.0};         ///< Of the ball in the surface; below 0 it is above. World.
+    Vec3 guide_m_{0.0, 0.0, 0.0}; ///< Centre of a sliding sphere; the goal is beside it.
+    Vec3 normal_{0.0, 0.0, 1.0};  ///< Normal from the surface to the guide.
+    double depth_m_{0.0}; ///< Depth of the sphere in the surface, in the world; negative above it.
     double pressed_m_{0.0};
-    double change_m_{0.0}; ///< Of the depth, in a frame.
+    double change_m_{0.0}; ///< Change of the depth in a frame.
     Activity activity_{Activity::hop};
     std::uint32_t frame_{0};
     std::uint32_t frames_left_{0};

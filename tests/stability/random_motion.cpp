@@ -14,7 +14,7 @@ namespace tactus::test
 namespace
 {
 
-/// Speeds are of frames of 1 ms.
+/// Speeds for frames of 1 ms.
 constexpr double kSlowest_diag = 0.05e-3;
 constexpr double kFastest_diag = 2e-3;
 constexpr double kTap_diag = 0.015;
@@ -98,7 +98,7 @@ void RandomMotion::begin_tap()
     tap_m_ = farthest_tap_m_ > 0.0 ? random_.between(0.0, farthest_tap_m_) : usual;
 }
 
-/// Through the surface and back.
+/// Taps through the surface and back.
 void RandomMotion::tap()
 {
     const double phase = 2.0 * std::numbers::pi * frame_ / kShakeFrames;
@@ -116,7 +116,7 @@ void RandomMotion::fly()
     hold_at(place_ + direction_);
 }
 
-/// Mostly near the surface, at times anywhere round the model.
+/// Jumps mostly near the surface, sometimes anywhere around the model.
 void RandomMotion::begin_jump()
 {
     const double off = random_.one_in(5) ? 0.7 : 0.01;
@@ -133,7 +133,8 @@ void RandomMotion::begin_spin()
     rotation_before_ = moment_.pose.rotation;
 }
 
-/// The whole angle at once: products of small turns would drift off the orthonormal matrices.
+/// Rotates by the whole angle at once: products of small rotations would drift from orthonormal
+/// matrices.
 void RandomMotion::spin()
 {
     ObjectPose& pose = moment_.pose;
@@ -142,7 +143,7 @@ void RandomMotion::spin()
     pose.translation_m = pivot_world_ - pose.scale * (pose.rotation * pivot_);
 }
 
-/// Puts some of the surface where the goal is, often with the proxy inside of the model.
+/// Puts a place of the surface at the goal, often with the proxy inside the model.
 void RandomMotion::carry_object()
 {
     ObjectPose& pose = moment_.pose;

@@ -14,29 +14,29 @@
 namespace tactus::test
 {
 
-/// Where the hand holds the tool in one frame, and where the object stands.
+/// Goal of the hand and pose of the object in one frame.
 struct Moment
 {
     Vec3 goal_m{0.0, 0.0, 0.0};
     ObjectPose pose;
 };
 
-/// A hand and an object that do one thing after the other, chosen at random, each for some tens of
-/// frames: rest, slide along the surface, tap through it, fly, jump; and the object spins about a
-/// place near the tool, or is put elsewhere with any of its surface at the goal.
+/// Hand and object with a sequence of random activities, each for some tens of frames: rest, slide
+/// along the surface, tap through it, fly, jump; the object rotates about a place near the tool, or
+/// is moved so that some place of its surface is at the goal.
 class RandomMotion
 {
 public:
-    /// All of them must outlive the motion. The object has this scale.
+    /// Starts with an object of this scale. All arguments must outlive the motion.
     RandomMotion(const TestModel& model, const FaceTree& tree, double radius_m, double scale,
                  Random& random);
 
-    /// Taps are as fast as this at most, in the world and at 1 kHz, and as far as that takes them;
+    /// Sets the greatest speed of taps, in the world at 1 kHz, which also determines their depth;
     /// without it they are 0.015 diag deep.
     void tap_up_to(double speed_m_per_s);
 
     [[nodiscard]] Moment next();
-    /// What is being done, for a report.
+    /// Name of the present activity, for a report.
     [[nodiscard]] const char* activity() const { return kActivities[activity_].name; }
 
 private:
@@ -68,25 +68,25 @@ private:
     const FaceTree& tree_;
     double radius_m_;
     Random& random_;
-    double farthest_tap_m_{0.0}; ///< 0: all are the same.
+    double farthest_tap_m_{0.0}; ///< Greatest depth of a tap; 0: all are the same.
     Moment moment_;
     std::size_t activity_{0};
-    std::uint32_t frame_{0}; ///< Of the activity.
+    std::uint32_t frame_{0}; ///< Frame of the activity.
     std::uint32_t frames_left_{0};
 
     std::optional<SurfaceSlide> slide_;
-    double tap_m_{0.0};             ///< Half of its way.
-    Vec3 place_{0.0, 0.0, 0.0};     ///< Of the hand, in the model's frame.
-    Vec3 direction_{0.0, 0.0, 0.0}; ///< Of a tap or, times a step, of a flight.
-    Vec3 pivot_{0.0, 0.0, 0.0};     ///< Of a spin, in the model's frame,
+    double tap_m_{0.0};             ///< Half of the tap's path.
+    Vec3 place_{0.0, 0.0, 0.0};     ///< Place of the hand, in the model frame.
+    Vec3 direction_{0.0, 0.0, 0.0}; ///< Direction of a tap, or displacement per frame of a flight.
+    Vec3 pivot_{0.0, 0.0, 0.0};     ///< Pivot of a rotation, in the model frame.
     Vec3 pivot_world_{0.0, 0.0, 0.0};
     Vec3 axis_{0.0, 0.0, 1.0};
     double rate_rad_{0.0};
     Mat3 rotation_before_{Mat3::Identity()};
 };
 
-/// The hand of RandomMotion over an object that stays where it is, held by a ball of 1 % of the
-/// model's diagonal. Model and numbers must outlive it, and it must stay at its address.
+/// Hand of RandomMotion over a resting object, with a sphere of 1 % of the model's diagonal. Model
+/// and random numbers must outlive it, and it must stay at its address.
 class WanderingHand
 {
 public:
@@ -94,7 +94,7 @@ public:
     WanderingHand(const WanderingHand&) = delete;
     WanderingHand& operator=(const WanderingHand&) = delete;
 
-    /// The place of the next frame, in the model's frame.
+    /// Place of the next frame, in the model frame.
     [[nodiscard]] Vec3 next();
 
 private:

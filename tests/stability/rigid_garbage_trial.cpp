@@ -26,9 +26,9 @@ constexpr std::int64_t kBodyFrame_ns = 1'000'000;
 constexpr double kBodyForceMax_n = 8.0;
 constexpr double kBodyTorqueMax_nm = 0.3;
 constexpr double kBodyRounding = 1e-12;
-/// As SafeState promises of a brake and of the way back.
+/// Greatest change per frame that SafeState permits while fading and returning.
 constexpr double kMostOfRange = kPeriod_s / kFadeTime_s + 2.0 * kPeriod_s / kRiseTime_s;
-constexpr double kSecondTurn_rad = 1.5; ///< Farther than kJumpTurning_rad_per_s allows in a frame.
+constexpr double kSecondTurn_rad = 1.5; ///< Greater than kJumpTurning_rad_per_s permits in a frame.
 
 Mat3 turned_about(const Vec3& axis, double angle_rad)
 {
@@ -40,7 +40,7 @@ void spoil_rotation(ToolState& sample, const ToolState& /*good*/, Random& random
     const std::array<double, 4> factors{0.0, -1.0, 1.001, 1e200};
     sample.rotation *= factors[random.below(factors.size())];
 }
-/// Another one in each frame.
+/// Another rotation in each frame.
 void spoil_turns(ToolState& sample, const ToolState& /*good*/, Random& random)
 {
     const Vec3 axis = random.in_cube(1.0) + Vec3(0, 0, 1e-3);
@@ -51,7 +51,7 @@ void spoil_turned(ToolState& sample, const ToolState& /*good*/, Random& /*random
     sample.rotation = turned_about(Vec3(1.0, 0.5, 0.2), kSecondTurn_rad) * sample.rotation;
 }
 
-/// 4 cm long, on a plate of 10 cm whose top is at the height of its highest corner.
+/// Run of a box, 4 cm long, on a plate of 10 cm whose top is at the height of its highest corner.
 class RigidGarbageRun
 {
 public:
@@ -104,8 +104,8 @@ private:
         return options;
     }
 
-    /// 2 mm too deep, on a circle, turning about the plate's normal and rocking; from above at
-    /// first.
+    /// Hand pose 2 mm too deep, on a circle, rotating about the plate's normal and rocking; from
+    /// above at first.
     [[nodiscard]] ToolState hand() const
     {
         const double t = kPeriod_s * frame_;

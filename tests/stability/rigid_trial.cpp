@@ -25,7 +25,7 @@ namespace
 constexpr double kTorqueMax_nm = 0.5;
 constexpr double kStepRounding = 1e-9;
 constexpr double kRangeRounding = 1e-12;
-/// Of a frame's way, that are looked at.
+/// Checked places of a frame's path.
 constexpr int kPlacesOnWay = 4;
 
 Vec3 middle_of(const TestModel& model)
@@ -43,7 +43,8 @@ Vec3 middle_of(const TestModel& model)
     return 0.5 * (low + high);
 }
 
-/// Goes to faces of the object and away from it, by a share of what is left, turning as it goes.
+/// Hand that approaches faces of the object and departs from it, by a share of the remaining
+/// distance, while rotating.
 class BodyHand
 {
 public:
@@ -88,11 +89,11 @@ private:
 
 constexpr double kFastestTurn_rad_per_s = 0.3;
 
-/// Of what closes in: how far it is away in the middle of its way, and how far it goes from there.
+/// Motion of the second object: mean distance and amplitude.
 constexpr double kClosingMiddle_diag = 0.45;
 constexpr double kClosingWay_diag = 0.45;
 
-/// Where the objects stand in each frame.
+/// Poses of the objects in each frame.
 class Stage
 {
 public:
@@ -104,7 +105,8 @@ public:
         axis_ = (random.in_cube(1.0) + Vec3(0, 0, 1e-3)).normalized();
         if (stage_ == RigidStage::closing)
         {
-            axis_ = -axis_.cwiseAbs(); // Not from where the hand begins.
+            // The second object does not come from the start of the hand.
+            axis_ = -axis_.cwiseAbs();
         }
         if (stage_ == RigidStage::far)
         {
@@ -117,9 +119,9 @@ public:
         sway_m_ = stage_ == RigidStage::turning ? 2e-4 * random.in_cube(1.0) : Vec3(0, 0, 0);
     }
 
-    /// The first object's, and the hand's: it goes about that as it stood at first.
+    /// Pose of the first object at the start; the hand's motion is relative to it.
     [[nodiscard]] const ObjectPose& at_rest() const { return rest_; }
-    /// If anything moves, it is the last one.
+    /// Number of objects; the last one may move.
     [[nodiscard]] std::size_t objects() const { return stage_ == RigidStage::closing ? 2 : 1; }
     [[nodiscard]] bool moves() const
     {
@@ -197,7 +199,7 @@ public:
         options.poses.resize(stage_.objects());
         last_places_.resize(stage_.objects());
         FrameRig rig(models, options);
-        center_ = rig.frame().tool(0).ball().center; // At its start the tool is in its own frame.
+        center_ = rig.frame().tool(0).ball().center; // The tool is in its own frame at the start.
         arm_m_ = rig.frame().tool(0).ball().radius + rig.frame().tool(0).radius_m();
         for (std::uint32_t i = 0; i < trial_.frames; ++i)
         {
@@ -236,7 +238,7 @@ private:
         return "";
     }
 
-    /// In each object's frame: the way there begins where the last frame left the tool.
+    /// Judges a frame in each object's frame; the path begins at the last frame's place.
     void judge(std::uint32_t frame, const ToolOutput& output, const FrameRig& rig)
     {
         const bool is_in_range = output.force_n.norm() <= kForceMax_n * (1.0 + kRangeRounding) &&
@@ -258,7 +260,8 @@ private:
                                                  *trial_.object, kPlacesOnWay);
             last_places_[i] = now;
         }
-        const bool may_be = trial_.stage == RigidStage::closing; // One object leaves room always.
+        // A single object always leaves space.
+        const bool may_be = trial_.stage == RigidStage::closing;
         is_run_over_ = met > 0 ? may_be && (is_run_over_ || output.squeezed)
                                : is_run_over_ && (output.frozen || !output.in_contact);
         figures_.run_over += met > 0 && is_run_over_ ? 1 : 0;
@@ -270,7 +273,8 @@ private:
         }
     }
 
-    /// The springs are a stiffness, and it times the square of the arm.
+    /// Judges the change of the wrench. The springs are a stiffness, and the stiffness times the
+    /// square of the arm.
     void judge_step(std::uint32_t frame, const ToolState& hand, const ToolOutput& output)
     {
         const bool has_no_room = output.squeezed || last_output_.squeezed;
@@ -307,10 +311,10 @@ private:
     BodyHand hand_;
     Stage stage_;
     RigidFigures figures_;
-    bool is_run_over_{false}; ///< And has not been clear since.
+    bool is_run_over_{false}; ///< True until the tool has been clear again.
     Vec3 center_{0, 0, 0};
     double arm_m_{0.0};
-    std::vector<Similarity> last_places_; ///< Before each object.
+    std::vector<Similarity> last_places_; ///< Last places of the tool relative to each object.
     ToolState last_hand_;
     ToolOutput last_output_;
 };

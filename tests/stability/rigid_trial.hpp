@@ -12,17 +12,17 @@
 namespace tactus::test
 {
 
-/// What the object does meanwhile.
+/// Motion of the object.
 enum class RigidStage : std::uint8_t
 {
-    still,   ///< It stands in its model's frame.
-    turning, ///< It turns to and fro about its middle by 0.3 rad/s at most, and sways.
-    far,     ///< It stands 100 to 1,000 m away, turned, half to twice as large.
-    closing, ///< Another one of its kind comes near it, and into it, and goes away, to and fro.
+    still,   ///< Rests in its model frame.
+    turning, ///< Rotates about its centre by at most 0.3 rad/s, to and fro, and sways.
+    far,     ///< Is 100 to 1,000 m away, rotated, half to twice as large.
+    closing, ///< Another object of its kind approaches, enters and leaves it repeatedly.
 };
 
-/// Frames of a tool that is held as a body, whose hand goes from place to place through and round
-/// an object and turns.
+/// Frames of a rigid tool whose hand moves from place to place through and around an object and
+/// rotates.
 struct RigidTrial
 {
     SolidCore tool;
@@ -35,15 +35,15 @@ struct RigidTrial
 
 struct RigidFigures
 {
-    /// Faces of the core that met the object's on the way of a frame, by exact arithmetic. A force
-    /// or torque that is no number or too large is a violation as well, and so is one of a tool
-    /// that touches nothing.
+    /// Faces of the core that met the object's on a frame's path, by exact arithmetic. Violations
+    /// are also a force or torque that is not finite or too large, and one of a tool without
+    /// contact.
     TrialFigures crossings;
-    /// Changes of force and torque in frames that say `squeezed`, and in the next ones, over what
-    /// springs make of the hand's way and a proxy that waited may add.
+    /// Changes of force and torque in over-constrained frames and the next ones, beyond those of
+    /// the springs over the hand's motion and of a proxy that waited.
     TrialFigures steps;
-    /// Frames with such faces that are no violation: objects had left the tool no room and run over
-    /// it, and the frame in which they did had said so (squeezed).
+    /// Frames with such faces that are no violation: objects had run over the tool, and the frame
+    /// reported it as over-constrained.
     std::uint64_t run_over{0};
     std::uint64_t squeezed{0};
     std::uint64_t contacts{0};
@@ -52,11 +52,11 @@ struct RigidFigures
     void add(const RigidFigures& other);
 };
 
-/// Pegs, plates, gears and needles on sockets, plates, gears and what tests have else; models are
-/// made once a process.
+/// Pegs, plates, gears and needles on sockets, plates, gears and other models of the tests; models
+/// are made once a process.
 [[nodiscard]] std::vector<RigidTrial> rigid_trials(RigidStage stage = RigidStage::still);
 
-/// A core of each kind on each of the small_models().
+/// One core of each kind on each of the small_models().
 [[nodiscard]] std::vector<RigidTrial> rigid_trials_on_small_models();
 [[nodiscard]] RigidFigures run_rigid_trial(const RigidTrial& trial);
 

@@ -24,10 +24,10 @@ namespace
 
 constexpr double kRounding_m = 1e-14;
 constexpr double kClearRounding_m = 1e-12;
-constexpr std::uint32_t kScenePlaces = 24;  ///< Of objects.
-constexpr std::uint32_t kRoundFrames = 250; ///< Before the scene begins anew.
+constexpr std::uint32_t kScenePlaces = 24;  ///< Places of objects.
+constexpr std::uint32_t kRoundFrames = 250; ///< Frames of one scene.
 
-/// What the scene's maker knows of it.
+/// State of the scene as its author knows it.
 class Known
 {
 public:
@@ -35,7 +35,7 @@ public:
     {
         std::uint32_t generation{0};
         ModelId model{};
-        ObjectPose pose; ///< Of the model's frame.
+        ObjectPose pose; ///< Pose of the model frame.
     };
 
     Known(const std::vector<const TestModel*>& models, std::uint32_t tools)
@@ -47,7 +47,7 @@ public:
         }
     }
 
-    /// Of a place from the nearest of an object's faces.
+    /// Distance of a place from the nearest face of an object.
     [[nodiscard]] long double distance(const Thing& thing, const Vec3& world_m) const
     {
         const Vec3 place = to_model(thing.pose, world_m);
@@ -67,7 +67,7 @@ private:
     std::vector<FaceTree> trees_;
 };
 
-/// What happens in a scene, frame by frame: the same for each rig that is told.
+/// Events of a scene, frame by frame, the same for each rig.
 class Story
 {
 public:
@@ -80,7 +80,7 @@ public:
         }
     }
 
-    /// Changes that a frame must make, and others that it must refuse, with how many.
+    /// Makes valid changes and ones that must be refused, and counts the latter.
     void tell(Known& known, const std::function<void(const SceneChange&)>& change)
     {
         refused_.fill(0);
@@ -111,7 +111,7 @@ private:
     [[nodiscard]] double world_m() const { return 1.5 * diagonal_m_; }
     void refuse(ChangeRefusal refusal) { ++refused_[static_cast<std::size_t>(refusal)]; }
 
-    /// Of one tool more than there are.
+    /// Change of a tool, with one number more than there are tools.
     SceneChange next_of_tool(Known& known)
     {
         SceneChange change;
@@ -176,10 +176,10 @@ private:
             change.pose.scale = 0.0;
             refuse(ChangeRefusal::bad_pose);
             return change;
-        case 4: // Anywhere.
+        case 4: // Move to any place.
             thing.pose = change.pose;
             return change;
-        default: // A little.
+        default: // Small move.
             change.pose = thing.pose;
             change.pose.translation_m += 0.01 * random_.in_cube(diagonal_m_);
             thing.pose = change.pose;
@@ -190,12 +190,12 @@ private:
     Random random_;
     double diagonal_m_;
     std::vector<Vec3> goals_;
-    /// The next of each number; the first object is there from the start.
+    /// Next generation of each number; the first object is there from the start.
     std::map<std::uint32_t, std::uint32_t> generations_{{0, 1}};
     std::array<std::uint32_t, kChangeRefusals> refused_{};
 };
 
-/// Everything that a frame says of where things are.
+/// Checks all places and distances that a frame reports.
 class SceneJudge
 {
 public:
@@ -293,7 +293,7 @@ private:
     SceneFigures& figures_;
 };
 
-/// A scene from its beginning on, from so many frames of the trial on.
+/// Runs a new scene from frame `first` of the trial.
 void run_round(const SceneTrial& trial, std::uint32_t first, SceneFigures& figures)
 {
     const double diagonal_m = trial.models[0]->diagonal_m;

@@ -12,12 +12,13 @@
 namespace tactus::test
 {
 
-/// Frames of a scene whose objects come, move and go while tools wander through it, come and go,
-/// with changes among them that must be refused. Every few hundred frames it begins anew, one time
-/// in four with the frame as it ships, else with any set of its shortcuts.
+/// Frames of a scene whose objects are added, moved and removed while tools wander through it, are
+/// added and removed, with changes among them that must be refused. It restarts every few hundred
+/// frames, one time in four with the frame as it ships, otherwise with a random set of its
+/// shortcuts.
 struct SceneTrial
 {
-    std::vector<const TestModel*> models; ///< That objects show; the first gives the scale.
+    std::vector<const TestModel*> models; ///< Models of the objects; the first gives the scale.
     Hardship hardship;
     std::uint32_t tools{3};
     std::uint64_t seed{0};
@@ -26,14 +27,14 @@ struct SceneTrial
 
 struct SceneFigures
 {
-    /// Every bracket and every clearance holds the distance that is found by trying all objects;
-    /// the pairs are in their order, every refused change is counted and changes nothing. The error
-    /// is how far a distance is out of what was said, by the rounding that is allowed.
+    /// Every pair of bounds and every clearance holds the distance found by trying all objects; the
+    /// pairs are in order; every refused change is counted and has no effect. The error is a
+    /// distance's excess over the reported bounds, relative to the allowed rounding.
     TrialFigures truth;
     std::uint64_t exact{0};
-    std::uint64_t refused{0};  ///< Changes.
-    std::uint64_t gone{0};     ///< Tools that were not there, summed over the frames.
-    std::uint64_t variants{0}; ///< Beginnings without some shortcut.
+    std::uint64_t refused{0};  ///< Refused changes.
+    std::uint64_t gone{0};     ///< Absent tools, summed over the frames.
+    std::uint64_t variants{0}; ///< Starts without some shortcut.
 
     void add(const SceneFigures& other)
     {
@@ -47,10 +48,10 @@ struct SceneFigures
 
 [[nodiscard]] SceneFigures run_scene_trial(const SceneTrial& trial);
 
-/// Each of a frame's shortcuts with 1 in 2.
+/// Random variant: each shortcut with probability 1/2.
 [[nodiscard]] FrameVariant any_variant(Random& random);
 
-/// Anywhere in a cube of the world, turned anyhow, of 0.5 to 1.5 times the size.
+/// Random pose in a cube of the world with any rotation and a scale of 0.5 to 1.5.
 [[nodiscard]] ObjectPose any_pose(Random& random, double world_m);
 
 } // namespace tactus::test

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// I5: L <= d <= U in every frame, whatever runs out, and every budget kept (I7, I8). And that what
-/// holds it can fail: models whose certified bounds lie are found out.
+/// I5: L <= d <= U in every frame under every hardship, with every budget kept (I7, I8). The checks
+/// can fail: models with false bounds are detected.
 
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/shared/random.hpp"
@@ -20,7 +20,7 @@ namespace
 {
 
 constexpr std::uint32_t kBracketFrames = 150;
-/// Of the frames without a hardship nearly all have an answer; jumps and what is carried cost some.
+/// Share of answered frames without a hardship; jumps and moved objects cost some.
 constexpr double kAnswered = 0.8;
 
 void expect_sound_brackets(const TestModel& model, std::uint64_t own_seed, std::uint32_t frames)
@@ -69,11 +69,11 @@ TEST_P(KnownBracket, holds_and_budgets_are_kept_whatever_runs_out)
     expect_sound_brackets(*model, 50 + model->faces.size() % 50, kBracketFrames);
 }
 
-// The largest takes seconds to encode: in the extended run.
+// The largest takes seconds to encode; it is in the extended run.
 INSTANTIATE_TEST_SUITE_P(meshes, KnownBracket, testing::ValuesIn(kKnownMeshes, kKnownMeshes + 4),
                          [](const auto& mesh) { return std::string(mesh.param.name); });
 
-/// The same motion over the same mesh, with bounds multiplied.
+/// The same motion over the same mesh, with scaled bounds.
 TrialFigures bracket_with_bounds_times(double factor)
 {
     const TriangleMesh mesh = make_shape(Shape::bumpy_sphere, 4'000).value();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The level of detail adds no step to the force: while faces are split and merged and pages come
-/// in under resting, sliding and tapping tools, the force changes as on the full mesh.
+/// The level of detail adds no step to the force: while faces are split and merged and pages arrive
+/// under resting, sliding and tapping tools, the force changes as on the full mesh.
 
 #include "tests/shared/random.hpp"
 #include "tests/stability/force_twin_trial.hpp"
@@ -49,7 +49,7 @@ TEST_P(ForceTwin, the_force_changes_as_on_the_full_mesh)
     }
 }
 
-// Smooth, round, open, sharp; needles never fit the pools as a whole.
+// Smooth, round, open and sharp models; needles never fit the pools as a whole.
 INSTANTIATE_TEST_SUITE_P(small_models, ForceTwin, testing::Range<std::size_t>(0, 4));
 
 TEST(ForceTwins, hold_for_two_tools_that_share_the_budgets)
@@ -82,10 +82,10 @@ TEST(ForceStepJudge, sees_a_step_that_the_twin_does_not_make_and_no_other)
     ForceStepJudge sut;
     EXPECT_EQ(certified_step(sut, 1.0, 1.0), -1.0);
     EXPECT_EQ(certified_step(sut, 3.0, 3.0), 0.0);
-    EXPECT_EQ(certified_step(sut, 3.25, 3.0), 0.25); // A surface that pops up,
-    EXPECT_EQ(certified_step(sut, 3.25, 3.0), 0.0);  // that stays,
-    EXPECT_EQ(certified_step(sut, 4.0, 4.0), 0.25);  // and is right again.
-    EXPECT_EQ(certified_step(sut, -4.0, 4.0), 8.0);  // A vector's difference.
+    EXPECT_EQ(certified_step(sut, 3.25, 3.0), 0.25); // A surface that appears.
+    EXPECT_EQ(certified_step(sut, 3.25, 3.0), 0.0);  // A surface that stays.
+    EXPECT_EQ(certified_step(sut, 4.0, 4.0), 0.25);  // A correct surface again.
+    EXPECT_EQ(certified_step(sut, -4.0, 4.0), 8.0);  // Difference of vectors.
 }
 
 TEST(ForceStepJudge, waits_for_two_frames_in_contact)
@@ -115,14 +115,14 @@ TEST(ForceStepJudge, tells_steps_apart_that_come_of_late_data)
     { return sut.judge(ours, twin, is_answered).value().is_certified; };
     EXPECT_FALSE(sut.judge(ours, twin, true));
     EXPECT_TRUE(is_certified(true));
-    ours.proxy_m = Vec3(0.001, 0.0, 0.0); // Data was there all the time.
+    ours.proxy_m = Vec3(0.001, 0.0, 0.0); // The data were always resident.
     EXPECT_TRUE(is_certified(true));
     EXPECT_TRUE(is_certified(true));
     EXPECT_FALSE(is_certified(false));
     EXPECT_FALSE(is_certified(true));
-    EXPECT_FALSE(is_certified(true)); // Still in different places, since it had to wait.
+    EXPECT_FALSE(is_certified(true)); // The places still differ, since one proxy had to wait.
     ours.proxy_m = twin.proxy_m;
-    EXPECT_FALSE(is_certified(true)); // Until both frames are of proxies in one place.
+    EXPECT_FALSE(is_certified(true)); // In both frames, the proxies must coincide.
     EXPECT_TRUE(is_certified(true));
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// A device that sends garbage gets a safe force and is told of in the frame's faults.
+/// A device that sends garbage yields a safe force, and the frame's faults report it.
 
 #include "tests/stability/bracket_trial.hpp"
 #include "tests/stability/garbage_trial.hpp"
@@ -46,8 +46,8 @@ TEST(DeviceGarbageOfABody, gets_a_safe_force_and_torque_and_is_told_of)
 }
 
 #if defined(__x86_64__)
-/// A library built with -ffast-math may set both; the haptic thread mends and reports it, and a
-/// frame that runs nevertheless is still right.
+/// A library built with -ffast-math may set both flags. The haptic thread resets and reports them,
+/// and a frame that runs with them is still right.
 TEST(FlushedDenormals, leave_brackets_true)
 {
     const TestModel& model = small_model(0);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// Nothing drifts: splits and merges, touches and rests return to the same state (I2).
+/// I2: nothing drifts; splits and merges, touches and rests return to the same state.
 
 #include "tests/shared/random.hpp"
 #include "tests/stability/day_trial.hpp"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// Tools that are meshes: brackets (I5), budgets (I8), pairs of faces that meet and contacts,
-/// whatever runs out; and exact answers are those of the full meshes (I4).
+/// Mesh tools: bounds (I5), budgets (I8), meeting pairs and contacts under every hardship; exact
+/// answers are those of the full meshes (I4).
 
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/shared/random.hpp"
@@ -23,9 +23,9 @@ namespace
 constexpr std::array<const char*, 7> kHardships{"usual",      "K-1",    "starved",    "small-pools",
                                                 "lossy-link", "static", "little-work"};
 constexpr std::array<double, 3> kScales{0.4, 2.0, 8.0};
-constexpr std::array<double, 3> kSkins_diag{0.002, 0.0, 0.01}; ///< Of the tool.
+constexpr std::array<double, 3> kSkins_diag{0.002, 0.0, 0.01}; ///< Skins in diagonals of the tool.
 
-/// 300 to 4,000 faces.
+/// Models of 300 to 4,000 faces.
 const TestModel& tool_model(std::size_t index)
 {
     switch (index % 3)
@@ -91,7 +91,7 @@ TEST_P(KnownMeshTools, agree_with_all_faces_of_both_whatever_runs_out)
         GTEST_SKIP() << "TACTUS_MESHES is not set";
     }
     const FaceTree tree(object->faces);
-    for (const std::size_t i : {0U, 1U, 2U, 3U, 4U, 6U}) // Not the static one.
+    for (const std::size_t i : {0U, 1U, 2U, 3U, 4U, 6U}) // The static hardship is left out.
     {
         const std::uint64_t seed = seed_of(20'261'480 + i);
         const MeshFigures sut =
@@ -124,7 +124,7 @@ TEST_P(MeshToolSlides, are_answered_and_reported_completely)
     EXPECT_GT(sut.meeting, 20U);
 }
 
-// Smooth, round, open, sharp.
+// Smooth, round, open and sharp models.
 INSTANTIATE_TEST_SUITE_P(small_models, MeshToolSlides, testing::Range<std::size_t>(0, 4));
 
 TEST(CoincidentMeshes, share_faces_by_the_exact_decision_and_the_lowest_ids_are_kept)
@@ -143,7 +143,7 @@ TEST(CoincidentMeshes, share_faces_by_the_exact_decision_and_the_lowest_ids_are_
     }
 }
 
-/// 1,000 faces each: some ten times as many pairs as are told.
+/// 1,000 faces each: about ten times as many pairs as a report holds.
 TEST(CoincidentMeshes, of_many_faces_are_told_to_be_too_many_within_the_budgets)
 {
     const TriangleMesh mesh = make_shape(Shape::bumpy_sphere, 1'000).value();
@@ -157,11 +157,11 @@ TEST(CoincidentMeshes, of_many_faces_are_told_to_be_too_many_within_the_budgets)
         print(0, sut);
         EXPECT_TRUE(sut.truth.holds());
         EXPECT_EQ(sut.meeting, 24U);
-        EXPECT_TRUE(sut.truncated > 3U || hardship != 5U); // Of models that are there as a whole.
+        EXPECT_TRUE(sut.truncated > 3U || hardship != 5U); // Required for fully resident models.
     }
 }
 
-/// Twenty times as large, on it and with it inside.
+/// Tools twenty times as large as the object, touching it and containing it.
 TEST(MeasuringMeshTools, that_are_larger_than_the_object_agree_with_all_faces_of_both)
 {
     for (std::size_t i = 0; i < 3; ++i)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// No input ends the process: tools without room, hands at rest and exactly along walls.
+/// No input ends the process: tools without free space, hands at rest and exactly along walls.
 
 #include "tests/shared/random.hpp"
 #include "tests/shared/trial_length.hpp"

@@ -16,10 +16,10 @@ namespace tactus::test
 namespace
 {
 
-/// How far from orthonormal poses may be for L and U to hold (kPoseRounding).
+/// Deviation of poses from orthonormal for which L and U hold (kPoseRounding).
 constexpr double kOrthonormal = 2e-15;
 
-/// Of `--place`, with a rotation vector in degrees.
+/// Placement by `--place`, with a rotation vector in degrees.
 Similarity place_turned(const Vec3& degrees)
 {
     std::array<char, 128> text{};
@@ -34,7 +34,7 @@ TEST(Placement, rotations_of_any_angle_are_orthonormal_and_no_mirrors)
     double worst = 0.0;
     for (int i = 0; i < 20'000; ++i)
     {
-        const double angle_deg = std::exp2(random.between(-60.0, 8.4)); // To 338 degrees.
+        const double angle_deg = std::exp2(random.between(-60.0, 8.4)); // Angles up to 338 degrees.
         const Mat3 sut = place_turned(angle_deg * random.in_cube(1.0).normalized()).rotation;
         const Mat3 off = sut.transpose() * sut - Mat3::Identity();
         worst = std::max(worst, off.norm());

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The way of the proxy relative to an object crosses no face of the full mesh: fast taps, thin
-/// plates, sharp and concave edges, objects that move, data that is late or lost; with smooth
-/// normals as well. Where objects leave no room the frame says so. And that what holds it can fail.
+/// The path of the proxy relative to an object crosses no face of the full mesh: fast taps, thin
+/// plates, sharp and concave edges, moving objects, late or lost data; also with force shading. If
+/// objects leave no space, the frame reports it. The checks can fail.
 
 #include "tests/shared/frame_rig.hpp"
 #include "tests/shared/random.hpp"
@@ -64,7 +64,7 @@ TEST_P(PopThrough, never_happens_unless_an_object_runs_over_the_tool_and_it_is_t
 }
 
 // Bumpy, open, sharp, thin, needles, crumbs; spikes, plates and sheets 1e-4 diag apart, borders,
-// fins, loose pieces. All in the extended run.
+// fins, loose pieces. The extended run has all.
 INSTANTIATE_TEST_SUITE_P(generated, PopThrough,
                          testing::Values(0, 2, 3, 4, 5, 6, 10, 11, 12, 14, 15, 17));
 
@@ -92,15 +92,15 @@ TEST(PopThroughClosing, objects_that_leave_no_room_are_told_and_the_force_fades)
     }
 }
 
-/// A controller that starts while a hand leans into a model, as deep as three radii, and moves on.
-/// The ball is deep in hundreds of faces when the first of them are known.
+/// Controller that starts while a hand leans into a model, as deep as three radii, and moves on.
+/// The sphere is deep in hundreds of faces when the first of them are loaded.
 struct LeaningStart
 {
     const TestModel& model;
-    std::uint32_t planes; ///< Of a frame's budget.
+    std::uint32_t planes; ///< Planes of a frame's budget.
     std::uint64_t seed;
     bool is_smooth;
-    std::uint32_t cut_short{0}; ///< Frames.
+    std::uint32_t cut_short{0}; ///< Frames that were cut short.
     std::uint32_t in_contact{0};
 
     void run(const FaceTree& tree)
@@ -123,7 +123,8 @@ struct LeaningStart
         ProxyTrail trail(model, tree);
         for (std::uint32_t frame = 0; frame < 80; ++frame)
         {
-            const double turn = 0.05 * frame; // To the other side of the surface and back.
+            // The hand moves to the other side of the surface and back.
+            const double turn = 0.05 * frame;
             const Vec3 goal_m = at_m + std::cos(turn) * in + (1e-3 * turn * radius_m) * way;
             const FrameOutput output = rig.step({goal_m}, budgets);
             const ToolOutput& tool = output.tools[0];
@@ -173,7 +174,7 @@ TEST(PopThroughLeaning, never_happens_at_a_start_within_a_surface_whatever_may_b
     EXPECT_GT(in_contact, 200U);
 }
 
-/// Two faces in z = 0 that make a square, with x and y from 0 to 1.
+/// Two faces in z = 0 that form the unit square.
 struct Square
 {
     TestModel model{"square",
@@ -193,14 +194,16 @@ TEST(ProxyTrail, meets_faces_edges_and_corners_also_when_it_only_touches)
 {
     const Square sut;
     const double least = 0x1p-1074;
-    EXPECT_TRUE(sut.is_met(Vec3(0.5, 0.25, 1.0), Vec3(0.5, 0.25, -1.0)));   // A face.
-    EXPECT_TRUE(sut.is_met(Vec3(0.5, 0.5, 1.0), Vec3(0.5, 0.5, -1.0)));     // The edge of two.
-    EXPECT_TRUE(sut.is_met(Vec3(0.25, 0.75, 0.5), Vec3(0.75, 0.25, -0.5))); // The same, aslant.
-    EXPECT_TRUE(sut.is_met(Vec3(1.0, 0.25, 1.0), Vec3(1.0, 0.25, -1.0)));   // The border.
-    EXPECT_TRUE(sut.is_met(Vec3(1.0, 1.0, 1.0), Vec3(1.0, 1.0, -1.0)));     // A corner.
-    EXPECT_TRUE(sut.is_met(Vec3(0.3, 0.1, 1.0), Vec3(0.3, 0.1, 0.0)));      // Ends on it.
-    EXPECT_TRUE(sut.is_met(Vec3(-0.5, 0.5, 0.0), Vec3(0.5, 0.5, 0.0)));     // In its plane.
-    EXPECT_TRUE(sut.is_met(Vec3(-1.0, 1.0, 0.0), Vec3(1.0, -1.0, 0.0)));    // Past a corner.
+    EXPECT_TRUE(sut.is_met(Vec3(0.5, 0.25, 1.0), Vec3(0.5, 0.25, -1.0))); // Through a face.
+    EXPECT_TRUE(sut.is_met(Vec3(0.5, 0.5, 1.0), Vec3(0.5, 0.5, -1.0))); // Through the common edge.
+    // Through the common edge, oblique.
+    EXPECT_TRUE(sut.is_met(Vec3(0.25, 0.75, 0.5), Vec3(0.75, 0.25, -0.5)));
+    EXPECT_TRUE(sut.is_met(Vec3(1.0, 0.25, 1.0), Vec3(1.0, 0.25, -1.0))); // Through the border.
+    EXPECT_TRUE(sut.is_met(Vec3(1.0, 1.0, 1.0), Vec3(1.0, 1.0, -1.0)));   // Through a corner.
+    EXPECT_TRUE(sut.is_met(Vec3(0.3, 0.1, 1.0), Vec3(0.3, 0.1, 0.0)));    // Ends on the face.
+    EXPECT_TRUE(sut.is_met(Vec3(-0.5, 0.5, 0.0), Vec3(0.5, 0.5, 0.0))); // In the plane of the face.
+    // Through a corner, in the plane.
+    EXPECT_TRUE(sut.is_met(Vec3(-1.0, 1.0, 0.0), Vec3(1.0, -1.0, 0.0)));
 
     EXPECT_FALSE(sut.is_met(Vec3(0.3, 0.1, 1.0), Vec3(0.3, 0.1, least)));
     EXPECT_FALSE(sut.is_met(Vec3(-least, 0.5, 1.0), Vec3(-least, 0.5, -1.0)));
@@ -228,7 +231,7 @@ TEST(ProxyTrail, tells_its_own_steps_from_an_object_that_moves)
     const ProxyTrail::Crossings other = sut.follow(stays, pose);
     EXPECT_TRUE(other.carried);
     EXPECT_FALSE(other.moved);
-    // Both move alike: nothing is crossed.
+    // Both move equally: nothing is crossed.
     pose.translation_m.z() -= 5.0;
     const std::array along{Vec3(0.6, 0.3, -5.3)};
     EXPECT_FALSE(sut.follow(along, pose).carried);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// I4: within the certified radius everything is what the full mesh gives, bit for bit; and most
-/// frames are certified, so that this can't hold by certifying nothing.
+/// I4: within the certified radius everything equals the full mesh bit for bit. Most frames are
+/// certified, so that the claim is not empty.
 
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/shared/random.hpp"
@@ -38,7 +38,7 @@ TEST_P(Twin, certified_answers_are_those_of_the_full_mesh_to_the_last_bit)
     EXPECT_TRUE(sut.uncertified.holds());
 }
 
-// Smooth, round, open, sharp; needles never fit the pools as a whole.
+// Smooth, round, open and sharp models; needles never fit the pools as a whole.
 INSTANTIATE_TEST_SUITE_P(small_models, Twin, testing::Range<std::size_t>(0, 4));
 
 TEST(TwinOfALiar, is_told_apart_from_the_full_mesh)

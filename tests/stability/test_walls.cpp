@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The rules of docs/stability.md on the model of hand and device: what they allow doesn't swing
-/// and makes no more energy than they say; what they forbid does. Prints the tables of that page.
+/// The rules of docs/stability.md on the model of hand and device: allowed settings do not
+/// oscillate and generate no more energy than stated; forbidden ones do. Prints the tables of that
+/// page.
 
 #include "platform/devices/simulated/device_classes.hpp"
 #include "platform/devices/simulated/hand_turn.hpp"
@@ -42,14 +43,14 @@ const std::array<Class, 3> kClasses{Class{"touch", kTouchClass}, Class{"omega", 
 constexpr std::array<double, 2> kPeriods_s{1e-3, 0.25e-3};
 constexpr double kDepth_m = 0.01;
 
-/// A finger that leans on the device without any damping of its own, on a device without Coulomb
-/// friction: nothing but b is left against a limit cycle.
+/// Finger without damping of its own that leans on a device without Coulomb friction: only b
+/// prevents a limit cycle.
 HandLimb worst_hand()
 {
     return {0.0, 200.0, 0.0, 1e5, 0.0};
 }
 
-/// `share` of the predicted limit, whatever stiffness the device's maker allows.
+/// Trial at `share` of the predicted limit, ignoring the stiffness that the device's maker permits.
 WallTrial pressed(const DeviceLimits& device, double period_s, double share, bool has_friction,
                   const HandLimb& hand)
 {
@@ -66,9 +67,9 @@ WallTrial pressed(const DeviceLimits& device, double period_s, double share, boo
     return trial;
 }
 
-/// What quantisation can keep alive: in a swing of amplitude a at w = sqrt(K / m) it feeds at most
-/// 4 a (K q / 2 - f) a cycle, and b - K T / 2 takes pi a^2 w of them. Peak to peak, with the
-/// quantum in which nothing is seen.
+/// Bound of the limit cycle by quantisation: an oscillation of amplitude a at w = sqrt(K / m) gains
+/// at most 4 a (K q / 2 - f) a cycle, and b - K T / 2 dissipates pi a^2 w. Peak to peak, plus one
+/// quantum, in which nothing is visible.
 double hum_bound_m(const WallTrial& trial)
 {
     const double q = trial.device.quantum_m;
@@ -82,7 +83,7 @@ double hum_bound_m(const WallTrial& trial)
     return q + 8.0 * noise_n / (std::numbers::pi * left * w);
 }
 
-/// A passive trial that taps, and what it says of itself.
+/// Passive trial with taps, described by its parameters.
 WallTrial random_taps(Random& random)
 {
     const Class& one = kClasses[random.below(kClasses.size())];
@@ -91,7 +92,7 @@ WallTrial random_taps(Random& random)
     trial.device.quantum_m *= random.between(0.0, 2.0);
     trial.device.friction_n *= random.one_in(3) ? 0.0 : random.between(0.2, 1.0);
     trial.device.stiffness_max_n_per_m = 1e6;
-    trial.device.force_max_n = 100.0; // Cut forces would hide what the wall makes.
+    trial.device.force_max_n = 100.0; // Clamped forces would hide the energy of the wall.
     trial.period_s = kPeriods_s[random.below(kPeriods_s.size())];
     trial.stiffness_n_per_m =
         random.between(0.3, 0.9) * stiffness_limits(trial.device, trial.period_s).sampling_n_per_m;
@@ -120,10 +121,10 @@ TEST(Walls, rest_at_nine_tenths_of_the_limit_and_swing_well_above_it)
                         allowed.stiffness_n_per_m, 1e6 * calm.swing_m, 1e6 * hum_bound_m(allowed),
                         wild.stiffness_n_per_m, 1e6 * swings.swing_m);
             EXPECT_LT(calm.swing_m, hum_bound_m(allowed)) << one.name << " " << period_s;
-            // The bound takes the worst of each rounding; what is left is some quanta.
+            // The bound takes the worst of each rounding; some quanta remain.
             EXPECT_LT(calm.swing_m, 10.0 * one.device.quantum_m) << one.name << " " << period_s;
             EXPECT_GT(swings.swing_m, 4.0 * calm.swing_m) << one.name << " " << period_s;
-            // Not fading: the motors have worked all the time.
+            // The oscillation does not fade: the motors worked all the time.
             EXPECT_GT(swings.work_j, 0.02) << one.name << " " << period_s;
         }
     }
@@ -137,7 +138,7 @@ TEST(Walls, without_quantisation_rest_completely_at_nine_tenths)
         {
             WallTrial trial = pressed(one.device, period_s, 0.9, false, worst_hand());
             trial.device.quantum_m = 0.0;
-            trial.duration_s = 60.0; // A tenth of b is left: it rings for long.
+            trial.duration_s = 60.0; // A tenth of b is left, so it rings for long.
             EXPECT_LT(run_wall_trial(trial).swing_m, 1e-6) << one.name << " " << period_s;
         }
     }
@@ -177,11 +178,11 @@ TEST(Walls, of_3000_newtons_a_metre_rest_on_the_omega_class)
             trial.device = kOmegaClass;
             trial.stiffness_n_per_m = 3'000.0;
             trial.is_conditioned = is_conditioned;
-            trial.target_x_m = press(0.01, 0.03); // 6 N.
+            trial.target_x_m = press(0.01, 0.03); // A force of 6 N.
             const WallFigures figures = run_wall_trial(trial);
             EXPECT_LE(figures.swing_m, kOmegaClass.quantum_m) << period_s;
             EXPECT_GT(figures.deepest_m, 0.5e-3);
-            EXPECT_EQ(figures.damping_max_n_s_per_m, 0.0); // Nothing to damp.
+            EXPECT_EQ(figures.damping_max_n_s_per_m, 0.0); // No damping is needed.
         }
     }
 }
@@ -201,7 +202,7 @@ TEST(Walls, rest_with_surface_damping_and_delay_that_the_rule_knows)
             trial.stiffness_n_per_m =
                 stiffness_cap(trial.device, period_s, trial.surface_damping_n_s_per_m);
             EXPECT_LT(run_wall_trial(trial).swing_m, 1e-6) << delay_periods << " " << period_s;
-            // The same wall on a rule that doesn't know the delay.
+            // The same wall with a rule that ignores the delay.
             trial.surface_damping_n_s_per_m = 0.0;
             trial.stiffness_n_per_m = 1.5 * stiffness_cap(kOmegaClass, period_s);
             EXPECT_GT(run_wall_trial(trial).swing_m, 5e-5) << delay_periods << " " << period_s;
@@ -267,7 +268,7 @@ TEST(PassivityController, holds_the_energy_of_a_wall_that_comes_late)
                     1e6 * piped.swing_m, piped.held_periods);
                 EXPECT_LT(piped.largest_work_j, 2.5e-3) << one.name << " " << late;
                 EXPECT_LT(piped.swing_m, one.device.quantum_m) << one.name << " " << late;
-                // One spring at the hand's deepest rest is what the wall may hold at all.
+                // The wall may store at most one spring at the hand's deepest rest.
                 EXPECT_LT(held.largest_work_j, 2.5e-3) << one.name << " " << late;
                 EXPECT_LT(held.swing_m, one.device.quantum_m) << one.name << " " << late;
                 EXPECT_LE(held.damping_max_n_s_per_m, one.device.added_damping_max_n_s_per_m);
@@ -331,7 +332,7 @@ TEST(PassivityObserver, is_off_by_no_more_than_the_quantum_explains)
     trial.is_conditioned = true;
     trial.target_x_m = tap(0.01, 4.0);
     const WallFigures figures = run_wall_trial(trial);
-    // Sum by parts: half a quantum for each newton that the force goes up or down, eight contacts.
+    // Summation by parts: half a quantum for each newton of change of the force, eight contacts.
     const double force_way_n = 2.0 * 12.0 * (figures.contacts + 1.0);
     EXPECT_LT(figures.observer_error_j, 0.5 * kOmegaClass.quantum_m * force_way_n);
     EXPECT_GT(figures.observer_error_j, 0.0);
@@ -390,7 +391,7 @@ TEST(DeviceClasses, have_the_caps_of_the_page)
 namespace
 {
 
-/// A wrist turns a device about an axis into a wall that begins at the angle 0.
+/// A wrist rotates a device about an axis into a wall that begins at the angle 0.
 struct TurningTrial
 {
     DeviceLimits device{kDeskClass};
@@ -400,7 +401,7 @@ struct TurningTrial
                    .grip_stiffness_n_per_m = 100.0,
                    .grip_damping_n_s_per_m = 0.0};
     double stiffness_nm_per_rad{1.0};
-    std::size_t late_periods{0}; ///< Of the wall's own torque: makes it active.
+    std::size_t late_periods{0}; ///< Delay of the wall's own torque, which makes it active.
     bool controls_passivity{false};
     double duration_s{30.0};
 };
@@ -409,7 +410,7 @@ struct TurningFigures
 {
     double swing_rad{0.0}; ///< Peak to peak in the last 0.5 s.
     double largest_work_j{0.0};
-    double observer_error_j{0.0}; ///< Against the simulation's own ledger.
+    double observer_error_j{0.0}; ///< Difference from the simulation's own energy.
     double off_axis_nm{0.0};
 };
 
@@ -436,7 +437,7 @@ TurningFigures turn_into_wall(const TurningTrial& trial)
         const Mat3 measured = to_rotation(sim.measured());
         turned += rotation_vector(orthonormalised(measured * last.transpose()));
         last = measured;
-        const double angle = turned.dot(axis) + 0.1; // It starts so far in front of the wall.
+        const double angle = turned.dot(axis) + 0.1; // The start is 0.1 in front of the wall.
         std::shift_right(late_nm.begin(), late_nm.end(), 1);
         late_nm[0] = angle < 0.0 ? -trial.stiffness_nm_per_rad * angle : 0.0;
         const ToolForce out = condition(
@@ -457,7 +458,7 @@ TurningFigures turn_into_wall(const TurningTrial& trial)
     return figures;
 }
 
-/// `share` of the rule's limit, whatever the maker allows.
+/// Trial at `share` of the rule's limit, ignoring the maker's.
 TurningTrial turned_into(double share)
 {
     TurningTrial trial;
@@ -481,7 +482,8 @@ TEST(TurningWalls, rest_at_nine_tenths_of_the_limit)
     EXPECT_LT(rests.off_axis_nm, 1e-9);
 }
 
-/// Above the rule's cap a wall is scaled down to it, so an active one shows what is held.
+/// A wall above the rule's limit is scaled down to it, so an active one shows what the controller
+/// limits.
 TEST(TurningWalls, that_come_late_are_held_by_the_passivity_controller)
 {
     TurningTrial trial = turned_into(0.9);

@@ -14,9 +14,8 @@ namespace tactus::test
 
 using WidePoint = Point<long double>;
 
-/// The true distance between a tool at a place of the model's frame and the whole source mesh.
-/// What a frame's bracket is about depends on the tool's shape: this is all that another shape has
-/// to bring.
+/// True distance between a tool at a place of the model frame and the whole source mesh. A frame's
+/// bounds depend on the tool's shape, so another shape needs only another oracle.
 class ToolOracle
 {
 public:
@@ -27,15 +26,15 @@ public:
     ToolOracle& operator=(ToolOracle&&) = delete;
     virtual ~ToolOracle() = default;
 
-    /// Fast, in long double.
+    /// Nearest point, fast, in long double.
     [[nodiscard]] virtual FaceTree::WideNearest nearest(const WidePoint& place_m) const = 0;
-    /// Face by face in long double: what `nearest` is to find.
+    /// Distance face by face in long double, to check `nearest`.
     [[nodiscard]] virtual long double brute(const WidePoint& place_m) const = 0;
-    /// Face by face in 113 bits: who is right when `nearest` and the bracket differ.
+    /// Distance face by face in 113 bits, to decide if `nearest` and the bounds differ.
     [[nodiscard]] virtual Quad judged(const WidePoint& place_m) const = 0;
 };
 
-/// For points and spheres: their distance is that of the centre.
+/// Oracle of points and spheres, whose distance is that of the centre.
 class CenterOracle final : public ToolOracle
 {
 public:
@@ -73,8 +72,8 @@ private:
     FaceTree tree_;
 };
 
-/// A place of the world in the model's frame, with no rounding that counts and by the inverse of
-/// the rotation, which its transpose nearly is.
+/// Place of the world in the model frame, without significant rounding, by the inverse of the
+/// rotation, which its transpose only approximates.
 [[nodiscard]] inline WidePoint wide_place(const ObjectPose& pose, const Vec3& world_m)
 {
     using WideMatrix = Eigen::Matrix<long double, 3, 3>;

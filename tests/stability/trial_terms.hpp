@@ -8,12 +8,12 @@
 #include <cstdio>
 #include <string>
 
-/// What trials have in common.
+/// Constants and functions of all trials.
 namespace tactus::test
 {
 
-inline constexpr double kRadius_diag = 0.01; ///< Of a spherical tool.
-/// As with_tool() has them.
+inline constexpr double kRadius_diag = 0.01; ///< Radius of a spherical tool.
+/// Limits of with_tool().
 inline constexpr double kForceMax_n = 8.0;
 inline constexpr double kWall_n_per_m = 500.0;
 /// Diagonals of objects.
@@ -26,7 +26,7 @@ bool is_between(double lower, Real distance, double upper)
     return static_cast<Real>(lower) <= distance && distance <= static_cast<Real>(upper);
 }
 
-/// All digits.
+/// Number with all digits.
 [[nodiscard]] inline std::string exactly(double value)
 {
     std::array<char, 64> text{};

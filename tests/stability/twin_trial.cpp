@@ -30,13 +30,13 @@ namespace tactus::test
 namespace
 {
 
-constexpr double kSpeed_diag = 0.1e-3; ///< A frame of 1 ms: 0.1 diag/s.
-/// Cores are tried where the sphere's ball is certified: in the middle of it, and so far out.
+constexpr double kSpeed_diag = 0.1e-3; ///< Step of a frame of 1 ms: 0.1 diag/s.
+/// Size of the cores, and their distance from the centre of the certified sphere.
 constexpr double kCoreSize_diag = 0.004;
 constexpr double kCoreReach_diag = 0.0102;
-constexpr std::uint32_t kTwinSettling = 100; ///< Frames in which the front comes to the tool.
+constexpr std::uint32_t kTwinSettling = 100; ///< Frames until the model is refined at the tool.
 
-/// An exact face and where it is.
+/// Exact face with its place.
 struct NearFace
 {
     std::uint32_t face{0};
@@ -47,7 +47,7 @@ struct NearFace
 
 using FaceSet = std::vector<NearFace>;
 
-/// The whole query, with budgets that never end it.
+/// Answer of the whole query, with budgets that never end it.
 OwnedSurface surface_at(const AbTree& tree, const Vec3& center_m, double reach_m)
 {
     OwnedSurface surface;
@@ -57,7 +57,7 @@ OwnedSurface surface_at(const AbTree& tree, const Vec3& center_m, double reach_m
     return surface;
 }
 
-/// The faces within the radius by the oracle's distance, in the order of their ids.
+/// Faces within the radius by the oracle's distance, in the order of their ids.
 FaceSet faces_within(const AbTree& tree, const LocalSurface& surface, double radius_m)
 {
     const Vec3& p = surface.center_m;
@@ -77,7 +77,7 @@ FaceSet faces_within(const AbTree& tree, const LocalSurface& surface, double rad
     return faces;
 }
 
-/// What differs between the answers of the refined and of the whole mesh; empty when nothing does.
+/// Difference between the answers of the refined and the whole mesh; empty if there is none.
 std::string difference(const AbTree& refined, const AbTree& whole, const Vec3& center_m,
                        double radius_m)
 {
@@ -132,7 +132,7 @@ bool same_answer(const DistanceAnswer& a, const DistanceAnswer& b)
            same_bits(a.tool_point_m, b.tool_point_m);
 }
 
-/// A core of each kind in turn, turned at random, about `size_m` large.
+/// Core of each kind in turn, with a random rotation, about `size_m` large.
 PlacedCore twin_core(std::uint32_t turn, const Vec3& center_m, double size_m, Random& random)
 {
     static const std::array<Vec3, 5> kWedge{Vec3(-0.5, 0, 0), Vec3(0.5, 0, 0), Vec3(0, 0.6, 0),
@@ -154,9 +154,9 @@ PlacedCore twin_core(std::uint32_t turn, const Vec3& center_m, double size_m, Ra
     }
 }
 
-/// What differs between what a core finds in a refined and in a whole mesh: its contacts within
-/// `radius_m` and, of an exact answer, nearest points, normal and side. Empty when nothing does,
-/// none when the refined mesh does not certify so much.
+/// Difference between the findings of a core in a refined and in a whole mesh: its contacts within
+/// `radius_m` and, of an exact answer, nearest points, normal and side. An empty text if equal, no
+/// value if the refined mesh does not certify enough.
 std::optional<std::string> core_difference(const AbTree& refined, const AbTree& whole,
                                            const PlacedCore& core, double radius_m, bool is_closed)
 {
@@ -185,7 +185,7 @@ std::optional<std::string> core_difference(const AbTree& refined, const AbTree& 
     return "";
 }
 
-/// A rig that has refined everything.
+/// Rig that has refined everything.
 std::unique_ptr<FrameRig> whole_model(const TestModel& model)
 {
     auto rig = std::make_unique<FrameRig>(model, whole_options(model.faces.size()));
@@ -202,13 +202,13 @@ SurfaceSlide slide_over(const TwinTrial& trial, Random& random)
     manner.step_m = kSpeed_diag * trial.model.diagonal_m;
     manner.turn_rate = [seed = random.bits()](std::uint64_t turn)
     { return Random::seeded(seed + turn).between(-1.0, 1.0); };
-    // From above, where nothing is in the proxy's way.
+    // The slide begins above the model, where nothing is in the proxy's way.
     const Vec3 top = trial.tree.high_m() + Vec3(0.0, 0.0, 0.01 * trial.model.diagonal_m);
     const Vec3 middle = 0.5 * (trial.tree.low_m() + trial.tree.high_m());
     return {trial.tree, manner, Vec3(middle.x(), middle.y(), top.z())};
 }
 
-/// Nothing for an empty text.
+/// Records a violation unless the text is empty.
 void flag(const std::string& text, const TwinTrial& trial, std::uint32_t frame,
           TrialFigures& figures)
 {

@@ -11,7 +11,7 @@
 namespace tactus::test
 {
 
-/// The same model twice: streamed and refined round a sliding tool as in use, and refined fully.
+/// The same model twice: streamed and refined around a sliding tool as in use, and refined fully.
 struct TwinTrial
 {
     const TestModel& model;
@@ -22,18 +22,18 @@ struct TwinTrial
 
 struct TwinFigures
 {
-    /// Of every certified frame: kind, L, U, nearest face, point and feature, and the set of exact
-    /// faces within the certified radius, bit for bit. The error is the number of differences.
+    /// Certified frames: kind, L, U, nearest face, point and feature, and the set of exact faces
+    /// within the certified radius, bit for bit. The error is the number of differences.
     TrialFigures identity;
-    /// In those frames a point, a segment, a box and a hull in turn, in the middle of the ball:
-    /// contacts and, of exact answers, normal, side and nearest points, bit for bit.
+    /// Point, segment, box and hull in turn in those frames, at the centre of the sphere: contacts
+    /// and, of exact answers, normal, side and nearest points, bit for bit.
     TrialFigures cores;
-    /// Frames without an exact or decided answer, of those after the tool has come down, with K =
-    /// 64 at 0.1 diag/s. The error is their share.
+    /// Frames without an exact or separated answer, after the tool's descent, with K = 64 at 0.1
+    /// diag/s. The error is their share.
     TrialFigures uncertified;
 };
 
-/// What of an answer may be left open: a twentieth of the frames.
+/// Share of frames that may be open.
 inline constexpr double kUncertifiedShare = 0.05;
 
 [[nodiscard]] TwinFigures run_twin_trial(const TwinTrial& trial);

@@ -18,7 +18,7 @@ namespace
 
 constexpr double kLast_s = 0.5;
 
-/// The least and the largest of what it was shown.
+/// Least and greatest of the values.
 struct Span
 {
     double low{std::numeric_limits<double>::infinity()};
@@ -36,7 +36,7 @@ struct Span
 struct ContactLedger
 {
     bool is_open{false};
-    double entry_m_per_s{0.0}; ///< Fastest around the first sample.
+    double entry_m_per_s{0.0}; ///< Greatest speed around the first sample.
     double way_m{0.0};
     HandAndDeviceEnergy begin;
 };
@@ -52,7 +52,7 @@ public:
         , pipeline_(pipeline_of(trial))
         , late_n_(trial.wall_delay_periods + 1, 0.0)
     {
-        for (int i = 0; i < 1'000; ++i) // Until its gain is whole.
+        for (int i = 0; i < 1'000; ++i) // Runs until the gain is one.
         {
             static_cast<void>(piped(Vec3(0.0, 0.0, 0.0), sim_.measured_m(), 0.0));
         }
@@ -81,7 +81,7 @@ public:
     }
 
 private:
-    /// A spring and a damper that only push, one or more periods late if so wished.
+    /// Spring and damper that only push, optionally with a delay of some periods.
     double wall_force(double x_m)
     {
         const double speed = (x_m - last_x_m_) / trial_.period_s;

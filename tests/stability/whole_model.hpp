@@ -11,10 +11,10 @@
 namespace tactus::test
 {
 
-/// Options of a rig in which models of so many faces are refined fully and stay so.
+/// Options of a rig in which models of `faces` are refined fully and stay so.
 [[nodiscard]] RigOptions whole_options(std::size_t faces);
 
-/// Steps until every model is refined fully; one that doesn't come to it ends the program.
+/// Steps until every model is refined fully; ends the program if that never happens.
 void refine_fully(const std::string& name,
                   const std::function<FrameOutput(const Budgets& budgets)>& step);
 
