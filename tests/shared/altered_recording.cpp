@@ -60,7 +60,7 @@ std::vector<std::byte> alter_frame(const Recording& recording, std::uint64_t fra
 
 void change_goal(std::span<std::byte> coded_frame)
 {
-    // Behind the frame's size, flags and time; the lowest bit of the exponent.
+    // Offset after the frame's size, flags and time; the lowest bit of the exponent.
     coded_frame[4 + 1 + 8 + 6] ^= std::byte{0x10};
 }
 

@@ -13,8 +13,8 @@
 namespace tactus::test
 {
 
-/// The recording anew, with `change` made to one coded frame (its size, then its body) and
-/// checksums that fit: what a damaged file can't be, a sound recording of another run.
+/// The recording with `change` applied to one coded frame (its size, then its body) and valid
+/// checksums: a sound recording of another run, which no damaged file can be.
 [[nodiscard]] std::vector<std::byte>
 alter_frame(const Recording& recording, std::uint64_t frame,
             const std::function<void(std::span<std::byte>)>& change);

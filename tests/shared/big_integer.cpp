@@ -17,7 +17,7 @@ namespace
 constexpr int kDigitBits = 32;
 constexpr int kMantissaBits = 53;
 
-/// What a number's bits are as an integer, and the exponent of the lowest of these 53.
+/// Mantissa of a number as an integer, with the exponent of the lowest of its 53 bits.
 std::uint64_t mantissa_of(double value, int& unit_log2)
 {
     int exponent = 0;

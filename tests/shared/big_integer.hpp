@@ -8,12 +8,12 @@
 namespace tactus::test
 {
 
-/// An integer of any width, for decisions that no rounding may touch. Slow: it allocates.
+/// Integer of any width, for exact decisions. Slow: it allocates.
 class BigInteger
 {
 public:
     BigInteger() = default;
-    /// value / 2^unit_log2, which must be an integer.
+    /// Integer value / 2^unit_log2; the quotient must be an integer.
     BigInteger(double value, int unit_log2);
 
     [[nodiscard]] int sign() const
@@ -36,7 +36,7 @@ public:
     friend BigInteger operator*(const BigInteger& a, const BigInteger& b);
 
 private:
-    using Digits = std::vector<std::uint32_t>; ///< Lowest first; the highest is not 0.
+    using Digits = std::vector<std::uint32_t>; ///< Digits, lowest first; the highest is not 0.
 
     [[nodiscard]] static BigInteger sum(const BigInteger& a, const BigInteger& b,
                                         bool is_b_negative);
@@ -49,7 +49,7 @@ private:
     bool is_negative_{false};
 };
 
-/// The exponent of the lowest bit of a finite number; the largest int of 0.
+/// Exponent of the lowest bit of a finite number; the largest int for 0.
 [[nodiscard]] int lowest_bit_log2(double value);
 
 } // namespace tactus::test

@@ -13,10 +13,10 @@
 namespace tactus::test
 {
 
-/// The shape of the AB-Tree of the 3DIM 2005 paper: a binary tree over all faces of the finest
-/// mesh, one face a leaf, in which every node is inactive, active or deformed. A face becomes
-/// active: its leaf and all nodes above it are deformed until refit(). Shares nothing with the
-/// 8-wide tree but the order of the faces. It has no boxes.
+/// The 3DIM 2005 paper's AB-Tree: a binary tree over all faces of the finest mesh, one face a leaf,
+/// in which every node is inactive, active or deformed. When a face becomes active, its leaf and
+/// all nodes above it are deformed until refit(). Shares only the order of the faces with the
+/// 8-wide tree. No boxes.
 class BinaryAbTree
 {
 public:
@@ -28,8 +28,8 @@ public:
     };
     static constexpr std::uint32_t kNone = 0xFFFF'FFFFU;
 
-    /// `faces` are those of the finest mesh in the order of their paths; each is halved in the
-    /// middle, so all leaves are on the two lowest levels.
+    /// Builds from the faces of the finest mesh in the order of their paths, each range halved in
+    /// the middle, so that all leaves are on the two lowest levels.
     explicit BinaryAbTree(std::span<const FaceId> faces)
     {
         nodes_.reserve(2 * faces.size());
@@ -53,7 +53,7 @@ public:
 
     [[nodiscard]] Status status(std::uint32_t node) const { return nodes_[node].status; }
     [[nodiscard]] std::uint32_t parent(std::uint32_t node) const { return nodes_[node].parent; }
-    /// The index list: the leaf of a face.
+    /// Leaf of a face, from the index list.
     [[nodiscard]] std::uint32_t leaf_of(FaceId face) const { return leaf_of_[face.value]; }
 
 private:

@@ -18,7 +18,7 @@ namespace
 
 constexpr double kFlat_quanta = 0.25;
 
-/// Of a raster with about so many points, between 4 and 16.
+/// Fineness, 4 to 16, of a raster with about `points` points.
 std::uint32_t fineness_for(std::size_t faces, std::size_t points)
 {
     std::uint32_t fineness = 16;
@@ -29,8 +29,7 @@ std::uint32_t fineness_for(std::size_t faces, std::size_t points)
     return fineness;
 }
 
-/// By face: the largest distance of a point of the source that is nearest to it; below 0 when there
-/// is no such point.
+/// Greatest distance of the source points nearest to each face; negative without such a point.
 std::vector<double> true_errors(const std::vector<Face>& source, const std::vector<Face>& cut,
                                 std::size_t points)
 {

@@ -14,7 +14,7 @@
 namespace tactus::test
 {
 
-/// One question: the cut so far, and its faces by their lower bounds.
+/// State of one question: the cut so far, and its faces by their lower bounds.
 class CertificateRefinement::Run
 {
 public:
@@ -30,7 +30,7 @@ public:
         }
     }
 
-    /// With a radius until all faces within it are exact, without until the nearest face is.
+    /// Runs until all faces within the radius are exact, or without one until the nearest face is.
     [[nodiscard]] Answer finish(std::optional<double> radius_m)
     {
         Answer answer{std::numeric_limits<double>::infinity(), {}};
@@ -40,7 +40,7 @@ public:
             candidates_.pop();
             if (cut_.replay().state(top.face) != top.state)
             {
-                continue; // Split since.
+                continue; // The face was split since.
             }
             if (model_.error_of(top.face, top.state) != 0)
             {
@@ -65,7 +65,7 @@ private:
         FaceId face{};
         FaceState state{};
 
-        /// Of equals the lower id comes first.
+        /// The lower id comes first among equals.
         [[nodiscard]] bool operator<(const Candidate& other) const
         {
             return lower_m != other.lower_m ? lower_m > other.lower_m : face > other.face;

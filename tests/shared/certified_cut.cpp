@@ -14,7 +14,7 @@ namespace tactus::test
 namespace
 {
 
-/// The same as FaceTree::least_excess(), by another formula, in extended precision, face by face.
+/// FaceTree::least_excess() by another formula, in extended precision, face by face.
 double judged_excess(const CertifiedCut& cut, const Vec3& point_m)
 {
     long double least = std::numeric_limits<long double>::infinity();

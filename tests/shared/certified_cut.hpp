@@ -16,36 +16,37 @@
 namespace tactus::test
 {
 
-/// A mesh that stands for a finer one, and what each face claims: that the part of the source for
-/// which it stands is within its bound. In metres of the model's frame.
+/// Coarse mesh with the bound of each face: the part of the source that the face represents is
+/// within it. In metres of the model frame.
 struct CertifiedCut
 {
     std::vector<Face> faces;
-    std::vector<double> bounds_m; ///< One a face.
+    std::vector<double> bounds_m; ///< Bounds, one for each face.
 };
 
-/// The finest of at most `faces` faces, or the base, that the simplification went through, with
-/// bounds as they were proven: not rounded up to the codes of a file. Linear in the source.
+/// Finest cut of the simplification with at most `faces` faces, or the base, with bounds as proven,
+/// not rounded up to the codes of a file. Linear in the source.
 [[nodiscard]] CertifiedCut cut_on_the_way(const PreparedMesh& prepared,
                                           const Simplification& simplification, std::size_t faces);
 
-/// What a replay has undone so far, likewise.
+/// Cut of the collapses that a replay has undone, with bounds as proven.
 [[nodiscard]] CertifiedCut cut_of(const PreparedMesh& prepared, const ForestReplay& replay);
-/// What a replay of a file has split so far, with bounds as the file says. Linear in the source.
+/// Cut of the records that a replay of a file has split, with the file's bounds. Linear in the
+/// source.
 [[nodiscard]] CertifiedCut cut_of(const DecodedModel& model, const Replay& replay);
 
-/// The same cut with all bounds multiplied.
+/// The same cut with scaled bounds.
 [[nodiscard]] CertifiedCut with_bounds_times(double factor, CertifiedCut cut);
 
 struct Violation
 {
     Vec3 point_m{0.0, 0.0, 0.0};
-    double excess_m{0.0}; ///< How much farther than its bound the point is from every face.
+    double excess_m{0.0}; ///< Distance of the point beyond the bound of every face.
 };
 
-/// The first of the points of the source that no face's bound covers, by more than `tolerance_m`.
-/// What the tree in double precision finds is judged again by brute force in extended precision.
-/// Some microseconds a point.
+/// First source point that no face's bound covers, by more than `tolerance_m`. Points found by the
+/// tree in double precision are checked by brute force in extended precision. Some microseconds a
+/// point.
 [[nodiscard]] std::optional<Violation>
 find_violation(const CertifiedCut& cut, std::span<const Vec3> points_m, double tolerance_m);
 

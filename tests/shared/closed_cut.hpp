@@ -11,15 +11,15 @@
 namespace tactus::test
 {
 
-/// A cut of a file, from the base mesh up, in any order that the dependencies allow.
+/// Cut of a file, refined from the base mesh in any order that the dependencies permit.
 class ClosedCut
 {
 public:
-    /// Starts at the base mesh. The model, which has been found sound, must outlive it.
+    /// Starts at the base mesh. The model must be sound and outlive this object.
     explicit ClosedCut(const DecodedModel& model);
 
-    /// Splits a record, and before it all that it depends on. The records that this took, in the
-    /// order of their splits; none when it was split before. Valid until the next call.
+    /// Splits a record and its dependencies. Returns the split records in order, none if it was
+    /// already split. Valid until the next call.
     std::span<const RecordId> split_with_closure(RecordId target);
 
     [[nodiscard]] bool is_split(RecordId record) const { return is_split_[record.value]; }

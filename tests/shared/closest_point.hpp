@@ -32,10 +32,10 @@ template <typename Real>
     return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
 
-/// The point of a triangle nearest to `p`. The foot on the plane when it lies inside all three
-/// edges, else the nearest point of the edges that it lies outside of: at most two. In any
-/// precision: the peers use float as their users do, the truth double. Exact to rounding for
-/// triangles of ordinary shape, which all scenes here have.
+/// Point of a triangle nearest to `p`: the foot on the plane if it is inside all three edges,
+/// otherwise the nearest point of the at most two edges that it is outside of. For any precision:
+/// the peers use float as their users do, the truth double. Exact to rounding for triangles of
+/// ordinary shape, as in all scenes here.
 template <typename Real>
 [[nodiscard]] inline Point<Real> closest_on_triangle(const Point<Real>& p, const Point<Real>& a,
                                                      const Point<Real>& b, const Point<Real>& c)

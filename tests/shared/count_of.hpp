@@ -8,7 +8,7 @@
 namespace tactus::test
 {
 
-/// How often a text has the part in it.
+/// Number of occurrences of the part in a text.
 [[nodiscard]] inline std::size_t count_of(std::string_view text, std::string_view part)
 {
     std::size_t count = 0;

@@ -13,7 +13,7 @@
 namespace tactus::test
 {
 
-/// Right to the last bit but one, also of a number wider than long double.
+/// Square root, right to the last bit but one, also in types wider than long double.
 template <typename Real>
 [[nodiscard]] Real square_root(Real value)
 {
@@ -21,9 +21,9 @@ template <typename Real>
     return start > 0 ? (start + value / start) / 2 : start;
 }
 
-/// Point-triangle distance in a wider precision and by another way than the kernel's: the triangle
-/// is turned into its own plane by orthogonalising its edges (longest edge first, twice), where
-/// inside is a matter of two coordinates. Its error is a few 2^-64 x aspect x local length in
+/// Point-triangle distance in a wider precision and by another method than the kernel's: the
+/// triangle is rotated into its own plane by orthogonalising its edges (longest edge first, twice),
+/// where two coordinates decide about inside. Its error is a few 2^-64 x aspect x local length in
 /// long double.
 template <typename RealNumber>
 class BasicDistanceOracle
@@ -40,7 +40,7 @@ public:
                          difference(triangle[2], query)});
     }
 
-    /// From the origin.
+    /// Distance from the origin to a triangle.
     [[nodiscard]] static Real distance(const std::array<Point, 3>& corner)
     {
         const Real edges =
@@ -54,7 +54,7 @@ public:
         return to_segment(difference(from, query), difference(to, query));
     }
 
-    /// From the origin, by the sign of the two end angles.
+    /// Distance from the origin to a segment, by the signs of the two end angles.
     static Real to_segment(const Point& from, const Point& to)
     {
         const Point edge = along(to, -1, from);
@@ -87,7 +87,7 @@ public:
     }
 
 private:
-    /// Height over the plane when the foot is inside, else infinite.
+    /// Height over the plane if the foot is inside, otherwise infinite.
     static Real to_interior(std::array<Point, 3> corner)
     {
         std::size_t longest = 0;
@@ -116,7 +116,7 @@ private:
             return kInfinity;
         }
         v = {v[0] / height, v[1] / height, v[2] / height};
-        // The foot's coordinates: x along the longest edge, y towards the third corner.
+        // Coordinates of the foot: x along the longest edge, y towards the third corner.
         const Real x = -dot(corner[0], u);
         const Real y = -dot(corner[0], v);
         const Real left = apex * y / height;
@@ -131,7 +131,7 @@ private:
 
 using DistanceOracle = BasicDistanceOracle<long double>;
 
-/// Of a point and a stored face.
+/// Distance of a point from a stored face.
 template <typename Real>
 [[nodiscard]] Real wide_distance(const std::array<Real, 3>& point, const std::array<Vec3f, 3>& face)
 {
@@ -146,7 +146,7 @@ template <typename Real>
     return BasicDistanceOracle<Real>::distance(corners);
 }
 
-/// Wider than long double, where the machine has it.
+/// Type wider than long double, if the machine has one.
 #if defined(__SIZEOF_FLOAT128__)
 __extension__ using Quad = __float128;
 #else

@@ -13,7 +13,7 @@ extern template class BasicAbTree<test::Dop18Volume>;
 namespace test
 {
 
-/// The AB-Tree over 18-DOPs, for tests and benches. 640 B a node.
+/// AB-Tree over 18-DOPs, for tests and benches. 640 B a node.
 using Dop18Tree = BasicAbTree<Dop18Volume>;
 
 static_assert(sizeof(Dop18Tree::Node) == 640);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The loops over 18-DOPs, four lanes at a time.
+/// Loops over 18-DOPs, four lanes at a time.
 
 #include "tests/shared/dop18_volume.hpp"
 
@@ -20,7 +20,7 @@ namespace
 
 constexpr std::uint32_t kLanes = 4;
 
-/// A diagonal direction: the sum of one axis and of plus or minus another.
+/// Diagonal direction: the sum of one axis and plus or minus another.
 struct Diagonal
 {
     std::size_t first;
@@ -62,7 +62,7 @@ float greatest_lane(FourFloats value) noexcept
     return std::max(std::max(value[0], value[1]), std::max(value[2], value[3]));
 }
 
-/// All bits set in the lanes whose bit is set.
+/// Masks with all bits set in the lanes of set bits.
 FourInts lanes_of(std::uint32_t mask) noexcept
 {
     const FourInts bit{1, 2, 4, 8};
@@ -75,7 +75,7 @@ FourFloats square_root(FourFloats value) noexcept
                       std::sqrt(value[3])};
 }
 
-/// A sum of floats and what its rounding left, exactly (Knuth's six operations).
+/// Sum of floats with its exact rounding error (Knuth's six operations).
 template <typename Float>
 struct ExactSum
 {
@@ -92,17 +92,17 @@ ExactSum<Float> exact_sum(Float a, Float b) noexcept
     return {sum, (a - a_part) + (b - b_part)};
 }
 
-/// The next float below where `step_down`; a sum with a rest is never zero.
+/// Next lower float in lanes of `step_down`; a sum with a rest is never zero.
 FourFloats stepped_down(FourFloats value, FourInts step_down) noexcept
 {
     using FourWords = std::uint32_t __attribute__((vector_size(16)));
-    const auto bits = reinterpret_cast<FourWords>(value); // Lanes that don't count may wrap.
+    const auto bits = reinterpret_cast<FourWords>(value); // Unused lanes may wrap.
     const FourWords below = value > splat(0.0F) ? bits - 1U : bits + 1U;
     return reinterpret_cast<FourFloats>(step_down ? below : bits);
 }
 
-/// Widens one direction's interval by the values in `used`, which stand for sum + rest. The least
-/// of values that were rounded down is the least value, rounded down.
+/// Interval of one direction, widened by the values in `used`, each sum + rest. The least of values
+/// rounded down is the least value, rounded down.
 struct Interval
 {
     FourFloats low = splat(Dop18::kHuge);
@@ -148,8 +148,8 @@ void bound_diagonal(const float* coordinates, std::uint32_t mask, std::size_t wh
     interval.write(volume, Dop18::kAxes + which);
 }
 
-/// Distances to four children's boxes of the axes, as the kernels compute them: a sum of three
-/// rounded squares of rounded differences, and its root.
+/// Distances to the axis-aligned boxes of four children, computed like in the kernels: the root of
+/// a sum of three rounded squares of rounded differences.
 FourFloats axis_gaps(const Dop18Volume::Rows& rows, const KernelProbe& probe,
                      std::uint32_t first) noexcept
 {
@@ -167,7 +167,7 @@ FourFloats axis_gaps(const Dop18Volume::Rows& rows, const KernelProbe& probe,
     return square_root(distance_sq) * kShare - probe.slack;
 }
 
-/// The probe's number along a diagonal, split like its coordinates, in metres.
+/// Coordinate of the probe along a diagonal, split like its coordinates, in metres.
 struct DiagonalProbe
 {
     float high;
@@ -189,12 +189,11 @@ DiagonalProbes diagonal_probes(const KernelProbe& probe) noexcept
     return probes;
 }
 
-/// Distances to four children's diagonal slabs: the greatest gap, by sqrt(2).
-///
-/// Let L be the probe's largest coordinate. DiagonalProbe is right to 2^-45 L: its low part is a
+/// Distances to four children's diagonal slabs: the greatest gap divided by sqrt(2).
+/// || Let L be the probe's largest coordinate. DiagonalProbe is right to 2^-45 L: its low part is a
 /// sum of terms below 2^-22 L with three roundings, and the probe's own low parts leave 2^-48 L
-/// each. The differences below add 2^-46 L and 2^-23 of the gap. By sqrt(2) that is less than 3
-/// times the 2^-46 L that probe.slack holds; 4 are taken off.
+/// each. The differences below add 2^-46 L and 2^-23 of the gap. Divided by sqrt(2) that is less
+/// than 3 times the 2^-46 L of probe.slack; 4 are subtracted.
 FourFloats diagonal_gaps(const Dop18Volume::Rows& rows, const DiagonalProbes& probes,
                          const KernelProbe& probe, std::uint32_t first) noexcept
 {

@@ -14,8 +14,8 @@
 namespace tactus::test
 {
 
-/// An interval along each of nine directions, rounded outward: x, y, z, then x + y, x - y, x + z,
-/// x - z, y + z, y - z. The diagonals are not of length 1: their numbers are sqrt(2) times metres.
+/// Interval along each of nine directions, rounded outward: x, y, z, then x + y, x - y, x + z, x -
+/// z, y + z, y - z. The diagonals are not of unit length: their numbers are sqrt(2) times metres.
 /// The default volume is empty.
 struct Dop18
 {
@@ -30,12 +30,12 @@ struct Dop18
 
     constexpr bool operator==(const Dop18&) const noexcept = default;
 
-    /// What holds every point within `margin` >= 0 of the volume, rounded outward. A step of length
-    /// m changes a point's number along a direction by at most m x the direction's length: on
-    /// diagonals the margin is m sqrt(2), rounded up to a float. No rounding in double can carry
-    /// that below the true product: for floats m and f of 24 bits, 2 m^2 and f^2 are integers that
-    /// differ, so m sqrt(2) is at least 2^-49 of itself away from every float. The sums are then
-    /// exact in double for the reason that Aabb::inflated() gives, and rounded outward.
+    /// Volume of all points within `margin` >= 0, rounded outward. A step of length m changes a
+    /// point's number along a direction by at most m x the direction's length: the margin on
+    /// diagonals is m sqrt(2), rounded up to a float. No rounding in double can move that below the
+    /// true product: for floats m and f of 24 bits, 2 m^2 and f^2 are different integers, so m
+    /// sqrt(2) is at least 2^-49 of itself away from every float. The sums are then exact in double
+    /// for the same reason as in Aabb::inflated(), and rounded outward.
     [[nodiscard]] constexpr Dop18 inflated(float margin) const noexcept
     {
         constexpr double kRootOfTwo = 1.4142135623730951;
@@ -52,14 +52,14 @@ struct Dop18
     }
 };
 
-/// The AB-Tree's volume policy over 18-DOPs, as AabbVolume: the second volume, which shows that the
-/// tree depends on none. Its loops are in a source of their own, for the base instruction set; they
+/// Volume policy of the AB-Tree over 18-DOPs, like AabbVolume: a second volume, to show that the
+/// tree depends on none. Its loops are in a separate source for the base instruction set; they
 /// ignore the kernels, which know boxes only.
 struct Dop18Volume
 {
     using Box = Dop18;
 
-    /// The children's intervals, row by direction.
+    /// Intervals of the children, row by direction.
     struct Rows
     {
         std::array<std::array<float, kNodeChildren>, Dop18::kDirections> low{};
@@ -85,18 +85,17 @@ struct Dop18Volume
         }
     };
 
-    /// The smallest volume, in floats, of the vertices in `mask`; `coordinates` are three rows of
-    /// 16.
+    /// Smallest volume, in floats, of the vertices in `mask`; `coordinates` are three rows of 16.
     [[nodiscard]] static Dop18 of_vertices(const Kernels& kernels, const float* coordinates,
                                            std::uint32_t mask) noexcept;
 
-    /// Union of the children in `mask`. Exact.
+    /// Exact union of the children in `mask`.
     [[nodiscard]] static Dop18 of_children(const Kernels& kernels, const Rows& rows,
                                            std::uint32_t mask) noexcept;
 
-    /// Lower bounds on the distances from the probe, in quanta: the largest of the distances to the
-    /// box of the axes and to each diagonal's slab. Returns the children in `mask` not farther than
-    /// `bound`. The true maximum is above a bound by at most 2^-19 of itself and 8 probe.slack.
+    /// Lower bounds on the distances from the probe, in quanta: the greatest of the distances to
+    /// the axis-aligned box and to each diagonal's slab. Returns the children in `mask` within
+    /// `bound`. The true maximum exceeds a bound by at most 2^-19 of itself and 8 probe.slack.
     static std::uint32_t child_gaps(const Kernels& kernels, const Rows& rows,
                                     const KernelProbe& probe, std::uint32_t mask, float bound,
                                     float* gaps) noexcept;

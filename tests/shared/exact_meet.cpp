@@ -18,9 +18,9 @@ namespace tactus::test
 namespace
 {
 
-using Shadow = std::array<double, 2>; ///< A point without one of its coordinates.
+using Shadow = std::array<double, 2>; ///< Projection of a point along an axis.
 
-/// Generous: some ten roundings of 1.1e-16 each, of the sum of absolute products.
+/// Generous rounding bound: about ten roundings of 1.1e-16 each, of the sum of absolute products.
 constexpr double kDoubt = 4e-15;
 
 template <typename Real>
@@ -30,7 +30,7 @@ Real determinant(const Point<Real>& a, const Point<Real>& b, const Point<Real>& 
            a[2] * (b[0] * c[1] - b[1] * c[0]);
 }
 
-/// The sum of the determinant's products without their signs.
+/// Sum of the absolute products of the determinant.
 double magnitude(const Point<double>& a, const Point<double>& b, const Point<double>& c)
 {
     const auto size = [](double x, double y) { return std::abs(x * y); };
@@ -39,7 +39,7 @@ double magnitude(const Point<double>& a, const Point<double>& b, const Point<dou
            std::abs(a[2]) * (size(b[0], c[1]) + size(b[1], c[0]));
 }
 
-/// Not of numbers so small that products lose bits to the least exponent.
+/// False also for numbers so small that products lose bits to the least exponent.
 bool is_certain(double value, double size)
 {
     return std::abs(value) > kDoubt * size + 1e-280;
@@ -81,7 +81,7 @@ Point<double> point_of(const Vec3& v)
     return {v.x(), v.y(), v.z()};
 }
 
-/// Of det(b - a, c - a).
+/// Sign of det(b - a, c - a).
 int area_sign(const Shadow& a, const Shadow& b, const Shadow& c)
 {
     const double first = (b[0] - a[0]) * (c[1] - a[1]);
@@ -135,7 +135,7 @@ bool has_area(const Triangle& t)
     return false;
 }
 
-/// All in one plane.
+/// True if a segment and a triangle in one plane meet.
 bool edge_meets_in_plane(const Vec3& p, const Vec3& q, const Triangle& t)
 {
     for (int axis = 0; axis < 3; ++axis)

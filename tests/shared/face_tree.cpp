@@ -145,7 +145,7 @@ FaceTree::WideNearest FaceTree::wide_nearest(const Point<long double>& point_m) 
 void FaceTree::search_wide(std::uint32_t index, const Point<long double>& point_m,
                            const Search& sought, WideNearest& best) const
 {
-    // Far above what a box's distance is rounded by.
+    // The slack is far above the rounding of a box's distance.
     const double slack =
         1e-14 * (sought.point_m.cwiseAbs().maxCoeff() + (high_m() - low_m()).sum());
     const auto may_be_nearer = [&](std::uint32_t node)

@@ -14,8 +14,8 @@
 namespace tactus::test
 {
 
-/// A plain binary box tree over all faces of a mesh, in double precision: makes motions and knows
-/// true distances without any code of what is tested or measured.
+/// Plain binary box tree over all faces of a mesh, in double precision, for motions and true
+/// distances. Shares no code with the tested or measured code.
 class FaceTree
 {
 public:
@@ -32,20 +32,19 @@ public:
         std::uint32_t face{0};
     };
 
-    /// `faces`, at least one, and `bounds_m`, one a face or none at all, must outlive the tree.
-    /// n log n; 4 M faces take some seconds.
+    /// Builds over `faces`, at least one, with `bounds_m`, one for each face or none; both must
+    /// outlive the tree. n log n; 4 M faces take some seconds.
     explicit FaceTree(const std::vector<Face>& faces, std::span<const double> bounds_m = {});
 
     [[nodiscard]] Nearest nearest(const Vec3& point_m) const;
-    /// The least over the faces of distance - bound, or the first that is found to be at most
-    /// `enough_m`.
+    /// Least distance - bound over the faces, or the first value found that is at most `enough_m`.
     [[nodiscard]] double least_excess(const Vec3& point_m, double enough_m) const;
 
-    /// The distance in extended precision, by the way of DistanceOracle, right for needles too: a
-    /// box is passed over only when it is farther by more than double precision can round.
+    /// Distance in extended precision by DistanceOracle, also right for needles: a box is skipped
+    /// only if it is farther by more than the rounding of double precision.
     [[nodiscard]] WideNearest wide_nearest(const Point<long double>& point_m) const;
 
-    /// Ids of faces, among them all whose boxes meet this closed box; no more than a leaf too many.
+    /// Ids of faces, including all whose boxes meet this closed box; at most a leaf too many.
     [[nodiscard]] std::vector<std::uint32_t> faces_near_box(const Vec3& low_m,
                                                             const Vec3& high_m) const;
 
@@ -55,17 +54,17 @@ public:
 private:
     static constexpr std::uint32_t kLeafFaces = 8;
 
-    /// A leaf when `right` is 0; its left child is otherwise the next node.
+    /// Node; a leaf if `right` is 0. The left child of an inner node is the next node.
     struct Node
     {
         Vec3 low{0.0, 0.0, 0.0};
         Vec3 high{0.0, 0.0, 0.0};
-        double bound{0.0}; ///< The largest of its faces.
+        double bound{0.0}; ///< Greatest bound of its faces.
         std::uint32_t right{0};
         std::uint32_t first{0};
         std::uint32_t count{0};
     };
-    /// For the least distance, or distance - bound; it ends as soon as that is `enough`.
+    /// Search for the least distance, or distance - bound; it ends as soon as that is `enough`.
     struct Search
     {
         Vec3 point_m;

@@ -10,7 +10,7 @@
 namespace tactus::test
 {
 
-/// What a conditioner is given in one step, on one line.
+/// Input of a conditioner in one step, along one line.
 struct ForceWish
 {
     Vec3 force_n{0.0, 0.0, 0.0};
@@ -31,7 +31,7 @@ struct ForceWish
     }
 };
 
-/// For a device that turns: `torque` in angles.
+/// Input for a 6-DoF device: `torque` in angles.
 struct WrenchWish
 {
     ForceWish force;
@@ -62,7 +62,7 @@ struct WrenchWish
     return force;
 }
 
-/// The same wish with a spring of the program's own beside it.
+/// The same input plus a spring of the program's own.
 [[nodiscard]] inline ForceWish with_spring(ForceWish wish, const Vec3& force_n,
                                            double stiffness_n_per_m)
 {

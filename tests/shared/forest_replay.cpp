@@ -13,7 +13,7 @@ namespace
 
 constexpr std::uint32_t kNoFace = Collapse::kNoFace;
 
-/// The corner that follows `vertex` in the face.
+/// Corner after `vertex` in the face.
 std::uint32_t after(const Corners& corners, std::uint32_t vertex)
 {
     const auto at = std::ranges::find(corners, vertex);

@@ -12,8 +12,8 @@
 namespace tactus::test
 {
 
-/// Replays a simplification from the base upward, from the collapses alone: which faces there are,
-/// their corners and bounds, and which splits the present state allows.
+/// Replay of a simplification from the base upward, from the collapses alone: the faces with their
+/// corners and bounds, and the splits that the state permits.
 class ForestReplay
 {
 public:
@@ -32,12 +32,12 @@ public:
     [[nodiscard]] bool is_split(std::uint32_t collapse) const { return split_[collapse] != 0; }
     [[nodiscard]] std::size_t split_count() const { return split_count_; }
 
-    /// Undoes the collapse, and before it all that it depends on.
+    /// Undoes the collapse after all that it depends on.
     void split_with_closure(std::uint32_t collapse);
     /// Undoes random collapses, with their closures, until at least `count` are undone.
     void split_randomly(std::size_t count, std::mt19937& random);
 
-    /// The collapse whose undoing changed the active face last; kNoFace in its base state.
+    /// Collapse whose undoing changed the active face last; kNoFace in its base state.
     [[nodiscard]] std::uint32_t last_change(std::uint32_t face) const;
 
 private:
@@ -45,8 +45,8 @@ private:
 
     const Simplification& forest_;
     std::vector<Face> faces_;
-    std::vector<std::vector<std::uint32_t>> changes_; ///< Of each face: collapses, in their order.
-    std::vector<std::size_t> done_;                   ///< Of each face: how many of them stand.
+    std::vector<std::vector<std::uint32_t>> changes_; ///< Collapses of each face, in order.
+    std::vector<std::size_t> done_; ///< Number of collapses of each face that are in effect.
     std::vector<char> split_;
     std::size_t split_count_{0};
 };

@@ -20,8 +20,8 @@ namespace
     std::exit(2);
 }
 
-std::uint32_t validated_every = 0; ///< Frames; 0 is never.
-/// A model that is refined fully changes no more, and is the largest to look at: without this the
+std::uint32_t validated_every = 0; ///< Frames between validations; 0: never.
+/// Interval for fully refined models, which are the largest and no longer change: without it the
 /// force twins of test_stability take thirty times as long.
 constexpr std::uint32_t kCompleteEvery = 64;
 
@@ -177,7 +177,7 @@ void FrameRig::place_object(const ObjectPose& pose, std::size_t object)
     change({SceneChangeKind::object_moves, number, frame_->objects()[number].generation, {}, pose});
 }
 
-/// What the frame will refuse is given to it all the same.
+/// Changes that the frame will refuse are passed too.
 void FrameRig::change(SceneChange change)
 {
     const bool comes = change.kind == SceneChangeKind::object_comes;
@@ -279,8 +279,8 @@ void load_region(FrameRig& rig, const RankedRegion& region)
     budgets.regions = 64;
     FrameFault faults = FrameFault::none;
     const std::uint32_t frames_a_round = model.header.counts().index_pages() / budgets.regions + 1;
-    // Quiet for two rounds of the index and a rest: in the first, pages that came with the last
-    // chunks; after a rest, wishes that went unanswered are asked again.
+    // Quiet means two rounds of the index and a rest: the first includes pages that arrived with
+    // the last chunks; after a rest, unanswered requests are repeated.
     std::uint32_t quiet = 0;
     std::uint32_t frame = 1;
     for (; frame < 10'000 && quiet <= 2 * frames_a_round + IndexSearch::kRestFrames; ++frame)
@@ -298,7 +298,7 @@ void load_region(FrameRig& rig, const RankedRegion& region)
     {
         give_up("not every chunk came");
     }
-    // What was linked after its page had been handed over.
+    // Includes records that were linked after their page was handed over.
     const std::uint32_t chunks = model.header.counts().chunks();
     for (std::uint32_t round = 0; round <= chunks / kMaxLinkUpdatesPerFrame + 1; ++round)
     {

@@ -20,16 +20,16 @@ namespace tactus::test
 
 struct RigOptions
 {
-    std::size_t pool_bytes{std::size_t{8} << 20U}; ///< Of all models.
-    std::size_t cache_bytes{0};                    ///< Of all models.
+    std::size_t pool_bytes{std::size_t{8} << 20U}; ///< Pools of all models.
+    std::size_t cache_bytes{0};                    ///< Page cache of all models.
     std::vector<ToolSpec> tools;
-    std::vector<ObjectSpec> objects; ///< Empty: one that shows the first model.
-    /// Where their models stand at first; those without one in the world's frame.
+    std::vector<ObjectSpec> objects; ///< Objects; empty: one that shows the first model.
+    /// Poses of the objects' models at the start; by default the world frame.
     std::vector<ObjectPose> poses;
     SceneCapacities capacities;
-    /// With faces in it all models are guests, and come and go in this.
+    /// Capacities of streamed models; if its faces are not 0, all models are streamed.
     ModelCapacities for_guests;
-    LoopbackFaults faults; ///< Of every model's link, each with a seed of its own.
+    LoopbackFaults faults; ///< Faults of every model's link, each with its own seed.
     std::uint32_t courier_steps_per_frame{4};
     std::int64_t period_ns{1'000'000};
     bool cache_off{false};
@@ -37,11 +37,11 @@ struct RigOptions
     Prediction prediction{Prediction::automatic};
     double force_tolerance_n{0.0};
     FrameVariant variant;
-    bool record{false}; ///< Keep a recording; frames must then run through step() only.
+    bool record{false}; ///< Records the frames, which must then run through step() only.
 };
 
-/// The controller without clocks, threads and devices: a frame, and the courier that
-/// reads its file through a link that may lose and delay. Steps all in turn.
+/// Controller without clocks, threads and devices: a frame, and the loader that reads its file over
+/// a link with optional loss and delay. All run in turn.
 class FrameRig
 {
 public:
@@ -49,40 +49,41 @@ public:
         : FrameRig(std::vector{&model}, options)
     {
     }
-    /// From now on every rig's models are validated after each so manieth frame; never with 0, as
-    /// at first. A flaw ends the program with a line. Test programs call it when they start
-    /// (validated_rigs.cpp); a bench measures frames without it.
+    /// Validates the models of every rig after each `frames` frames; 0, the default, never. A flaw
+    /// ends the program with a line. Test programs call this at the start (validated_rigs.cpp); a
+    /// bench measures frames without it.
     static void validate_every(std::uint32_t frames);
 
-    /// Models that no object shows are for tools that are meshes.
+    /// Creates a rig; models that no object shows are for mesh tools.
     FrameRig(const std::vector<const TestModel*>& models, const RigOptions& options);
 
-    /// One frame with the tools at these places of the model's frame.
+    /// One frame with the tools at these positions of the model frame.
     FrameOutput step(const std::vector<Vec3>& goals_m, const Budgets& budgets, StageMark mark = {});
     FrameOutput step(const Vec3& goal_m, const Budgets& budgets = {})
     {
         return step(std::vector<Vec3>{goal_m}, budgets);
     }
-    /// One frame with samples as a device gives them.
+    /// One frame with a device's samples.
     FrameOutput step(std::span<const ToolState> tools, const Budgets& budgets);
-    /// How an object's model stands from the next frame on; at first its frame is the world's.
+    /// Sets the pose of an object's model from the next frame on; initially its frame is the
+    /// world's.
     void place_object(const ObjectPose& pose, std::size_t object = 0);
-    /// From the next frame on; of an object that comes, the pose is of its model's frame.
+    /// Adds a change for the next frame; the pose of an added object is that of its model frame.
     void change(SceneChange change);
-    /// The same, without letting the transport side work first.
+    /// One frame without a step of the transport side before it.
     FrameOutput step_without_delivery(const std::vector<Vec3>& goals_m, const Budgets& budgets,
                                       StageMark mark);
     FrameOutput step_without_delivery(std::span<const ToolState> tools, const Budgets& budgets,
                                       StageMark mark);
-    /// Lets the transport side work without a frame.
+    /// Steps the transport side without a frame.
     void deliver();
-    /// Steps with a still tool until the models are resident as far as the ball needs, at most
-    /// `frames`; returns how many it took.
+    /// Steps with a still tool until the models are resident for the sphere, at most `frames`;
+    /// returns the number of steps.
     std::uint32_t settle(const Vec3& goal_m, const Budgets& budgets, std::uint32_t frames);
 
-    /// Of the model's frame, as the frame has it.
+    /// Present pose of the model frame.
     [[nodiscard]] const ObjectPose& pose(std::size_t object = 0) const { return poses_[object]; }
-    /// What the next frame gets, with these tools: for those that run it themselves.
+    /// Input of the next frame with these tools, for callers that run it themselves.
     [[nodiscard]] FrameInput input(std::span<const ToolState> tools, const Budgets& budgets) const
     {
         return {tools, changes_, budgets, now_ns_};
@@ -93,12 +94,13 @@ public:
     [[nodiscard]] Model& model(ModelId id = ModelId{0}) { return frame_->model(id); }
     [[nodiscard]] Courier& courier() { return *courier_; }
     [[nodiscard]] LoopbackLink& link(ModelId id = ModelId{0}) { return *lines_[id.value].link; }
-    /// The recording of all frames so far; once, at the end, and only with RigOptions::record.
+    /// Recorder of all frames so far. finish_recording() is for the end, once, and only with
+    /// RigOptions::record.
     [[nodiscard]] RigRecorder& recorder() { return *recorder_; }
     [[nodiscard]] std::vector<std::byte> finish_recording() { return recorder_->finish(); }
 
 private:
-    /// What brings one model.
+    /// Transport of one model.
     struct Line
     {
         ServedModel served;
@@ -113,34 +115,34 @@ private:
     [[nodiscard]] std::uint32_t wishes_under_way() const;
     void validate();
 
-    std::vector<Line> lines_; ///< One a model.
+    std::vector<Line> lines_; ///< Transport of each model.
     PoolMemory memory_;
     std::optional<Arena> arena_;
     std::optional<Frame> frame_;
     std::optional<Courier> courier_;
-    std::unique_ptr<RigRecorder> recorder_; ///< Null unless it records.
+    std::unique_ptr<RigRecorder> recorder_; ///< Recorder; null unless the rig records.
     std::uint32_t courier_steps_;
     std::int64_t period_ns_;
     std::int64_t now_ns_{0};
     std::uint64_t frames_{0};
-    std::vector<ObjectPose> poses_;    ///< One for each place of an object.
-    std::vector<ModelId> shown_;       ///< By each of them.
-    std::vector<SceneChange> changes_; ///< Of the next frame.
+    std::vector<ObjectPose> poses_;    ///< Poses, one for each place of an object.
+    std::vector<ModelId> shown_;       ///< Models that they show.
+    std::vector<SceneChange> changes_; ///< Changes of the next frame.
     std::vector<ToolState> tools_;
 };
 
-/// Pools in which every chunk of a small model has room at once.
+/// Pools that hold every chunk of a small model at once.
 [[nodiscard]] RigOptions with_room_for_all();
 
-/// Loads what a region asks for, without a frame: everything that the cache wishes for it, until it
-/// has nothing left to wish for. The pools must hold that.
+/// Loads a region without a frame: all requests of the cache until there are none left. The pools
+/// must hold it.
 void load_region(FrameRig& rig, const RankedRegion& region);
 
 /// Loads every chunk of a rig's model; its pools must hold them all.
 void load_everything(FrameRig& rig);
 
-/// Every face of a model's finest mesh in the order of the AB-Tree's paths, read from the base mesh
-/// and the records; all of them must be loaded.
+/// Every face of a model's finest mesh in the order of the AB-Tree's paths, from the base mesh and
+/// the records; all must be loaded.
 [[nodiscard]] std::vector<FaceId> faces_by_path(Model& model);
 
 } // namespace tactus::test

@@ -11,7 +11,7 @@ namespace tactus::test
 namespace
 {
 
-/// Models share their pools: one may have more than its part while another has less.
+/// Models share their pools: one may exceed its share while another is below.
 Verdict overfull(std::span<const ModelOutput> models, PoolUse ModelOutput::*pool)
 {
     std::uint64_t used = 0;
@@ -55,7 +55,7 @@ Verdict broken_budget(const FrameOutput& output, const Budgets& budgets)
         {"triangles tested", work.triangles_tested, walks * budgets.triangles},
         {"planes looked at", work.planes_looked_at, kFrameWalks * budgets.planes},
         {"pages adopted", work.pages_adopted, budgets.pages},
-        {"requests", work.requests, budgets.requests + budgets.regions}, // And index pages.
+        {"requests", work.requests, budgets.requests + budgets.regions}, // Includes index pages.
         {"regions searched", work.regions_searched, budgets.regions},
         {"work", work.budget.used(), WorkBudget::most_of(budgets.work)},
     }};

@@ -11,17 +11,16 @@
 namespace tactus::test
 {
 
-/// What is wrong with a frame, in a line; nothing when it is as it should be.
+/// Fault of a frame, in one line; empty if there is none.
 using Verdict = std::optional<std::string>;
 
-/// Every counter of a frame against its budget, every pool against its size. Refinement and answers
-/// have kFrameWalks budgets of nodes and triangles each. A tool that is a mesh may look at its
-/// object, and that at the tool, at two places, with kMeshRefineFactor times the budget each, at
-/// the object for its cover once more, and for its query with kMeshBudgetFactor times the budget.
+/// Compares every counter of a frame with its budget, every pool with its size. Refinement and
+/// answers have kFrameWalks budgets of nodes and triangles each. A mesh tool may search its object,
+/// and that the tool, at two places, with kMeshRefineFactor times the budget each, the object once
+/// more for its cover, and for its query with kMeshBudgetFactor times the budget.
 [[nodiscard]] Verdict broken_budget(const FrameOutput& output, const Budgets& budgets);
 
-/// A question that is left open although nothing is said to have run out, or a model that
-/// contradicts itself.
+/// Open answer without a reported shortage, or a model that contradicts itself.
 [[nodiscard]] Verdict unexplained(const FrameOutput& output);
 
 } // namespace tactus::test

@@ -24,7 +24,7 @@ constexpr double kPeriod_s = 0.001;
 constexpr std::uint32_t kLeadFrames = 500;
 constexpr std::uint32_t kTeleportFrames = 10;
 constexpr std::size_t kMiB = std::size_t{1} << 20U;
-/// Between the middles of neighbours: none touches another.
+/// Distance between the centres of neighbours: none touches another.
 constexpr double kApart_diag = 1.5;
 
 SlideManner manner_of(const TestModel& model, double speed_diag_per_s, std::uint64_t seed)
@@ -43,7 +43,7 @@ Vec3 somewhere(const TestModel& model, Random& random)
     return to_vec3(model.faces[random.below(static_cast<std::uint32_t>(model.faces.size()))][0]);
 }
 
-/// How far an object's model stands from the first's.
+/// Translation of an object's model relative to the first.
 Vec3 place_of(const TestModel& model, const GreedyCase& greedy, std::uint32_t object)
 {
     const auto side = static_cast<std::uint32_t>(std::ceil(std::sqrt(greedy.objects)));
@@ -81,7 +81,7 @@ RigOptions options_of(const TestModel& model, const GreedyCase& greedy)
     return options;
 }
 
-/// Where the tools' hands are, frame by frame: the first one's does not depend on the others'.
+/// Hand positions, frame by frame; the first does not depend on the others.
 class GreedyHands
 {
 public:

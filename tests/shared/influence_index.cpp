@@ -18,7 +18,7 @@ struct BoxInQuanta
     std::array<double, 3> high{};
 };
 
-/// The same as for the ball in spm/index_page.hpp.
+/// The same rule as for the sphere in spm/index_page.hpp.
 bool meets(const BoxInQuanta& zone, const QuantumBox& box)
 {
     bool overlaps = true;

@@ -11,22 +11,22 @@
 namespace tactus::test
 {
 
-/// A file's two-level index of influence boxes, all of it in memory.
+/// Two-level index of a file's influence boxes, entirely in memory.
 class InfluenceIndex
 {
 public:
-    /// The store must outlive it. Reads every index page.
+    /// Reads every index page. The store must outlive this object.
     explicit InfluenceIndex(const ModelStore& store);
 
-    /// What the index names for a zone, in ascending order.
+    /// Pages and chunks of a zone, in ascending order.
     struct Named
     {
         std::vector<IndexPageId> pages;
         std::vector<ChunkId> chunks;
     };
 
-    /// The pages whose boxes in the header meet the zone, and of those the chunks whose boxes do;
-    /// for a ball by the controller's own decision. The zone is in metres of the model's frame.
+    /// Pages whose boxes in the header meet the zone, and their chunks whose boxes do; for a sphere
+    /// by the controller's own test. The zone is in metres of the model frame.
     [[nodiscard]] Named named_by(const Zone& zone_m) const;
 
 private:

@@ -20,23 +20,23 @@ namespace tactus::test
 namespace
 {
 
-/// A question to a kernel, its answer, and what is right.
+/// Question to a kernel with its answer and the truth.
 struct Case
 {
     ClosestPoints answer;
     std::function<long double()> distance;
-    std::function<Quad()> exact_distance; ///< 50 times as slow.
+    std::function<Quad()> exact_distance; ///< Exact distance, 50 times slower.
     std::function<double(const Vec3&)> off_shape;
     Triangle triangle;
-    double magnitude; ///< Largest coordinate: points are rounded to it.
+    double magnitude; ///< Largest coordinate, which determines the rounding of points.
     double local_length;
 };
 
-/// What came of one case.
+/// Result of one case.
 struct Judgement
 {
-    double error{0.0};           ///< Over the law.
-    const char* broken{nullptr}; ///< What else is wrong.
+    double error{0.0};           ///< Error relative to the error law.
+    const char* broken{nullptr}; ///< Other fault.
 };
 
 double largest_coordinate_of(std::span<const Vec3> points)
@@ -74,7 +74,8 @@ double off_place(const Vec3& point, const Triangle& triangle, TriangleFeature fe
                : QuadDistanceOracle::distance(point, triangle));
 }
 
-/// How far apart the wider numbers may find what meets, in local lengths, when a triangle is thin.
+/// Distance, in local lengths, that the wider numbers may leave between meeting shapes if a
+/// triangle is thin.
 constexpr double kTouching = 1e-17;
 
 bool is_finite(const ClosestPoints& answer)
@@ -128,7 +129,7 @@ Judgement judge(const Case& one)
     return {error, nullptr};
 }
 
-/// `ask` asks the kernel about a pair and judges the answer.
+/// Runs cases; `ask` asks the kernel about a pair and judges the answer.
 template <typename Ask>
 TrialFigures run_cases(const char* kernel, const PairClass& kind, int cases, Random& random,
                        const Ask& ask)
@@ -199,13 +200,13 @@ Case of_box(const BoxScene& scene)
             longest_way(all)};
 }
 
-/// What holds for every round shape, whose core is `core_distance` away: in wide numbers.
+/// Judges any round shape whose core is `core_distance` away, in wide numbers.
 Judgement judge_round(const ClosestPoints& answer, double radius, Quad core_distance,
                       double magnitude)
 {
     const auto off = static_cast<double>(core_distance - static_cast<Quad>(radius) -
                                          static_cast<Quad>(answer.distance));
-    const double touching = 1e-17 * magnitude; // What wide numbers leave on thin faces.
+    const double touching = 1e-17 * magnitude; // Remainder of wide numbers on thin faces.
     const double error = share(std::max(0.0, std::abs(off) - touching), answer.distance_error);
     if (!is_finite(answer))
     {
@@ -234,7 +235,7 @@ double magnitude_of(const TrianglePair& pair)
     return std::max(largest_coordinate_of(pair.first), largest_coordinate_of(pair.second));
 }
 
-/// Now and then just the distance, so that the shape touches.
+/// Random radius, sometimes exactly the distance, so that the shape touches.
 double some_radius(Random& random, double distance, double magnitude)
 {
     return random.one_in(3) ? distance : magnitude * std::exp2(random.between(-20.0, 1.0));

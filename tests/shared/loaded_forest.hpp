@@ -11,8 +11,8 @@
 namespace tactus::test
 {
 
-/// A model's forest with all records at hand, driven record by record. What the forest refuses
-/// although it must not ends the test program with a line.
+/// Forest of a model with all records loaded, driven record by record. An unjustified refusal by
+/// the forest ends the test program with a line.
 class LoadedForest
 {
 public:
@@ -27,10 +27,10 @@ public:
         return {random.below(counts().records)};
     }
 
-    /// Splits a record, and before it all that it depends on; returns how many that were.
+    /// Splits a record and its dependencies; returns their number.
     std::uint32_t split_with_dependencies(RecordId target);
     void split_everything(Random& random);
-    /// Merges what can be merged, again and again, beginning anywhere; returns how many that were.
+    /// Merges repeatedly from random starts until nothing can be merged; returns the number.
     std::uint32_t merge_everything(Random& random);
 
     [[nodiscard]] std::vector<PrimId> active();

@@ -17,17 +17,17 @@ namespace tactus::test
 
 using Corners = std::array<std::uint32_t, 3>;
 
-/// The corners turned so that the least comes first: equal for the same oriented face.
+/// Corners rotated so that the least is first: equal for the same oriented face.
 [[nodiscard]] inline Corners turned(Corners corners)
 {
     std::rotate(corners.begin(), std::ranges::min_element(corners), corners.end());
     return corners;
 }
 
-/// Whether faces, given by their directed edges opposite to a vertex, are one fan round it.
+/// True if faces, given by their directed edges opposite to a vertex, form one fan around it.
 [[nodiscard]] inline bool is_one_fan(std::vector<std::pair<std::uint32_t, std::uint32_t>> opposite)
 {
-    // From a corner that no other face ends at, or from anywhere when the fan is closed.
+    // The walk begins at a corner at which no other face ends, or anywhere if the fan is closed.
     const auto begins = std::find_if(
         opposite.begin(), opposite.end(),
         [&](const auto& edge)
@@ -50,7 +50,7 @@ using Corners = std::array<std::uint32_t, 3>;
     return true;
 }
 
-/// Why the faces aren't 2-manifold with borders; empty when they are.
+/// Reason why the faces are not 2-manifold with borders; empty if they are.
 [[nodiscard]] inline std::string manifold_fault(std::span<const Corners> faces)
 {
     std::set<std::pair<std::uint32_t, std::uint32_t>> edges;

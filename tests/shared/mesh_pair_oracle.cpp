@@ -35,7 +35,7 @@ std::vector<Vec3> normals_of(const std::vector<Triangle>& triangles)
     return normals;
 }
 
-/// What the shadows of two triangles on a line are apart; below 0 where they overlap.
+/// Gap between the projections of two triangles on a line; negative if they overlap.
 double gap_along(const Vec3& direction, const Triangle& a, const Triangle& b)
 {
     const auto [a_low, a_high] =
@@ -45,7 +45,7 @@ double gap_along(const Vec3& direction, const Triangle& a, const Triangle& b)
     return std::max(b_low - a_high, a_low - b_high);
 }
 
-/// As the frame makes it of what a device reports.
+/// Orthonormal matrix that a frame makes of a device's rotation.
 Mat3 orthonormal(const Mat3& matrix)
 {
     Mat3 result;
@@ -71,7 +71,7 @@ Real corner_to_face(const Point<Real>& corner, const std::array<Point<Real>, 3>&
                                                 difference_of(face[2], corner)});
 }
 
-/// Where both are nearest within their ends; otherwise some corner is nearest.
+/// Distance if both are nearest within their ends; otherwise some corner is nearest.
 template <typename Real>
 Real edge_to_edge(const Point<Real>& p, const Point<Real>& q, const Point<Real>& a,
                   const Point<Real>& b)

@@ -15,19 +15,18 @@
 namespace tactus::test
 {
 
-/// The lower bound of a distance query, for a tree of any volume: the least over all faces of
-/// distance minus error. On exact faces that is the distance. It filters in float, decides in
-/// double at once and begins where the last answer was, so that volumes can be compared. Budget:
-/// none.
+/// Lower bound of a distance query, for a tree of any volume: the least distance minus error over
+/// all faces, which is the distance for exact faces. It filters in float, decides in double at once
+/// and begins at the last answer, so that volumes can be compared. No budget.
 template <typename Tree>
 class NearestWalk
 {
 public:
-    /// `tree` is refitted and complete whenever something is asked, and not deeper than the walk's
-    /// stack allows; it must outlive the walk.
+    /// Prepares for `tree`, which must be refitted and complete at each question, not deeper than
+    /// the walk's stack, and outlive the walk.
     explicit NearestWalk(const Tree& tree) noexcept : tree_(tree) {}
 
-    /// Infinity when nothing is within `band_m`, which may be infinite. `point_m` is not
+    /// Least value within `band_m`, otherwise infinity; the band may be infinite. `point_m` is not
     /// is_beyond_kernels().
     [[nodiscard]] double least_m(const Vec3& point_m, double band_m) noexcept
     {
@@ -71,15 +70,15 @@ private:
         const BlockSide& side = tree_.side(index);
         const float limit_before = limit_;
         FaceBounds bounds;
-        // Coarse faces can be nearer than their bounds by their error, so none is left out here.
+        // Coarse faces can be nearer than their bounds by their error, so none is skipped here.
         const std::uint32_t near = tree_.kernels().face_bounds(
             block.coordinates.front().data(), block.corners.front().data(), probe_, block.faces,
             block.faces & ~std::uint32_t{side.coarse}, 0.0F, limit_, bounds);
         for (std::uint32_t lanes = near | side.coarse; lanes != 0; lanes &= lanes - 1)
         {
             const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
-            // A difference of floats is right to 2^-24 of the error, which the kernel's margin
-            // exceeds where it could matter.
+            // A difference of floats is right to 2^-24 of the error; the kernel's margin exceeds
+            // that wherever it matters.
             const float error = error_in_quanta(side.errors[lane]);
             if (bounds.lower[lane] - error <= limit_)
             {
@@ -102,7 +101,7 @@ private:
     const Tree& tree_;
     Vec3 point_m_{0.0, 0.0, 0.0};
     KernelProbe probe_{};
-    float limit_{0.0F}; ///< In quanta: something exact is not farther than this, or the band.
+    float limit_{0.0F}; ///< Limit in quanta: an exact face is not farther than this, or the band.
     double least_m_{0.0};
     std::uint32_t nearest_block_{kNoNode};
     std::uint64_t visits_{0};

@@ -10,7 +10,7 @@
 namespace tactus::test
 {
 
-/// A local surface with room of its own, as much as a pair can have. May be moved, not copied.
+/// Local surface with its own memory, the largest of a pair. Movable, not copyable.
 struct OwnedSurface : LocalSurface
 {
     OwnedSurface() : own_triangles(kMaxLocalTriangles), own_distances_m(kMaxLocalTriangles)

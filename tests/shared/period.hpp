@@ -5,7 +5,7 @@
 namespace tactus::test
 {
 
-/// Of the frames that tests count in, unless a test is about another.
+/// Period of the frames in tests, unless a test is about another one.
 inline constexpr double kPeriod_s = 1e-3;
 
 } // namespace tactus::test

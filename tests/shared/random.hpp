@@ -14,31 +14,30 @@
 namespace tactus::test
 {
 
-/// The seed of a run that is repeated by its seed alone: fixed, or TACTUS_SEED to repeat or vary
-/// it.
+/// Seed of a run that is repeated by its seed alone: fixed, or TACTUS_SEED to repeat or vary it.
 [[nodiscard]] inline std::uint64_t seed_of(std::uint64_t usual)
 {
     const char* text = std::getenv("TACTUS_SEED");
     return text != nullptr ? std::strtoull(text, nullptr, 10) : usual;
 }
 
-/// Random numbers of tests: the same on every machine.
+/// Random numbers of tests, the same on every machine.
 class Random
 {
 public:
-    /// Of one test among many: `own` keeps it apart from the others under the same TACTUS_SEED,
-    /// which is printed.
+    /// Numbers of one test: `own` separates it from the others under the same TACTUS_SEED, which is
+    /// printed.
     explicit Random(std::uint64_t own) : engine_(seed() * 1'000 + own)
     {
         std::printf("[   seed   ] TACTUS_SEED=%llu\n", static_cast<unsigned long long>(seed()));
     }
-    /// Of this seed and nothing else; whoever has it says so.
+    /// Numbers of this seed alone; the caller prints it.
     [[nodiscard]] static Random seeded(std::uint64_t seed) { return Random(std::mt19937_64(seed)); }
 
-    /// What TACTUS_SEED says, or 1.
+    /// TACTUS_SEED, or 1.
     [[nodiscard]] static std::uint64_t seed() { return seed_of(1); }
     [[nodiscard]] std::uint64_t bits() { return engine_(); }
-    /// 0 .. count - 1.
+    /// Number in 0 .. count - 1.
     template <std::integral Count>
     [[nodiscard]] auto below(Count count)
     {
@@ -62,7 +61,7 @@ private:
     std::mt19937_64 engine_;
 };
 
-/// A well-mixed 64-bit number for each index, in any order.
+/// Well-mixed 64-bit number for each index, in any order.
 [[nodiscard]] constexpr std::uint64_t mixed(std::uint64_t seed, std::uint64_t index)
 {
     std::uint64_t bits = (seed + 1) * 0x9E37'79B9'7F4A'7C15ULL + index * 0xD1B5'4A32'D192'ED03ULL;
@@ -71,7 +70,7 @@ private:
     return bits ^ (bits >> 32U);
 }
 
-/// Of it, uniform in -1 .. 1.
+/// Uniform number in -1 .. 1 for each index.
 [[nodiscard]] constexpr double signed_unit(std::uint64_t seed, std::uint64_t index)
 {
     return static_cast<double>(mixed(seed, index) >> 11U) * 0x1p-52 - 1.0;

@@ -18,10 +18,10 @@ namespace tactus::test
 namespace
 {
 
-constexpr double kReach_m = 0.002; ///< Beyond the radius.
-constexpr double kStep = 1e-7;     ///< Of differences, in metres and radians.
-constexpr int kRounds = 200;       ///< Of each stiffness.
-/// Of a step, as a share of the radius: a longer one could leap over a face, which costs nothing
+constexpr double kReach_m = 0.002; ///< Search distance beyond the radius.
+constexpr double kStep = 1e-7;     ///< Step of differences, in metres and radians.
+constexpr int kRounds = 200;       ///< Rounds for each stiffness.
+/// Greatest step as a share of the radius: a longer one could jump over a face, which has no cost
 /// on its other side.
 constexpr double kLongestStep = 0.5;
 
@@ -33,7 +33,7 @@ Vec3 vector_of(const Mat3& rotation)
     return turned.angle() * turned.axis();
 }
 
-/// A face of the source, and those of the core that it may touch.
+/// Face of the source with the core's faces that it may touch.
 struct Pair
 {
     Triangle face;
@@ -70,7 +70,7 @@ public:
         }
     }
 
-    /// Half of its square is the energy over the stiffness.
+    /// Residuals; half of their squared norm is the energy divided by the stiffness.
     [[nodiscard]] Eigen::VectorXd at(const Similarity& place, double hardness) const
     {
         Eigen::VectorXd parts(6 + static_cast<Eigen::Index>(pairs_.size()));
@@ -93,7 +93,7 @@ public:
         }
         return deepest;
     }
-    /// What of a motion is a step of the search.
+    /// Part of a motion that is a step of the search.
     [[nodiscard]] Vector6 step_of(const Vector6& motion) const
     {
         const double way_m = motion.head<3>().norm() + size_m_ * motion.tail<3>().norm();
@@ -122,7 +122,7 @@ private:
 
     double radius_m_;
     double arm_m_{1.0};
-    double size_m_{0.0}; ///< How far the core's corners are from its origin, at most.
+    double size_m_{0.0}; ///< Greatest distance of the core's corners from its origin.
     Similarity hand_;
     std::vector<Pair> pairs_;
 };
@@ -136,7 +136,7 @@ Similarity moved(const Similarity& place, const Vector6& motion)
     return {by * place.rotation, place.translation_m + motion.head<3>(), 1.0};
 }
 
-/// Goes down from `place` until no step helps.
+/// Descends from `place` until no step helps.
 Similarity least(const Energy& energy, Similarity place, double hardness)
 {
     Eigen::VectorXd now = energy.at(place, hardness);

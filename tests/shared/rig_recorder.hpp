@@ -17,23 +17,23 @@
 namespace tactus::test
 {
 
-/// Records the frames of one rig, in memory and on its thread.
+/// Recorder of the frames of one rig, in memory and on its thread.
 class RigRecorder
 {
 public:
     explicit RigRecorder(const FrameSetup& setup) : writer_(to_recorded(setup)) {}
 
-    /// Takes a copy of each piece that `courier` hands over from now on; the courier must not be
-    /// used any more once the recorder is gone.
+    /// Copies each piece that `courier` hands over from now on; the courier must not be used after
+    /// the recorder's end.
     void follow(Courier& courier);
 
     void add_name(const RecordedName& what, std::string_view name) { writer_.add_name(what, name); }
     void add(const FrameInput& input, const FrameOutput& output);
-    /// The whole recording; nothing may be added afterwards.
+    /// Whole recording; nothing may be added afterwards.
     [[nodiscard]] std::vector<std::byte> finish();
 
 private:
-    /// What comes of one model.
+    /// Pieces of one model.
     class Line final : public PieceSink
     {
     public:

@@ -8,7 +8,7 @@
 namespace tactus::test
 {
 
-/// Force and torque of one tool as they reach its device: the frame's through SafeState.
+/// Force and torque of one tool as its device gets them: the frame's through SafeState.
 class SafeForce
 {
 public:
@@ -23,7 +23,7 @@ public:
         return both(output, position_m).push.force_n;
     }
 
-    /// And the torque.
+    /// Force and torque of one step.
     [[nodiscard]] ToolForce both(const ToolOutput& output, const Vec3& position_m)
     {
         ToolForce force;

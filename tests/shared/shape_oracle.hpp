@@ -14,8 +14,8 @@ namespace tactus::test
 
 /// Distances of shapes by brute force over their features in a wider precision: the Gram
 /// determinant where the kernels use cross products, a triangle's own plane where they use normals,
-/// twelve triangles for a box, and for what pierces the distance of the piercing point. No decision
-/// is made: every number is the distance of two points that are on the shapes, but for rounding.
+/// twelve triangles for a box, and the distance of the piercing point for a piercing edge. Nothing
+/// is decided: every number is the distance of two points on the shapes, except for rounding.
 template <typename Real>
 class ShapeOracle
 {
@@ -23,7 +23,7 @@ public:
     using Base = BasicDistanceOracle<Real>;
     using Point = typename Base::Point;
 
-    /// Of two or three corners and a triangle.
+    /// Distance of two or three corners from a triangle.
     [[nodiscard]] static Real distance(std::span<const Vec3> corners, const Triangle& triangle)
     {
         Real least = Base::kInfinity;
@@ -111,7 +111,8 @@ private:
             const Real s = (uv * Base::dot(v, w) - vv * Base::dot(u, w)) / determinant;
             if (s > 0 && s < 1)
             {
-                // From that point on, since s and t would be rounded apart on parallel lines.
+                // The search starts at that point, since s and t would be rounded differently on
+                // parallel lines.
                 const Point from = Base::along({0, 0, 0}, -1, Base::along(w, s, u));
                 least = std::min(least, Base::to_segment(from, Base::along(from, 1, v)));
             }
@@ -119,7 +120,7 @@ private:
         return least;
     }
 
-    /// Distance from the triangle of the point where the segment passes its plane.
+    /// Distance from the triangle to the point where the segment crosses its plane.
     static Real piercing(const Segment& segment, const Triangle& triangle)
     {
         const Point u = Base::difference(triangle[1], triangle[0]);

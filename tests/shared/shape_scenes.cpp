@@ -21,7 +21,7 @@ double small(Random& random, double least_log2)
     return std::exp2(random.between(least_log2, 0.0));
 }
 
-/// To aspect 1e8.
+/// Needle up to aspect 1e8.
 Triangle needle(Random& random)
 {
     const Vec3 end = random.in_cube(1.0);
@@ -59,7 +59,7 @@ Vec3 on_grid(Random& random, std::uint32_t steps)
     return {x, y, z};
 }
 
-/// Exactly (small integers) or as nearly as doubles allow.
+/// Collinear triangle, exactly (small integers) or as nearly as doubles permit.
 Triangle collinear(Random& random)
 {
     if (random.one_in(2))
@@ -98,7 +98,7 @@ Triangle moved(const Triangle& triangle, const Vec3& way)
     return {triangle[0] + way, triangle[1] + way, triangle[2] + way};
 }
 
-/// The second so that a place on it is `gap` from a place on the first.
+/// The second triangle has a place at distance `gap` from a place on the first.
 TrianglePair near_one_another(const Triangle& first, const Triangle& second, double gap,
                               Random& random)
 {
@@ -120,7 +120,7 @@ TrianglePair somehow_placed(const Triangle& first, const Triangle& second, Rando
     }
 }
 
-/// One of the two is a `make`, or both.
+/// Pair in which one or both come from `make`.
 template <typename Make>
 TrianglePair with(Make make, Random& random)
 {
@@ -155,7 +155,7 @@ TrianglePair with_collinear_corners(Random& random)
     return with(collinear, random);
 }
 
-/// In one plane exactly: combinations of two directions of small integers.
+/// Pair in one plane exactly: combinations of two directions of small integers.
 TrianglePair coplanar(Random& random)
 {
     const Vec3 u = on_grid(random, 5) - Vec3(2, 2, 2);
@@ -195,7 +195,7 @@ TrianglePair grazing(Random& random)
     return near_one_another(first, second, 1e-12, random);
 }
 
-/// An edge of each nearly parallel to one of the other: to 1e-17, and exactly.
+/// Pair with nearly parallel edges: to 1e-17, and exactly.
 TrianglePair with_parallel_edges(Random& random)
 {
     TrianglePair pair{generic_triangle(random), generic_triangle(random)};
@@ -207,7 +207,7 @@ TrianglePair with_parallel_edges(Random& random)
     return somehow_placed(pair.first, pair.second, random);
 }
 
-/// Planes nearly parallel, a little apart.
+/// Pair in nearly parallel planes, slightly apart.
 TrianglePair layered(Random& random)
 {
     const Triangle flat{Vec3{random.between(-1, 1), random.between(-1, 1), 0.0},
@@ -249,7 +249,7 @@ TrianglePair huge(Random& random)
     return scaled_pair(any(random), 1e6);
 }
 
-/// Rounded to the grid of 2e-9 that doubles have there.
+/// Pair rounded to the grid of 2e-9 that doubles have there.
 TrianglePair far_away(Random& random)
 {
     const TrianglePair pair = any(random);

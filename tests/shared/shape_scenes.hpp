@@ -12,7 +12,8 @@
 namespace tactus::test
 {
 
-/// Two triangles. For a segment the first loses a corner; for a box its corners give the extents.
+/// Two triangles. A segment is the first without one corner; a box takes its extents from the
+/// corners.
 struct TrianglePair
 {
     Triangle first;
@@ -21,7 +22,7 @@ struct TrianglePair
     [[nodiscard]] Segment segment() const { return {first[0], first[1]}; }
 };
 
-/// A kind of pairs that a kernel must get right.
+/// Class of pairs that a kernel must handle.
 struct PairClass
 {
     const char* name;
@@ -36,7 +37,7 @@ inline void PrintTo(const PairClass& kind, std::ostream* out)
 inline constexpr std::size_t kPairClasses = 15;
 [[nodiscard]] const std::array<PairClass, kPairClasses>& pair_classes();
 
-/// A box and a triangle made from a pair of them: somewhere, or near a place on the box's surface.
+/// Box and triangle made from a pair: anywhere, or near a place on the box's surface.
 struct BoxScene
 {
     Box box;
@@ -44,8 +45,7 @@ struct BoxScene
 };
 [[nodiscard]] BoxScene box_scene(const TrianglePair& pair, Random& random);
 
-/// How often each property is tried on each class: few in every test command, and as many as
-/// TACTUS_KERNEL_CASES says.
+/// Cases of each property and class: few by default, or TACTUS_KERNEL_CASES.
 [[nodiscard]] int cases_per_class();
 
 } // namespace tactus::test

@@ -13,30 +13,31 @@
 namespace tactus::test
 {
 
-/// A tool's core and what it is made of, in its own frame: the faces that are to meet none of an
-/// object. What it refers to outlives it.
+/// Core of a tool with its faces in its own frame, which must not meet those of an object.
+/// References in it outlive it.
 struct SolidCore
 {
     std::string name;
     ToolCore core;
     std::vector<Triangle> faces;
     double radius_m{0.0};
-    const TestModel* mesh{nullptr}; ///< Of a core that is a mesh: model 1 of the frame.
+    const TestModel* mesh{nullptr}; ///< Mesh of a mesh core: model 1 of the frame.
 };
 
 [[nodiscard]] SolidCore box_core(const std::string& name, const Vec3& half, double radius_m);
 [[nodiscard]] SolidCore segment_core(const std::string& name, const Segment& segment,
                                      double radius_m);
-/// The hull of a tetrahedron, 3 cm long.
+/// Hull of a tetrahedron, 3 cm long.
 [[nodiscard]] SolidCore spike_core(double radius_m);
 [[nodiscard]] SolidCore mesh_core(const std::string& name, const TestModel& mesh, double radius_m);
 
-/// Faces of the placed core that meet the model's, by exact arithmetic; the model's frame.
+/// Number of faces of the placed core that meet the model's, by exact arithmetic, in the model
+/// frame.
 [[nodiscard]] int crossings(const SolidCore& solid, const Similarity& place,
                             const TestModel& model);
 
-/// The same on the way from one place to another, at so many places: `center` of the tool goes
-/// straight while it turns round one axis.
+/// Number on the path from one place to another, at `places` places: `center` of the tool moves
+/// straight while the tool rotates about one axis.
 [[nodiscard]] int crossings_on_way(const SolidCore& solid, const Similarity& from,
                                    const Similarity& to, const Vec3& center, const TestModel& model,
                                    int places);

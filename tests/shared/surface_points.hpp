@@ -11,18 +11,17 @@
 namespace tactus::test
 {
 
-/// Points of a mesh's surface. Corners, where a distance to one face is largest; points of faces
-/// drawn evenly, so that small faces get their share; and points drawn evenly by area, so that
-/// large ones do.
+/// Points of a mesh's surface: corners, where a distance to one face is greatest; points by face,
+/// so that small faces get their share; and points by area, so that large ones do.
 class SurfacePoints
 {
 public:
-    /// `faces`, at least one, must outlive it.
+    /// Prepares `faces`, at least one, which must outlive this object.
     SurfacePoints(const std::vector<Face>& faces, std::uint64_t seed);
 
-    /// A corner, a point of any face, a point of the area: a third of the points each.
+    /// Draws a third each: corners, points of any face, points by area.
     [[nodiscard]] std::vector<Vec3> draw(std::size_t count);
-    /// Evenly by area.
+    /// Draws uniformly by area.
     [[nodiscard]] Vec3 draw_by_area();
 
 private:
@@ -31,12 +30,12 @@ private:
     [[nodiscard]] Vec3 point_of(std::size_t face);
 
     const std::vector<Face>& faces_;
-    std::vector<double> area_up_to_; ///< Of the first faces, each included.
+    std::vector<double> area_up_to_; ///< Area of the first faces, each included.
     std::mt19937_64 random_;
 };
 
-/// A raster over each face, `fineness` points on a side less one: its corners, points of its edges
-/// and inside. Calls `visit(point)`; points of edges come once for each of their faces.
+/// Visits a raster over each face with `fineness` + 1 points on a side: its corners, points of its
+/// edges and inside. Points of edges are visited once for each of their faces.
 template <typename Visit>
 void visit_raster(const std::vector<Face>& faces, std::uint32_t fineness, const Visit& visit)
 {

@@ -20,7 +20,7 @@ double smoothstep(double t)
     return t * t * (3.0 - 2.0 * t);
 }
 
-/// Away from the surface; on it as before.
+/// Direction away from the surface; on it the previous one.
 Vec3 normal_at(const Vec3& center, const Vec3& foot, const Vec3& before)
 {
     return center == foot ? before : (center - foot).normalized();

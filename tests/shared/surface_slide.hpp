@@ -11,38 +11,38 @@
 namespace tactus::test
 {
 
-/// `direction` without its part along the unit vector `normal`, of length 1.
+/// `direction` without its component along the unit vector `normal`, normalised.
 [[nodiscard]] Vec3 tangent(const Vec3& direction, const Vec3& normal);
 
-/// How a probe slides. Shares of the diagonal are of `diagonal_m`.
+/// Parameters of a slide; shares of the diagonal refer to `diagonal_m`.
 struct SlideManner
 {
     double diagonal_m{0.0};
-    double radius_diag{0.01};     ///< Of the probe.
-    double step_m{0.0};           ///< A frame.
-    double turn_rad{3.0e-3};      ///< At most, a frame.
-    std::uint32_t first_frame{0}; ///< Where it begins in its turns and swings.
-    /// In -1 .. 1 for each turn of kTurnFrames: how fast it turns then.
+    double radius_diag{0.01};     ///< Radius of the probe.
+    double step_m{0.0};           ///< Step of a frame.
+    double turn_rad{3.0e-3};      ///< Greatest rotation of the heading in a frame.
+    std::uint32_t first_frame{0}; ///< Start within the turns and swings.
+    /// Rate of each turn of kTurnFrames, in -1 .. 1.
     std::function<double(std::uint64_t turn)> turn_rate;
 };
 
-/// The centre of a probe that slides along a true surface: each step goes along a heading that
-/// turns, then to the wanted distance from the surface's nearest point. The wanted distance is the
-/// radius plus a depth that swings between -0.3 % and +0.2 % of the diagonal in kSwingFrames.
-/// Computed from the mesh alone; nothing that is tested or measured takes part.
+/// Centre of a probe that slides along a true surface: each step follows a rotating heading, then
+/// moves to the wanted distance from the nearest surface point. That distance is the radius plus a
+/// depth that swings between -0.3 % and +0.2 % of the diagonal in kSwingFrames. Computed from the
+/// mesh alone, independent of the tested or measured code.
 class SurfaceSlide
 {
 public:
-    static constexpr std::uint32_t kTurnFrames = 400; ///< From one rate of turning to the next.
+    static constexpr std::uint32_t kTurnFrames = 400; ///< Frames between two rates of the heading.
     static constexpr std::uint32_t kSwingFrames = 1'000;
 
-    /// Starts at a place near the surface, heading along x as far as the surface lets it.
+    /// Starts at a place near the surface with a heading along x, projected to the surface.
     SurfaceSlide(const FaceTree& tree, SlideManner manner, const Vec3& start_m);
 
     Vec3 next();
 
     /// Distance of the probe's centre from the surface in a frame of a slide, as a share of the
-    /// diagonal; highest in frame 0.
+    /// diagonal; greatest in frame 0.
     [[nodiscard]] static double wanted_distance_diag(double radius_diag, std::uint32_t frame);
 
 private:

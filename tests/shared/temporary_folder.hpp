@@ -15,8 +15,7 @@
 namespace tactus::test
 {
 
-/// A new folder in the system's place for them, removed with everything in it at the end of its
-/// life.
+/// New temporary folder, removed with its content by the destructor.
 class TemporaryFolder
 {
 public:
@@ -42,7 +41,7 @@ public:
 
     std::filesystem::path write(const std::string& name, std::string_view text) const
     {
-        // A new file each time: overwriting one makes some file systems wait for the disk.
+        // The old file is removed first: overwriting makes some file systems wait for the disk.
         std::filesystem::remove(path_ / name);
         std::ofstream(path_ / name, std::ios::binary) << text;
         return path_ / name;

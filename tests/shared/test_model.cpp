@@ -55,7 +55,7 @@ const TestModel& kept_model(const std::string& name, const TriangleMesh& mesh,
     return *model;
 }
 
-/// Loose triangles and small closed solids, most of which the base mesh has no room for.
+/// Loose triangles and small closed solids, most of which do not fit in the base mesh.
 TriangleMesh make_crumbs()
 {
     TriangleMesh crumbs = make_triangle_soup(400, 9).value();

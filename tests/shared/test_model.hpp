@@ -17,7 +17,7 @@
 namespace tactus::test
 {
 
-/// What a model was made of, and its file.
+/// Source of a model, with its file.
 struct MadeModel
 {
     std::string name;
@@ -27,62 +27,62 @@ struct MadeModel
     HeaderFields fields;
 };
 
-/// Simplifies and encodes a mesh into a file of the test's temporary folder. As make_model() and
-/// all below it ends the test program with a line when a step refuses.
+/// Simplifies and encodes a mesh into a file of the test's temporary folder. This and all functions
+/// below end the test program with a line if a step refuses.
 [[nodiscard]] MadeModel make_model(std::string name, const TriangleMesh& mesh,
                                    std::uint32_t base_faces,
                                    std::uint32_t position_bits = kMinPositionBits,
                                    double error_scale = 1.0);
-/// The same of a mesh that is simplified.
+/// The same for an already simplified mesh.
 [[nodiscard]] MadeModel make_model(std::string name, PreparedMesh prepared,
                                    Simplification simplification, const EncodeOptions& options);
 
-/// A model on disk, made by the encoder, and its source mesh as the truth to compare with.
+/// Model on disk, made by the encoder, with its source mesh as the truth.
 struct TestModel
 {
     std::string name;
     std::filesystem::path path;
-    std::vector<Face> faces; ///< Of the quantised source, in the model's frame.
+    std::vector<Face> faces; ///< Faces of the quantised source, in the model frame.
     double diagonal_m{0.0};
-    std::uint32_t base_faces{0};      ///< Asked for; the base mesh has these at most.
-    std::array<double, 3> origin_m{}; ///< Of the model's frame in the source's.
+    std::uint32_t base_faces{0};      ///< Requested faces of the base mesh, its maximum.
+    std::array<double, 3> origin_m{}; ///< Origin of the model frame in the source's.
 };
 
-/// The faces of a mesh on its grid, in metres of the model's frame; exact.
+/// Faces of a mesh on its grid, in metres of the model frame; exact.
 [[nodiscard]] std::vector<Face> faces_on_grid(const PreparedMesh& prepared);
 
-/// A model that is made once a name and process.
+/// Model that is made once for each name and process.
 [[nodiscard]] const TestModel& test_model(const std::string& name, const TriangleMesh& mesh,
                                           std::uint32_t base_faces = 200);
 
-/// The same with every certified bound multiplied by `error_scale` before it is coded: below 1 a
-/// model that lies, for tests of tests. With 0 all bounds are the least that there is, 1/256 of a
+/// The same with every certified bound multiplied by `error_scale` before coding: below 1 the
+/// bounds are false, for tests of tests. With 0 all bounds are the least possible, 1/256 of a
 /// quantum, so that a distance to a coarse face is taken for the true one.
 [[nodiscard]] const TestModel& lying_model(const std::string& name, const TriangleMesh& mesh,
                                            double error_scale);
 
-/// Models that cover smooth, sharp, open, thin and needle shapes; a few thousand faces each.
+/// Models of smooth, sharp, open, thin and needle shapes, a few thousand faces each.
 inline constexpr std::size_t kSmallModels = 7;
 [[nodiscard]] const TestModel& small_model(std::size_t index);
 [[nodiscard]] std::vector<const TestModel*> small_models();
 
-/// A mesh that others know, too; it has to be in the folder that TACTUS_MESHES names.
+/// Well-known mesh, from the folder TACTUS_MESHES.
 struct KnownMesh
 {
     const char* name;
     const char* file;
 };
 
-/// The largest, of 269,000 faces, comes last.
+/// Meshes in order; the largest, of 269,000 faces, is last.
 inline constexpr KnownMesh kKnownMeshes[] = {{"cow", "cow.obj"},
                                              {"teapot", "teapot.obj"},
                                              {"fandisk", "fandisk.obj"},
                                              {"bunny", "stanford-bunny.obj"},
                                              {"igea", "igea.ply"}};
 
-/// None without TACTUS_MESHES; a file that isn't there ends the program with a line.
+/// Mesh from its file; empty without TACTUS_MESHES. A missing file ends the program with a line.
 [[nodiscard]] std::optional<TriangleMesh> read_known(const KnownMesh& mesh);
-/// Null without TACTUS_MESHES.
+/// Model of a mesh; null without TACTUS_MESHES.
 [[nodiscard]] const TestModel* known_model(const KnownMesh& mesh);
 
 } // namespace tactus::test

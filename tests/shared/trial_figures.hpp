@@ -12,22 +12,22 @@
 namespace tactus::test
 {
 
-/// What came of one claim that was tried many times: a line of the table of `tactus_bench
-/// stability`, and what a test asserts.
+/// Result of one claim that was tried many times: a line in the table of `tactus_bench stability`,
+/// and the basis of a test's assertions.
 struct TrialFigures
 {
-    /// So many violations are kept as text.
+    /// Greatest number of violations kept as text.
     static constexpr std::size_t kTexts = 5;
 
     std::string name;
     std::uint64_t trials{0};
-    double worst{0.0}; ///< Largest error, in what `unit` says.
-    double bound{1.0}; ///< What `worst` may be.
+    double worst{0.0}; ///< Greatest error, in `unit`.
+    double bound{1.0}; ///< Greatest allowed `worst`.
     std::string unit;
     std::uint64_t violations{0};
-    std::vector<std::string> texts; ///< Enough to repeat the first violations.
+    std::vector<std::string> texts; ///< Texts that suffice to repeat the first violations.
 
-    /// An error that isn't a number counts as infinite.
+    /// Adds an error; one that is not a number counts as infinite.
     void observe(double error)
     {
         worst =
@@ -41,7 +41,7 @@ struct TrialFigures
             texts.push_back(text);
         }
     }
-    /// The same claim, tried elsewhere.
+    /// Adds figures of the same claim from other trials.
     void add(const TrialFigures& other)
     {
         trials += other.trials;

@@ -9,15 +9,14 @@
 namespace tactus::test
 {
 
-/// Whether long trials are run in full, as CI has it: with TACTUS_TRIALS=full in the environment.
+/// True if long trials are run in full, as in CI: with TACTUS_TRIALS=full in the environment.
 [[nodiscard]] inline bool has_full_trials()
 {
     const char* text = std::getenv("TACTUS_TRIALS");
     return text != nullptr && std::string_view(text) == "full";
 }
 
-/// How much of a long trial is run, and how much of what it counts has to come of it: all, or a
-/// quarter for those who wait.
+/// Length of a long trial, or its required count: all, or a quarter without full trials.
 [[nodiscard]] inline std::uint32_t trial_length(std::uint32_t all)
 {
     return has_full_trials() ? all : all / 4;

@@ -11,18 +11,18 @@
 namespace tactus::test
 {
 
-/// A plain binary box tree, a triangle a leaf, for pairs of triangles of two meshes. Boxes are the
-/// corners' own coordinates, so whether two overlap is exact.
+/// Plain binary box tree, one triangle a leaf, for pairs of triangles of two meshes. Boxes have the
+/// corners' own coordinates, so overlap is exact.
 class TriangleTree
 {
 public:
     explicit TriangleTree(const std::vector<Triangle>& triangles);
 
-    /// The same triangles elsewhere; boxes only, the order stays.
+    /// Moves the same triangles; updates the boxes and keeps the order.
     void refit(const std::vector<Triangle>& triangles);
 
-    /// Calls visit(a, b) for the pairs of triangles whose boxes are at most limit() apart, right
-    /// but for rounding and exact at 0: near ones first, so that the limit may come down.
+    /// Calls visit(a, b) for the pairs of triangles whose boxes are at most limit() apart, right up
+    /// to rounding and exact at 0. Near pairs come first, so that the limit may shrink.
     template <typename Limit, typename Visit>
     static void visit_pairs(const TriangleTree& a, const TriangleTree& b, const Limit& limit,
                             const Visit& visit)
@@ -31,7 +31,7 @@ public:
     }
 
 private:
-    /// Its left child is the next node; a leaf has none.
+    /// Node; its left child is the next node, a leaf has none.
     struct Node
     {
         Vec3 low{0.0, 0.0, 0.0};

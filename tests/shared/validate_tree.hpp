@@ -17,15 +17,14 @@
 namespace tactus::test
 {
 
-/// Compares a sound AB-Tree (find_flaw()) after refit() with the faces that should be in it.
-///
-/// Boxes are computed again from the faces, bottom-up and with arithmetic of its own, and must be
-/// equal bit for bit: so the tree equals one that was refitted from scratch (invariant I6).
+/// Compares a sound AB-Tree (find_flaw()) after refit() with its expected faces.
+/// || Boxes are recomputed bottom-up from the faces by separate arithmetic and must be equal bit
+/// for bit: the tree equals one refitted from scratch (invariant I6).
 template <typename Tree>
 class TreeOracle
 {
 public:
-    /// `faces` are all faces that were handed to the tree and not removed since.
+    /// Faults of a tree; `faces` are all that were added and not removed since.
     [[nodiscard]] static std::vector<std::string> faults(const Tree& tree,
                                                          std::span<const ChangedFace> faces)
     {
@@ -79,7 +78,7 @@ private:
         check_unplaced();
     }
 
-    /// Each face is either reached once or without a place.
+    /// Each face is reached once, or has no place.
     void check_unplaced()
     {
         std::size_t unplaced = 0;
@@ -204,7 +203,7 @@ private:
     std::vector<std::string> faults_;
 };
 
-/// The first few faults as one text; empty when the tree is sound and holds those faces.
+/// First few faults as one text; empty if the tree is sound and holds those faces.
 template <typename Tree>
 [[nodiscard]] std::string tree_faults(const Tree& tree, std::span<const ChangedFace> faces)
 {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// Among the sources of a test program: every frame rig in it validates its models. How often says
-/// the program's CMakeLists.txt.
+/// Source of test programs in which every frame rig validates its models; the interval is in the
+/// program's CMakeLists.txt.
 #include "tests/shared/frame_rig.hpp"
 
 namespace tactus::test

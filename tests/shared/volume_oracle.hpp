@@ -13,8 +13,8 @@
 namespace tactus::test
 {
 
-/// The directions along which a volume keeps an interval, known independently of the volume: its
-/// boxes have rows `low` and `high` in this order.
+/// Directions of a volume's intervals, defined independently of the volume: its boxes have rows
+/// `low` and `high` in this order.
 template <typename Volume>
 struct VolumeDirections;
 
@@ -47,7 +47,8 @@ class VolumeOracle
 public:
     using Box = typename Volume::Box;
 
-    /// By the least interval of floats, along each direction, that holds the point's number.
+    /// Widens a box to the least interval of floats along each direction that holds the point's
+    /// number.
     static void widen(Box& box, const Vec3f& point)
     {
         for (std::size_t i = 0; i < kDirections.size(); ++i)
@@ -71,7 +72,7 @@ public:
         }
     }
 
-    /// The error is a length; along a direction it counts that direction's length times, as the
+    /// Grows a box by a length; along a direction multiplied by that direction's length, as the
     /// least float that is not below.
     [[nodiscard]] static Box grown(Box box, long double error_m)
     {

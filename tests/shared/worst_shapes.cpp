@@ -23,7 +23,7 @@ struct WorstShape
 {
     const char* name;
     std::function<TriangleMesh()> make;
-    std::uint32_t base_faces{200}; ///< More where pieces can't vanish.
+    std::uint32_t base_faces{200}; ///< Base faces; more if pieces cannot vanish.
 };
 
 const std::vector<WorstShape>& worst_shapes()
@@ -44,8 +44,8 @@ const std::vector<WorstShape>& worst_shapes()
     return shapes;
 }
 
-/// A square grid of (cells + 1)^2 vertices over [low, low + side]^2 at height z; returns its first
-/// vertex. Vertex (column, row) is first + row * (cells + 1) + column.
+/// Adds a square grid of (cells + 1)^2 vertices over [low, low + side]^2 at height z; returns its
+/// first vertex. Vertex (column, row) is first + row * (cells + 1) + column.
 std::uint32_t add_square(TriangleMesh& mesh, std::uint32_t cells, double low, double side, double z)
 {
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
@@ -54,7 +54,7 @@ std::uint32_t add_square(TriangleMesh& mesh, std::uint32_t cells, double low, do
     {
         for (std::uint32_t column = 0; column <= cells; ++column)
         {
-            // Not flat, so that nothing collapses for free.
+            // The grid is not flat, so that collapses have a cost.
             const double bump = 0.05 * step * ((7 * row + 3 * column) % 4);
             mesh.positions.push_back({low + step * column, low + step * row, z + bump});
         }
@@ -72,7 +72,7 @@ std::uint32_t add_square(TriangleMesh& mesh, std::uint32_t cells, double low, do
     return first;
 }
 
-/// 0 or 1 along each axis; what is below 0 wraps round.
+/// Octant with 0 or 1 along each axis; values below 0 wrap around.
 using Octant = std::array<std::uint32_t, 3>;
 
 bool is_in_notched_cube(const Octant& octant)
@@ -81,7 +81,7 @@ bool is_in_notched_cube(const Octant& octant)
            std::ranges::all_of(octant, [](std::uint32_t i) { return i <= 1; });
 }
 
-/// One side of an octant, square to `axis`, in cells x cells squares with corners of their own.
+/// One side of an octant, perpendicular to `axis`, in cells x cells squares with separate corners.
 void add_side(TriangleMesh& mesh, std::uint32_t cells, const Octant& octant, std::size_t axis,
               bool is_upper)
 {
@@ -145,7 +145,7 @@ TriangleMesh make_patch_in_huge_faces(std::uint32_t cells)
     mesh.positions.insert(
         mesh.positions.end(),
         {{0.0, 0.0, 0.0}, {kSide_m, 0.0, 0.0}, {kSide_m, kSide_m, 0.0}, {0.0, kSide_m, 0.0}});
-    // Side s of the patch runs from its corner s to corner s + 1, counter-clockwise.
+    // Side s of the patch runs counter-clockwise from its corner s to corner s + 1.
     const auto border = [&](std::uint32_t side, std::uint32_t i)
     {
         const std::uint32_t column = side == 0 ? i : side == 1 ? cells : side == 2 ? cells - i : 0;
@@ -175,21 +175,21 @@ TriangleMesh make_broken_sphere()
         const std::array<double, 3> at = mesh.positions[a];
         const auto tip = static_cast<std::uint32_t>(mesh.positions.size());
         mesh.positions.push_back({1.2 * at[0], 1.2 * at[1], 1.2 * at[2]});
-        mesh.faces.push_back({a, b, tip}); // A third face at an edge.
-        mesh.faces.push_back({a, b, c});   // There already.
-        mesh.faces.push_back({a, a, b});   // Two corners in one place.
+        mesh.faces.push_back({a, b, tip}); // Third face at an edge.
+        mesh.faces.push_back({a, b, c});   // Duplicate face.
+        mesh.faces.push_back({a, a, b});   // Two equal corners.
         const auto middle = static_cast<std::uint32_t>(mesh.positions.size());
         const std::array<double, 3> to = mesh.positions[tip];
         mesh.positions.push_back(
             {(at[0] + to[0]) / 2.0, (at[1] + to[1]) / 2.0, (at[2] + to[2]) / 2.0});
-        mesh.faces.push_back({a, tip, middle}); // No area.
+        mesh.faces.push_back({a, tip, middle}); // Face without an area.
     }
     return mesh;
 }
 
 TriangleMesh make_loose_spheres(std::uint32_t per_side)
 {
-    const TriangleMesh sphere = make_uv_sphere(6, 8).value(); // 0.1 m across.
+    const TriangleMesh sphere = make_uv_sphere(6, 8).value(); // Diameter 0.1 m.
     TriangleMesh mesh;
     const double scale = 0.6 / static_cast<double>(per_side);
     const double pitch = kSide_m / static_cast<double>(per_side);
