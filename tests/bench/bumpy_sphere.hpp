@@ -11,8 +11,10 @@
 #include <vector>
 
 /// Surface with known forces: the bumpy sphere of make_shape(),
+///
 ///   f(x) = |x| - R (1 + a sin(m u) sin(m v) sin(m w)) = 0,   (u, v, w) = x / |x|,
 ///   R = 50 mm, a = 0.02, m = 8,
+///
 /// in metres, with the sphere's centre at the origin. The functions are valid within 5 mm of the
 /// surface on either side; its radii of curvature are at least 20 mm.
 namespace tactus::bench
@@ -59,9 +61,10 @@ struct Faceting
     /// Bound for the error of the force on the mesh against that on the surface, in newtons, if the
     /// sphere rests exactly where the mesh permits. h and t are the distance and angle above, k the
     /// curvature, r the sphere's radius and d the depth.
-    /// || The free space of the centre ends between the surface's offsets by r - h and r + h, so
-    /// the spring's length is d within h. Each touched face pushes along a direction within t of
-    /// the surface normal at the touched point; that normal turns by k for each metre along the
+    ///
+    /// The free space of the centre ends between the surface's offsets by r - h and r + h, so the
+    /// spring's length is d within h. Each touched face pushes along a direction within t of the
+    /// surface normal at the touched point; that normal turns by k for each metre along the
     /// surface. The touched points are within r t / (1 - k r) of the sphere's foot, the foot within
     /// d p / (1 - k r) of the device's, where p is the angle of the force. Together p <= t / (1 - k
     /// (r + d)), to first order in t, and the force error is at most stiffness x (h + d p).

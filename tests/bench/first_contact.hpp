@@ -23,10 +23,11 @@ struct ContactSpread
 
 /// Cost of a file until the first contact is exact, for a controller that has none of it. Counts
 /// coded bytes with checksums, without protocol headers.
-/// || A contact is exact if every source face within `radius_m` of a place on the surface is
-/// active: the sphere is certified, as a frame certifies it around the proxy. This needs the whole
-/// header, the base mesh, the index pages whose boxes meet the sphere, and the chunks whose
-/// influence boxes do.
+///
+/// A contact is exact if every source face within `radius_m` of a place on the surface is active:
+/// the sphere is certified, as a frame certifies it around the proxy. This needs the whole header,
+/// the base mesh, the index pages whose boxes meet the sphere, and the chunks whose influence boxes
+/// do.
 struct FirstContactFigures
 {
     double header_bytes{0.0}; ///< Without hashes.

@@ -32,8 +32,9 @@ inline constexpr double kMeshSkin_diag = 0.001;
 
 /// Poses of a tool that rotates at 1 rad/s about one axis, above or below the surface point nearest
 /// to the centre of a path, along the direction between the two.
-/// || The large tool slides over the object at 0.1 diag/s; its lowest corner moves between 0.75 %
-/// of the diagonal below the surface point and 0.5 % above it once a second. The small one flies,
+///
+/// The large tool slides over the object at 0.1 diag/s; its lowest corner moves between 0.75 % of
+/// the diagonal below the surface point and 0.5 % above it once a second. The small one flies,
 /// approaches, slides and retreats (touch_motion); its lowest corner has the height of the lowest
 /// point of that motion's sphere.
 [[nodiscard]] std::vector<Similarity> mesh_touch_motion(const TouchScene& object,

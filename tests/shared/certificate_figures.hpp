@@ -11,10 +11,11 @@ namespace tactus::test
 {
 
 /// Ratio of the bounds of one cut to the true errors.
-/// || The true error of a cut is the one-sided Hausdorff distance from the source to it, by a
-/// raster over every source face. That of a face is the greatest distance to it of the raster
-/// points nearest to it. The certificate may assign a point to another face, so the bound of one
-/// face can be less than its true error; that of the cut cannot.
+///
+/// The true error of a cut is the one-sided Hausdorff distance from the source to it, by a raster
+/// over every source face. That of a face is the greatest distance to it of the raster points
+/// nearest to it. The certificate may assign a point to another face, so the bound of one face can
+/// be less than its true error; that of the cut cannot.
 struct CertificateFigures
 {
     std::size_t faces{0}; ///< Faces of the cut.

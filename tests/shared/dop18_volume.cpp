@@ -190,7 +190,8 @@ DiagonalProbes diagonal_probes(const KernelProbe& probe) noexcept
 }
 
 /// Distances to four children's diagonal slabs: the greatest gap divided by sqrt(2).
-/// || Let L be the probe's largest coordinate. DiagonalProbe is right to 2^-45 L: its low part is a
+///
+/// Let L be the probe's largest coordinate. DiagonalProbe is right to 2^-45 L: its low part is a
 /// sum of terms below 2^-22 L with three roundings, and the probe's own low parts leave 2^-48 L
 /// each. The differences below add 2^-46 L and 2^-23 of the gap. Divided by sqrt(2) that is less
 /// than 3 times the 2^-46 L of probe.slack; 4 are subtracted.

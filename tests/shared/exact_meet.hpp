@@ -10,8 +10,9 @@ namespace tactus::test
 /// True if two triangles share a point, their finite double coordinates taken as exact: by signs of
 /// volumes and areas in double if rounding cannot change them, otherwise in integers of any width.
 /// Triangles may have no area, and include their boundaries.
-/// || They meet if an edge of one meets the other. An edge outside the other's plane meets it if
-/// its crossing of the plane is on one side of all three edges. In one plane, the three projections
+///
+/// They meet if an edge of one meets the other. An edge outside the other's plane meets it if its
+/// crossing of the plane is on one side of all three edges. In one plane, the three projections
 /// along the axes decide: intersecting ones intersect in each of them, and one of them separates
 /// all that is separate. 200 ns; some microseconds with integers.
 [[nodiscard]] bool exactly_meet(const Triangle& first, const Triangle& second);

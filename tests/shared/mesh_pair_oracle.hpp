@@ -25,7 +25,8 @@ struct FacePair
 };
 
 /// Truth about a mesh tool and an object, from every face of both sources.
-/// || Meeting is decided exactly, with the tool's corners at the frame's placement in double: this
+///
+/// Meeting is decided exactly, with the tool's corners at the frame's placement in double: this
 /// formula is the frame's, and nothing else is. Distances are those of the exact placement, in
 /// extended precision, between corners and triangles and between edges.
 class MeshPairOracle

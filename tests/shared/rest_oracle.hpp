@@ -33,7 +33,8 @@ struct Rest
 /// touch measured by corners and edges. Penetration of the radius costs like a spring up to a
 /// million times as stiff, in steps; Levenberg-Marquardt with numerical derivatives. Of the product
 /// it uses only the shapes: no planes, contacts or proxy.
-/// || It finds the rest next to `near`, so faces farther than 2 mm from the tool's radius there are
+///
+/// It finds the rest next to `near`, so faces farther than 2 mm from the tool's radius there are
 /// ignored.
 [[nodiscard]] Rest rest_of(const SolidCore& tool, const std::vector<Face>& faces,
                            const Springs& springs, const Similarity& hand, const Similarity& near);

@@ -18,8 +18,9 @@ namespace tactus::test
 {
 
 /// Compares a sound AB-Tree (find_flaw()) after refit() with its expected faces.
-/// || Boxes are recomputed bottom-up from the faces by separate arithmetic and must be equal bit
-/// for bit: the tree equals one refitted from scratch (invariant I6).
+///
+/// Boxes are recomputed bottom-up from the faces by separate arithmetic and must be equal bit for
+/// bit: the tree equals one refitted from scratch (invariant I6).
 template <typename Tree>
 class TreeOracle
 {
