@@ -73,7 +73,7 @@ Reading read_base(View bytes)
         positions.push_back({quanta(p[0]), quanta(p[1]), quanta(p[2])});
     }
     const Bytes again = encode_base_mesh(positions, faces, BaseLayout(sample_header().fields()));
-    // The last byte of the fields has bits that are no field's; a reader passes over them.
+    // The last byte of the fields has bits that belong to no field; a reader ignores them.
     const std::size_t whole = bytes.size() - kChecksumBytes - 1;
     return told(done, fuzz::is_lawful_base(sample_header(), mesh) &&
                           std::ranges::equal(View(again).first(whole), bytes.first(whole)));
@@ -95,7 +95,7 @@ Reading read_chunk(View bytes)
     return told(done, fuzz::is_lawful_parsed_page(sample_header(), {1}, page));
 }
 
-/// One clear line about the file as a whole, or about the one chunk that is damaged.
+/// Fault of the file as a whole, or of one damaged chunk, in one clear line.
 Reading read_model_file(View bytes)
 {
     static fuzz::ScratchFile file("model.spm");
@@ -119,7 +119,7 @@ Reading read_recording(View bytes)
     const auto recording = Recording::parse(bytes, "run.rec");
     if (recording)
     {
-        // One that was cut behind its first frames is read so far, and says so.
+        // A recording that was cut after its first frames is read up to there and reports it.
         return {recording.value().missing(), true};
     }
     return {recording.error().text, is_clear_refusal(recording.error().text, "run.rec: at byte ")};
@@ -139,8 +139,8 @@ void fit_frame_size(std::span<std::byte> bytes)
     }
 }
 
-/// As a recording reads them, until none is left. The hashes of the output, which close a frame,
-/// are the encoder's own.
+/// Frames in the order of a recording, up to the last. The output hashes that close a frame are the
+/// encoder's own.
 Reading read_frames(View bytes)
 {
     FrameDecoder decoder(test::kExampleShape);
@@ -213,7 +213,7 @@ Reading told(const Datagram& datagram, View bytes)
     return {"", std::ranges::equal(udp::encode(datagram), bytes)};
 }
 
-/// What its flag doesn't say isn't looked at, so it doesn't come back.
+/// Values without their flag are not read, so they do not come back.
 Reading told(const udp::SampleDatagram& sample, View bytes)
 {
     const bool turns = sample.rotation && sample.angular_velocity_rad_per_s && sample.gripper_m;
@@ -307,7 +307,7 @@ std::vector<Decoder> all_decoders()
         {"recording",
          [] { return list(test::example_recording(test::make_tiny_model({}))); },
          read_recording,
-         "the file ", // Is cut short or empty, or was cut behind the first frames.
+         "the file ", // The file is truncated or empty, or was cut after the first frames.
          "nothing may follow it",
          nullptr,
          {8, 9, 10, 11},

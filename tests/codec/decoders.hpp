@@ -14,32 +14,35 @@ namespace tactus::codec
 using Bytes = std::vector<std::byte>;
 using View = std::span<const std::byte>;
 
-/// What a decoder makes of some bytes.
+/// Result of a decoder for some bytes.
 struct Reading
 {
-    std::string refusal; ///< Empty when the bytes were taken.
-    /// What was taken is in its ranges or encodes back to the same bytes; a refusal is worded as
-    /// the format promises.
+    std::string refusal; ///< Refusal; empty if the bytes were accepted.
+    /// True if accepted values are in their ranges or encode back to the same bytes, and a refusal
+    /// has the words of the format.
     bool is_lawful{true};
 };
 
-/// One reader of bytes from outside, and what its format says of the laws that all of them share.
+/// Reader of external bytes, with the properties of its format among the laws that all readers
+/// share.
 struct Decoder
 {
     std::string name;
     std::vector<Bytes> (*samples)();
     Reading (*read)(View bytes);
-    std::string cut{};      ///< Stands in what is said of a sample that ends too early,
-    std::string followed{}; ///< and of one that other bytes follow.
-    /// Makes checksum and length fit what stands there; null where there are none or tests/fuzz
-    /// does it.
+    std::string cut{};      ///< Part of the refusal of a sample that ends too early.
+    std::string followed{}; ///< Part of the refusal of a sample with bytes after it.
+    /// Corrects checksum and length; null if there are none or tests/fuzz does it.
     void (*seal)(std::span<std::byte> bytes){nullptr};
-    std::vector<std::size_t> version_at{}; ///< Bytes of its versions, and
-    std::string other_version{};           ///< what is said of any other one.
-    std::vector<unsigned> versions{};      ///< First bytes that are read, where there are several.
-    bool sees_every_flip{true};            ///< By a checksum. Otherwise a bit is read as it stands.
-    bool tells_its_size{true};             ///< What is cut is refused under a right checksum, too.
-    std::vector<std::size_t> whole_at{};   ///< Lengths at which a cut sample is a shorter one.
+    std::vector<std::size_t> version_at{}; ///< Places of the version bytes.
+    std::string other_version{};           ///< Part of the refusal of another version.
+    std::vector<unsigned> versions{};      ///< Accepted first bytes, if there are several.
+    /// True if a checksum detects every flipped bit; otherwise the bit is read.
+    bool sees_every_flip{true};
+    /// True if a truncated sample is refused even with a correct checksum.
+    bool tells_its_size{true};
+    /// Lengths at which a truncated sample is a valid shorter one.
+    std::vector<std::size_t> whole_at{};
 };
 
 inline std::ostream& operator<<(std::ostream& out, const Decoder& decoder)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-/// What holds of every reader of bytes from outside. Ranges of fields, and refusals by name, stand
-/// with each reader's own tests.
+/// Laws of every reader of external bytes. Field ranges and named refusals are in each reader's own
+/// tests.
 #include "tests/codec/decoders.hpp"
 #include "tests/shared/random.hpp"
 
@@ -24,7 +24,7 @@ void flip_bit(Bytes& bytes, std::size_t bit)
 class DecoderLaws : public testing::TestWithParam<Decoder>
 {
 protected:
-    /// What is said of the bytes, which lie in memory of their own, so that a read beyond is seen.
+    /// Refusal of the bytes, copied to separate memory so that a read beyond the end is detected.
     static std::string said_of(View bytes, std::size_t place)
     {
         const Reading reading = GetParam().read(Bytes(bytes.begin(), bytes.end()));
@@ -96,7 +96,7 @@ TEST_P(DecoderLaws, bytes_behind_a_sample_are_refused)
             const std::string said = said_of(longer, size);
             const bool is_sealed = GetParam().seal != nullptr;
             expect_refused(said, is_sealed ? "" : GetParam().followed, size);
-            // A decoder of bits may be four bytes ahead of what it has decoded.
+            // A bit decoder may be four bytes ahead of its output.
             if (is_sealed && size >= whole + 5)
             {
                 expect_refused(said_when_sealed(longer, size), GetParam().followed, size);
@@ -127,7 +127,7 @@ TEST_P(DecoderLaws, garbage_is_refused_or_read_as_it_stands)
         {
             Bytes bytes(random.below(2 * sample.size()));
             std::ranges::generate(bytes, [&] { return static_cast<std::byte>(random.bits()); });
-            // Every second time behind a start that is right.
+            // Every second round has a valid start.
             const std::size_t right = round % 2 == 0 ? 0 : random.below(sample.size());
             std::copy_n(sample.begin(), std::min(right, bytes.size()), bytes.begin());
             expect_noticed(said_of(bytes, round), round);
@@ -160,7 +160,7 @@ TEST_P(SealedDecoderLaws, what_is_taken_under_a_right_checksum_is_in_range_and_n
             taken += said_when_sealed(bytes, bit).empty() ? 1U : 0U;
         }
     }
-    EXPECT_GT(taken, 100U); // Else nothing behind the checksum was looked at.
+    EXPECT_GT(taken, 100U); // Shows that bytes behind the checksum were tested.
 }
 
 TEST_P(VersionedDecoderLaws, every_other_version_is_refused_by_that_name)
