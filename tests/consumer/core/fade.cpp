@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 //
-// fade: what a hand feels of a steady push when its device's samples go bad, as bits: the same on
-// every processor. Then why a frame without memory is refused.
+// fade: the force of a steady push while the device's samples go bad, as bits that are the same on
+// every processor. Then the refusal of a frame without memory.
 #include <bit>
 #include <cstdint>
 #include <cstdio>

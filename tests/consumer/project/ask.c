@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 //
-// ask FILE | ask NAME DOMAIN: distances of a ball, a capsule and a box to the model `ring`, of a
-// file or of a host, forces and torques, from C; and what the library refuses.
+// ask FILE | ask NAME DOMAIN: distances, forces and torques of a sphere, a capsule and a box at the
+// model `ring`, from a file or a server, in C; and the library's refusals.
 #define _POSIX_C_SOURCE 199309L /* nanosleep() */
 #include <math.h>
 #include <stdio.h>

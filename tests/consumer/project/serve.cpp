@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 //
 // serve FILE [DOMAIN]: encodes a mesh of its own as FILE. With a DOMAIN it then publishes the model
-// there under the file's name and shows a cup of it, until it is ended: the cup slides on a spring
-// where the tools of all controllers push it. Says each second where the cup is and who pushes it.
+// under the file's name and shows a cup of it until it is ended. The cup is on a spring and slides
+// when the controllers' tools push it. Prints each second the cup's position and the pushing tools.
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -26,7 +26,7 @@ namespace
 constexpr std::uint32_t kAround = 64;
 constexpr std::uint32_t kAcross = 32;
 
-/// A ring of 8 cm with a wave on it, metres, faces counter-clockwise seen from outside.
+/// Ring of 8 cm with a wave on it, in metres, faces counter-clockwise seen from outside.
 tactus::TriangleMesh make_ring()
 {
     tactus::TriangleMesh mesh;
@@ -56,7 +56,7 @@ tactus::TriangleMesh make_ring()
 }
 
 constexpr double kMass_kg = 1.0;
-constexpr double kSpring_n_per_m = 50.0; ///< It pulls the cup back to where it was.
+constexpr double kSpring_n_per_m = 50.0; ///< Stiffness of the spring that pulls the cup back.
 constexpr double kStep_s = 0.01;
 
 int fail(const tactus::Refusal& refusal)
@@ -65,7 +65,7 @@ int fail(const tactus::Refusal& refusal)
     return 2;
 }
 
-/// What the tools of all controllers push an object with, in newtons; `pushing` is how many do.
+/// Sum of the controllers' forces on an object, in newtons; `pushing` is the number of controllers.
 tactus::Vec3 push_on(std::uint32_t object, const tactus::dds::DdsHost& host,
                      const tactus::dds::TelemetryReader& watch, int& pushing)
 {
@@ -130,7 +130,7 @@ int publish(const std::filesystem::path& file, std::uint32_t domain)
         const auto& [x_m, y_m, z_m] = pose.translation_m;
         const tactus::Vec3 pull_n = -kSpring_n_per_m * tactus::Vec3(x_m, y_m, z_m);
         velocity_m_per_s += kStep_s / kMass_kg * (push_n + pull_n);
-        velocity_m_per_s *= 0.8; // It is slowed down.
+        velocity_m_per_s *= 0.8; // Damping.
         pose.translation_m[0] += kStep_s * velocity_m_per_s.x();
         pose.translation_m[1] += kStep_s * velocity_m_per_s.y();
         pose.translation_m[2] += kStep_s * velocity_m_per_s.z();

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 //
-// touch FILE RECORDING, or touch NAME RECORDING DOMAIN: a pen, a brick and a wedge go down among a
-// thousand objects that show one model, of a file or of a host. Objects move, come and go. Prints a
-// digest over every bit of the answers and forces: from a file it is the same whatever this program
-// was compiled with. All frames are recorded and replayed. docs/library.md and docs/how-to.md show
-// parts of it.
+// touch FILE RECORDING, or touch NAME RECORDING DOMAIN: a pen, a brick and a wedge descend among a
+// thousand objects that show one model, from a file or a server. Objects are moved, added and
+// removed. Prints a digest over every bit of the answers and forces, which for a file is the same
+// with every compiler. All frames are recorded and replayed. docs/library.md and docs/how-to.md
+// show parts of it.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -63,7 +63,7 @@ private:
     std::uint64_t hash_{0xCBF2'9CE4'8422'2325U};
 };
 
-/// Puts the pieces of the model into the recording; called before a frame can have them.
+/// Copies the pieces of the model into the recording before a frame can have them.
 class PieceCopies final : public PieceSink
 {
 public:
@@ -83,7 +83,7 @@ int fail(const char* text)
     return 2;
 }
 
-/// A grid of objects, `step_m` apart, the last layer at a height of 0.
+/// Grid of objects, `step_m` apart, the last layer at height 0.
 std::vector<ObjectPose> grid(double step_m)
 {
     std::vector<ObjectPose> poses(kObjects);
@@ -95,7 +95,7 @@ std::vector<ObjectPose> grid(double step_m)
     return poses;
 }
 
-/// Stores what was recorded and runs it again.
+/// Stores a recording and replays it.
 int replay_file(const char* path, const std::vector<std::byte>& bytes)
 {
     std::ofstream(path, std::ios::binary)
@@ -124,7 +124,7 @@ int main(int argc, char** argv)
         std::fprintf(stderr, "usage: touch FILE RECORDING | touch NAME RECORDING DOMAIN\n");
         return 3;
     }
-    std::unique_ptr<dds::DdsClient> client; // Must outlive the model's link.
+    std::unique_ptr<dds::DdsClient> client; // Client; must outlive the model's link.
     Result<ServedModel, Refusal> served = Refusal{};
     if (argc == 3)
     {
@@ -149,18 +149,19 @@ int main(int argc, char** argv)
     const ModelHeader header = ModelHeader::parse(model.header).value();
     const double size_m = header.diagonal_m();
 
-    // A pen of 30 mm, 2 mm thick, that is held upright.
+    // The pen is 30 mm long, 2 mm thick and upright.
     ToolSpec pen;
     pen.core = Segment{{0.0, 0.0, 0.0}, {0.0, 0.0, 0.03}};
     pen.radius_m = 0.001;
     pen.wants_contacts = true;
 
-    // A brick with rounded edges.
+    // The brick has rounded edges.
     ToolSpec brick;
     brick.core = Box{{0.1 * size_m, 0.05 * size_m, 0.02 * size_m}};
     brick.radius_m = 0.01 * size_m;
 
-    // A wedge: the convex hull of its corners, which stay where they are while the frame lives.
+    // The wedge is the convex hull of its corners, which must stay in place for the frame's
+    // lifetime.
     const double wide_m = 0.04 * size_m;
     const std::array<Vec3, 6> corners{Vec3(-wide_m, -wide_m, wide_m), Vec3(wide_m, -wide_m, wide_m),
                                       Vec3(-wide_m, wide_m, wide_m),  Vec3(wide_m, wide_m, wide_m),
@@ -176,7 +177,7 @@ int main(int argc, char** argv)
 
     const std::array<ToolSpec, 3> tools{pen, brick, wedge};
 
-    // All objects show model 0; the material is each one's own.
+    // All objects show model 0; each has its own material.
     std::vector<ObjectSpec> objects(kObjects);
     for (ObjectSpec& object : objects)
     {
@@ -189,7 +190,7 @@ int main(int argc, char** argv)
     setup.tools = tools;
     setup.objects = objects;
     setup.poses = poses;
-    setup.capacities.objects = kObjects + 1; // Room for one that comes later.
+    setup.capacities.objects = kObjects + 1; // One more for an object that is added later.
 
     constexpr std::size_t kBytes = std::size_t{16} << 20U;
     const auto memory = std::make_unique<std::byte[]>(kBytes + Arena::kAlignment);
@@ -220,13 +221,13 @@ int main(int argc, char** argv)
         header.origin_m() +
         to_vec3(*std::max_element(vertices.begin(), vertices.end(),
                                   [](const Vec3f& a, const Vec3f& b) { return a[2] < b[2]; }));
-    // Each tool goes down into an object of the upper layer, the pen into the last one.
+    // Each tool descends into an object of the upper layer, the pen into the last one.
     const auto above = [&](std::size_t tool)
     { return Vec3(poses[kObjects - 1 - 5 * tool].translation_m + top); };
 
     const double period_s = 1e-9 * static_cast<double>(setup.period_ns);
     const Vec3 middle_m = above(0);
-    const DeviceLimits limits; // Of a device that is no weaker than most, and makes no torque.
+    const DeviceLimits limits; // Limits of a device at least as strong as most, without torque.
     std::vector<ForcePipeline> pipelines;
     for (const ToolSpec& tool : tools)
     {
@@ -245,7 +246,7 @@ int main(int argc, char** argv)
     {
         const double share = static_cast<double>(i) / kFrames;
         std::array<ToolState, 3> states;
-        // The hand that holds the pen gives way to the force by 0.2 mm a newton.
+        // The hand that holds the pen yields 0.2 mm a newton.
         states[0].position_m = above(0) + Vec3(0.0, 0.0, 0.017 - 0.06 * share) + 2e-4 * pushed_n;
         for (std::size_t tool = 1; tool < states.size(); ++tool)
         {
@@ -253,7 +254,7 @@ int main(int argc, char** argv)
         }
 
         std::vector<SceneChange> changes;
-        // Object 0 goes round in a circle.
+        // Object 0 moves in a circle.
         SceneChange moves;
         moves.kind = SceneChangeKind::object_moves;
         moves.number = 0;
@@ -262,15 +263,15 @@ int main(int argc, char** argv)
             0.1 * size_m * Vec3(std::cos(6.28 * share), std::sin(6.28 * share), 0.0);
         changes.push_back(moves);
 
-        // The object under the pen turns.
+        // The object under the pen rotates.
         moves.number = kObjects - 1;
         moves.pose = poses.back();
         moves.pose.rotation =
             Eigen::AngleAxisd(0.6 * share, Eigen::Vector3d::UnitZ()).toRotationMatrix();
         changes.push_back(moves);
 
-        // Object 1,000 is there from frame 500 to frame 1,500, twice as large as the others.
-        // Another one of this number would be of generation 1.
+        // Object 1,000 exists from frame 500 to frame 1,500, twice as large as the others. Another
+        // one of this number would be of generation 1.
         SceneChange guest;
         guest.number = kObjects;
         guest.generation = 0;
@@ -291,17 +292,17 @@ int main(int argc, char** argv)
         courier.step(std::int64_t{i} * setup.period_ns);
         const FrameInput input{.tools = states, .changes = changes, .budgets = {}, .now_ns = 0};
         const FrameOutput output = frame->run(input);
-        tap.record(input, output); // The haptic thread's part.
+        tap.record(input, output); // On the haptic thread.
         while (tap.try_take(coded))
         {
-            writer.add_frame(coded); // Another thread's, or the same one's as here.
+            writer.add_frame(coded); // On another thread, or the same one as here.
         }
 
         for (std::size_t tool = 0; tool < states.size(); ++tool)
         {
             const ToolState& state = states[tool];
             const ToolOutput& of_frame = output.tools[tool];
-            // A spring of 50 N/m guides the pen towards a point, with 1 N at most.
+            // A spring of 50 N/m guides the pen towards a point, with at most 1 N.
             const OwnForce guide = spring_to(middle_m, state.position_m, 50.0, 1.0);
             const OwnForce own = tool == 0 ? guide : OwnForce{};
             const ToolForce& force =
@@ -318,7 +319,7 @@ int main(int argc, char** argv)
         }
         for (const PairOutput& pair : output.pairs)
         {
-            // Only objects near a tool have a pair; to all others it is proven clear.
+            // Only objects near a tool have a pair; all others are proven clear.
             wrong += pair.lower_m > pair.upper_m ? 1 : 0;
         }
         for (const PairOutput& pair : output.pairs)
@@ -331,7 +332,7 @@ int main(int argc, char** argv)
         }
         for (const std::uint32_t count : output.scene.refused)
         {
-            refused += count; // Why: ChangeRefusal, in this order.
+            refused += count; // Counts by ChangeRefusal.
         }
         most_objects = std::max(most_objects, output.scene.objects);
         if (client)
