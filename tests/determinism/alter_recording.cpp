@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// alter_recording FROM TO FRAME: writes a sound recording in which one frame was given another
-/// goal. Exits 2 when it can't.
+/// alter_recording FROM TO FRAME: writes a sound recording with another goal in one frame. Exits 2
+/// on failure.
 
 #include "tests/shared/altered_recording.hpp"
 

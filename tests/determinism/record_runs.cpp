@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// record_runs FOLDER: makes shapes, touches them in several ways and writes a recording of each
-/// run into the folder. What other builds must replay bit for bit.
+/// record_runs FOLDER: touches generated shapes in several ways and writes a recording of each run
+/// into the folder. Other builds must replay them bit for bit.
 
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/shared/frame_rig.hpp"
@@ -25,10 +25,10 @@ namespace
 {
 
 constexpr std::uint32_t kFrames = 500;
-/// Of a tool that is a mesh: one costs hundreds of others where it lies half within an object.
+/// Frames of a mesh tool, each of which costs hundreds of others if it is half inside an object.
 constexpr std::uint32_t kMeshFrames = 20;
 
-/// Onto the model's highest corner, and a little into it.
+/// Descends onto the model's highest corner, and slightly into it.
 Vec3 land(const TestModel& model, std::uint32_t frame)
 {
     const auto top =
@@ -37,14 +37,14 @@ Vec3 land(const TestModel& model, std::uint32_t frame)
     return to_vec3(top->at(0)) + Vec3(0.0, 0.0, height * model.diagonal_m);
 }
 
-/// What a tool that is not a point does at it.
+/// Rotation of an extended tool there.
 Mat3 turn(std::uint32_t frame)
 {
     const Vec3 axis = Vec3(0.3, 0.5, 0.8).normalized();
     return Eigen::AngleAxisd(0.002 * frame, axis).toRotationMatrix();
 }
 
-/// A peg above its socket: down into the hole, against the bottom, to and fro across it, and out.
+/// Peg above its socket: moves into the hole, against the bottom, across it, and out.
 Vec3 go_in(const TestModel& socket, std::uint32_t frame)
 {
     constexpr double kInDepth_m = 0.041;
@@ -59,7 +59,7 @@ Vec3 go_in(const TestModel& socket, std::uint32_t frame)
     return Vec3(0.0, 0.0, 0.051 - kInDepth_m * in) + aside_m - origin_m;
 }
 
-/// Turned about its axis while it is in the hole, with tilts.
+/// Rotation about the peg's axis in the hole, with tilts.
 Mat3 screw(std::uint32_t frame)
 {
     const Vec3 axis(0.03 * std::sin(0.05 * frame), 0.03 * std::sin(0.03 * frame), 1.0);
@@ -71,24 +71,26 @@ struct Run
     const char* name;
     std::vector<const TestModel*> models;
     Vec3 (*motion)(const TestModel&,
-                   std::uint32_t){nullptr}; ///< None: each tool has a WanderingHand.
+                   std::uint32_t){nullptr}; ///< Motion; null: each tool has a WanderingHand.
     RigOptions options;
     Budgets budgets;
     std::uint32_t frames{kFrames};
-    void (*change_scene)(FrameRig& rig, std::uint32_t frame){nullptr}; ///< Before each frame.
-    std::uint32_t refused{0};                                          ///< Changes, in all.
+    /// Called before each frame.
+    void (*change_scene)(FrameRig& rig, std::uint32_t frame){nullptr};
+    std::uint32_t refused{0}; ///< Total of refused changes.
     Mat3 (*turning)(std::uint32_t){turn};
 };
 
-/// A tool of this core that wants all there is to know.
+/// Tool with this core and all requests.
 RigOptions with_core(RigOptions options, const ToolCore& core)
 {
     options.tools = {{1e-4, 500.0, 8.0, 1.0, core, true}};
-    options.tools[0].passes_through = std::holds_alternative<MeshCore>(core); // So that faces meet.
+    // Query-only, so that faces meet.
+    options.tools[0].passes_through = std::holds_alternative<MeshCore>(core);
     return options;
 }
 
-/// A ball, a capsule that surfaces hold, and a box that measures, at two objects of two models.
+/// Sphere, capsule with a proxy, and query-only box, at two objects of two models.
 RigOptions crowd(RigOptions options)
 {
     const Vec3 half(0.004, 0.002, 0.003);
@@ -100,14 +102,14 @@ RigOptions crowd(RigOptions options)
     return options;
 }
 
-/// For more objects than are there at first.
+/// Capacity for more objects than at the start.
 RigOptions with_room(RigOptions options)
 {
     options.capacities.objects = 4;
     return options;
 }
 
-/// A mesh that surfaces hold back.
+/// Mesh tool with a proxy.
 RigOptions held_mesh(RigOptions options, const MeshCore& core)
 {
     options = with_core(options, core);
@@ -115,7 +117,7 @@ RigOptions held_mesh(RigOptions options, const MeshCore& core)
     return options;
 }
 
-/// A mesh in a mesh that fits it, with friction.
+/// Mesh in a fitting mesh, with friction.
 Run peg_in_hole(RigOptions options)
 {
     const TestModel& socket = test_model("socket", make_shape(Shape::socket, 1'200).value());
@@ -125,7 +127,7 @@ Run peg_in_hole(RigOptions options)
     return {"peg", {&socket, &peg}, go_in, options, {}, kFrames, nullptr, 0, screw};
 }
 
-/// To and fro, and turning.
+/// Pose of an object that swings and rotates.
 ObjectPose pose_at(std::uint32_t frame, std::size_t object, std::int64_t now_ns)
 {
     const double angle = 0.001 * frame * (object == 0 ? 1.0 : -1.0);
@@ -155,7 +157,7 @@ SceneChange change_of(SceneChangeKind kind, std::uint32_t number, std::uint32_t 
     return change;
 }
 
-/// All kinds of changes, of objects under a tool as well, and some that must be refused.
+/// All kinds of changes, also of touched objects, with some that must be refused.
 void come_and_go(FrameRig& rig, std::uint32_t frame)
 {
     using Kind = SceneChangeKind;
@@ -169,18 +171,18 @@ void come_and_go(FrameRig& rig, std::uint32_t frame)
     };
     at(0, change_of(Kind::object_moves, 1));
     at(60, change_of(Kind::object_feels, 0));
-    at(90, change_of(Kind::object_feels, 0, 1)); // Another generation.
+    at(90, change_of(Kind::object_feels, 0, 1)); // Wrong generation.
     at(120, change_of(Kind::object_goes, 1));
     at(150, change_of(Kind::tool_goes, 2));
     at(180, change_of(Kind::object_comes, 3, 1));
-    at(200, change_of(Kind::object_moves, 1)); // It is not there.
+    at(200, change_of(Kind::object_moves, 1)); // Absent.
     at(240, change_of(Kind::tool_comes, 2));
-    at(240, change_of(Kind::tool_comes, 2)); // It is.
+    at(240, change_of(Kind::tool_comes, 2)); // Already present.
     at(260, change_of(Kind::object_comes, 1, 1));
     at(300, change_of(Kind::object_goes, 0));
     at(330, change_of(Kind::object_comes, 0, 1));
-    at(331, change_of(Kind::object_moves, 0)); // The one before.
-    at(350, change_of(Kind::object_comes, 4)); // No such place.
+    at(331, change_of(Kind::object_moves, 0)); // Previous generation.
+    at(350, change_of(Kind::object_comes, 4)); // Number out of range.
     at(400, change_of(Kind::tool_goes, 0));
     at(420, change_of(Kind::tool_comes, 0));
 }
@@ -230,7 +232,7 @@ std::vector<Run> runs()
             peg_in_hole(usual)};
 }
 
-/// False when the file can't be written, or other changes of the scene were refused than must be.
+/// Records a run. False if the file cannot be written, or the number of refused changes is wrong.
 bool record(const Run& run, const std::filesystem::path& folder)
 {
     FrameRig rig(run.models, run.options);

@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 
 /// replay_recordings best|portable FILE...: replays recordings with these kernels and compares the
-/// hashes of every frame; a line for each file. Exits 0 when all agree, 1 when a frame differs, 2
-/// when a file is refused, 3 after wrong usage.
+/// hashes of every frame; one line for each file. Exits 0 if all agree, 1 if a frame differs, 2 if
+/// a file is refused, 3 for wrong usage.
 
 #include "platform/recording/replay.hpp"
 
