@@ -10,7 +10,7 @@ namespace tactus::fuzz
 namespace
 {
 
-/// A derived owner, a base face or a record, by the lowest bits of the edit's value.
+/// Owner by the lowest bits of the edit's value: derived, base face or record.
 CodedRecord::Owner owner_of(const Edit& edit, std::uint32_t number, const ModelCounts& counts)
 {
     switch (edit.value % 4)
@@ -24,7 +24,7 @@ CodedRecord::Owner owner_of(const Edit& edit, std::uint32_t number, const ModelC
     }
 }
 
-/// One of the errors that can be told beside the record's largest one.
+/// Error that can be coded beside the record's largest one.
 ErrorCode error_beside(const CodedRecord& record, const Edit& edit)
 {
     const ErrorCode largest = std::max(ErrorCode{1}, std::ranges::max(record.error));
@@ -32,7 +32,7 @@ ErrorCode error_beside(const CodedRecord& record, const Edit& edit)
     return static_cast<ErrorCode>(below == 30 ? 0U : largest > below ? largest - below : 1U);
 }
 
-/// Clears what a chunk doesn't tell of a record with this fan and these sides.
+/// Clears the fields that a chunk does not store for a record with this fan and these sides.
 void clear_the_rest(CodedRecord& record)
 {
     const std::uint32_t fan = record.fan_size();
@@ -59,7 +59,7 @@ void edit_bytes(const Edit& edit, std::vector<std::byte>& bytes)
         *at ^= static_cast<std::byte>(1U << (edit.value % 8));
         break;
     case Edit::cut:
-        bytes.erase(at + 1, bytes.end()); // One byte stays, for the edits that follow.
+        bytes.erase(at + 1, bytes.end()); // One byte stays for the following edits.
         break;
     case Edit::insert_byte:
         bytes.insert(at, static_cast<std::byte>(edit.value));

@@ -11,7 +11,7 @@
 namespace tactus::fuzz
 {
 
-/// One change of a chunk, of its bytes or of a record that was parsed from it.
+/// Change of a chunk: of its bytes or of a record parsed from it.
 struct Edit
 {
     enum Kind : std::uint32_t
@@ -20,7 +20,7 @@ struct Edit
         flip_bit,
         cut,
         insert_byte,
-        set_anchor, ///< From here on of records.
+        set_anchor, ///< First kind of a change of records.
         set_place,
         set_fan,
         set_other,
@@ -36,12 +36,12 @@ struct Edit
     std::uint32_t value{0};
 };
 
-/// No effect when it is of a record. `bytes` is never empty, before and after.
+/// Applies an edit of bytes; no effect for one of a record. `bytes` is never empty.
 void edit_bytes(const Edit& edit, std::vector<std::byte>& bytes);
 
-/// Changes a record as another chunk could say it, which reaches records that random bytes of a
-/// chunk hardly ever spell; `place` / 64, below 1024, is the number to put there. It may still be
-/// one that no chunk says. No effect when it is of bytes.
+/// Changes a record as another chunk could code it, which reaches records that random bytes hardly
+/// produce; `place` / 64, below 1024, is the new number, possibly one that no chunk codes. No
+/// effect for an edit of bytes.
 void edit_record(const Edit& edit, const ModelCounts& counts, CodedRecord& record);
 
 } // namespace tactus::fuzz

@@ -11,24 +11,24 @@
 namespace tactus::fuzz
 {
 
-/// A small model's pieces as they are coded by this build, so that what is fuzzed always knows the
-/// coder's present version.
+/// Pieces of a small model as this build codes them, so that fuzzing always uses the present
+/// version.
 struct CodedModel
 {
     std::vector<std::byte> header_bytes;
-    ModelHeader header; ///< Looks into header_bytes.
+    ModelHeader header; ///< View of header_bytes.
     std::vector<std::byte> base;
     std::vector<std::vector<std::byte>> chunks;
 };
 
-/// Which generated shape. More faces mean more chunks: one for each 128.
+/// Generated shapes. More faces mean more chunks: one for each 128.
 enum class Lump : std::uint32_t
 {
-    closed, ///< A bumpy sphere of 720 faces.
-    open,   ///< A terrain of about 800, with a border.
+    closed, ///< Bumpy sphere of 720 faces.
+    open,   ///< Terrain of about 800 faces, with a border.
 };
 
-/// Made by the encoder, once a process. Ends the program when a step refuses.
+/// Model made by the encoder, once a process. Ends the program if a step refuses.
 [[nodiscard]] const CodedModel& coded_model(Lump lump);
 
 } // namespace tactus::fuzz

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-/// An input is a script: which model; edits of its chunks; then steps that bring and take away
-/// chunks in any order. Bytes past the end are 0.
+/// The input is a script: a model; edits of its chunks; then steps that add and remove chunks in
+/// any order. Bytes past the end are 0.
 ///
 ///     model     1 byte: its lowest bit chooses the Lump
-///     edits     1 byte: how many, modulo 8
+///     edits     1 byte: their number, modulo 8
 ///     edit      chunk, kind, two bytes of a place, value; kinds 0 .. 3 change a byte of the
 ///               chunk, the others the parsed record place % 64, by the number place / 64
-///     step      1 byte: kind modulo 4 (bring, bring, take away, take updates), chunk or count
+///     step      1 byte: kind modulo 4 (add, add, remove, take updates), chunk or count
 ///
-/// Edited bytes get a new checksum, or they would not be parsed at all.
+/// Edited bytes get a new checksum, or they would not be parsed.
 #include "rt_core/spm/chunk_coding.hpp"
 #include "tests/fuzz/chunk_edit.hpp"
 #include "tests/fuzz/coded_model.hpp"
@@ -60,7 +60,7 @@ Edit read_edit(Script& script, std::uint32_t chunks)
     return edit;
 }
 
-/// The chunks that this input serves; each is the same whenever it is asked for.
+/// Chunks that this input serves; each is the same at every request.
 class ServedChunks
 {
 public:
@@ -69,7 +69,7 @@ public:
     {
     }
 
-    /// Null for a chunk that is refused.
+    /// Page of a chunk; null if it is refused.
     const Page* page(ChunkId chunk)
     {
         const auto [at, is_new] = pages_.try_emplace(chunk.value);
@@ -92,7 +92,7 @@ private:
                 edit_bytes(edit, bytes);
             }
         }
-        bytes.shrink_to_fit(); // So that a read beyond the end is seen.
+        bytes.shrink_to_fit(); // Reads beyond the end are detected.
         seal_chunk(bytes, chunk);
         std::optional<Page> page(std::in_place);
         Page other;
@@ -129,7 +129,7 @@ private:
             record = waiting_form(coded);
             if (!is_lawful_parsed_page(model_.header, chunk, page))
             {
-                record = before; // No parser gives that to the linker.
+                record = before; // No parser passes that to the linker.
             }
         }
     }
@@ -200,7 +200,7 @@ void run(Script script)
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
-    constexpr std::size_t longest = 96; // Steps repeat; a longer script tells nothing new.
+    constexpr std::size_t longest = 96; // Steps repeat, so a longer script finds nothing new.
     tactus::fuzz::run(tactus::fuzz::Script({data, std::min(size, longest)}));
     return 0;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-/// An input is a mesh file of the kind that TACTUS_FUZZ_EXTENSION names. What the importer accepts
-/// goes on to prepare_mesh(), which every program calls next.
+/// The input is a mesh file of the kind in TACTUS_FUZZ_EXTENSION. An accepted mesh is passed to
+/// prepare_mesh(), as in every program.
 #include "host_tools/mesh/prepare.hpp"
 #include "host_tools/mesh/read_mesh.hpp"
 #include "tests/fuzz/law.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-/// An input is a scene file, .gltf or .glb by its first bytes. Of an accepted one every mesh is
+/// The input is a scene file, .gltf or .glb by its first bytes. Every mesh of an accepted one is
 /// read; one whose objects name their models is written again.
 #include "host_tools/scene/placed_models.hpp"
 #include "host_tools/scene/scene.hpp"
@@ -76,7 +76,7 @@ void check_scene(Scene& scene, const std::string& path)
             "1 to 4096 objects have names of their own");
 }
 
-/// What is written is read again as it was.
+/// A written scene is read back unchanged.
 void check_written(ScratchFile& scratch)
 {
     const auto placed = read_placed_models(scratch.path());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-/// An input is a model's file. It is read twice: as it is, and sealed (seal_model.hpp), so that
-/// what the hashes would have refused meets every later check.
+/// The input is a model's file. It is read twice: unchanged, and with corrected hashes
+/// (seal_model.hpp), so that faults reach every later check.
 #include "host_tools/encode/decoded_model.hpp"
 #include "host_tools/encode/replay.hpp"
 #include "rt_core/spm/chunk_coding.hpp"
@@ -25,7 +25,7 @@ namespace
 
 using Bytes = std::vector<std::byte>;
 
-/// Memory of its own, so that a read beyond the part is seen; short where the file ends.
+/// Separate memory, so that a read beyond the part is detected; shorter if the file ends.
 Bytes copy_part(std::span<const std::byte> file, std::uint64_t offset, std::uint64_t bytes)
 {
     const std::uint64_t start = std::min<std::uint64_t>(offset, file.size());
@@ -46,7 +46,7 @@ void parse_base(std::span<const std::byte> file, const ModelHeader& header)
     }
 }
 
-/// Past the first page that the file doesn't hold there is nothing more to find.
+/// Parsing stops at the first page outside of the file.
 void parse_index(std::span<const std::byte> file, const ModelHeader& header)
 {
     const ModelCounts counts = header.counts();
@@ -109,7 +109,7 @@ void parse_chunks(const ModelStore& store)
     }
 }
 
-/// Splits what linked; refusals are as good as splits.
+/// Splits the linked records; refusals are as good as splits.
 void play(const DecodedModel& model)
 {
     for (RecordId id{0}; id.value < model.header().counts().records; ++id.value)

@@ -19,8 +19,7 @@ namespace
 
 constexpr std::uint32_t kAway = 0xFFFF'FFFFU;
 
-/// Whether the face is in the state that its owner stands for; derived ones may be in any of a
-/// record.
+/// True if the face is in the state of its owner; derived ones may be in any of a record.
 bool is_of(FaceId face, FaceState state, const CodedRecord::Owner& owner)
 {
     switch (owner.kind)
@@ -35,7 +34,7 @@ bool is_of(FaceId face, FaceState state, const CodedRecord::Owner& owner)
     return false;
 }
 
-/// Whether a linked record has the fan, the sides and the errors that its chunk tells.
+/// True if a linked record has the fan, the sides and the errors of its chunk.
 bool says(const VsplitRecord& record, const CodedRecord& coded)
 {
     const std::uint32_t left = coded.left;
@@ -200,8 +199,8 @@ void LinkDesk::check_linked(RecordId id, const VsplitRecord& record, const Coded
     check_owners(id, record);
 }
 
-/// A linked record fits its resident owners and is one deeper than the deepest. Until something was
-/// taken away, it alone splits its fan faces; afterwards a rival may have come first.
+/// A linked record fits its resident owners and is one deeper than the deepest. Until a chunk was
+/// removed, it alone splits its fan faces; afterwards a rival may have been first.
 void LinkDesk::check_owners(RecordId id, const VsplitRecord& record) const
 {
     const bool has_owners = owners_are_linked(record);
@@ -229,9 +228,9 @@ void LinkDesk::check_owners(RecordId id, const VsplitRecord& record) const
             "a linked record's depth is one more than its deepest dependency's");
 }
 
-/// Beside what a record names it depends on nothing but what the named ones depend on in turn: on
-/// what brought the corners of their faces, and on faces round these. So when these are all linked
-/// there is nothing left to wait for.
+/// Besides its named owners a record depends only on their dependencies: the ones that created the
+/// corners of their faces, and faces around these. If these are all linked there is nothing to wait
+/// for.
 void LinkDesk::check_unlinked(RecordId id, std::vector<Whole>& whole)
 {
     const std::uint32_t slot = slot_of_[id.value / 64];
@@ -246,7 +245,7 @@ void LinkDesk::check_unlinked(RecordId id, std::vector<Whole>& whole)
     }
 }
 
-/// Ends: owners of a linked record are less deep.
+/// Terminates: owners of a linked record are less deep.
 bool LinkDesk::is_whole(RecordId id, std::vector<Whole>& whole) const
 {
     if (whole[id.value] == Whole::unknown)

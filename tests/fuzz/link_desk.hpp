@@ -15,26 +15,26 @@
 namespace tactus::fuzz
 {
 
-/// What the transport thread has of one model, with a slot for each chunk: the parsed pages that an
-/// input may bring and take away, and the linker over them. After each step the laws of linking are
-/// checked against the records themselves.
+/// Transport thread's view of one model, with a slot for each chunk: the parsed pages that an input
+/// may add and remove, and the linker over them. After each step the laws of linking are checked
+/// against the records.
 ///
-/// Bytes of a chunk are the same whenever it comes: the hashes see to that before it is parsed, and
+/// Bytes of a chunk are the same whenever it arrives: the hashes ensure that before parsing, and
 /// the linker relies on it.
 class LinkDesk
 {
 public:
     explicit LinkDesk(const CodedModel& model);
 
-    /// How many chunks the model has.
+    /// Number of the model's chunks.
     [[nodiscard]] std::uint32_t chunks() const noexcept;
-    /// Puts a parsed page into the first free slot and links it; nothing when it is there already.
+    /// Puts a parsed page into the first free slot and links it; no effect if it is present.
     void bring(ChunkId chunk, const Page& page);
-    /// Nothing when it isn't there.
+    /// Removes a chunk; no effect if it is absent.
     void take_away(ChunkId chunk);
-    /// Takes at most `limit` of the updates that are owed.
+    /// Takes at most `limit` of the pending updates.
     void take_updates(std::uint32_t limit);
-    /// With all updates taken: whoever was told of every change knows what is linked.
+    /// Checks, after all updates, that the changes notified so far describe the linked records.
     void check_told() const;
     [[nodiscard]] std::uint64_t records_linked_now() const;
     [[nodiscard]] std::uint64_t records_refused() const { return linker_->records_refused(); }
@@ -45,7 +45,7 @@ private:
         alignas(Arena::kAlignment) std::array<std::byte, Arena::kAlignment> bytes;
     };
 
-    /// Whether a record and all that it depends on are linked.
+    /// State of a record with all its dependencies: linked or not.
     enum class Whole : std::uint8_t
     {
         unknown,
@@ -60,7 +60,7 @@ private:
     [[nodiscard]] bool is_whole(RecordId id, std::vector<Whole>& whole) const;
     [[nodiscard]] bool owners_are_linked(const VsplitRecord& record) const;
     [[nodiscard]] bool is_linked(RecordId id) const;
-    /// Null when it isn't linked.
+    /// Linked record; null if it is not linked.
     [[nodiscard]] const VsplitRecord* find(RecordId id) const;
     [[nodiscard]] std::uint32_t next_of(FaceId face, FaceState state) const;
 
@@ -70,13 +70,13 @@ private:
     PageSlots slots_;
     std::optional<LinkPool> pool_;
     std::unique_ptr<Linker> linker_;
-    std::vector<std::uint32_t> slot_of_; ///< By chunk; kAway when it isn't here.
-    std::vector<ChunkId> chunk_in_;      ///< By slot; none when it is free.
-    std::vector<std::uint64_t> told_;    ///< By slot.
-    std::vector<Page> parsed_;           ///< By slot: the page as it came.
-    /// By record: what it became when it was linked first, without `next`.
+    std::vector<std::uint32_t> slot_of_; ///< Slot by chunk; kAway if absent.
+    std::vector<ChunkId> chunk_in_;      ///< Chunk by slot; empty if free.
+    std::vector<std::uint64_t> told_;    ///< Notified records by slot.
+    std::vector<Page> parsed_;           ///< Parsed page by slot, as it arrived.
+    /// Record as it was linked first, without `next`.
     std::vector<std::optional<VsplitRecord>> became_;
-    std::vector<bool> is_stuck_; ///< By record: found refused since its chunk came.
+    std::vector<bool> is_stuck_; ///< True for a record that was refused since its chunk arrived.
     std::uint64_t found_refused_{0};
     bool has_taken_away_{false};
 };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// make_corpus FOLDER: writes the seeds that hold this build's format anew: models of one chunk, of
-/// two with a border, and without records. The same build gives the same bytes.
+/// make_corpus FOLDER: rewrites the seeds that contain this build's format: models of one chunk, of
+/// two with a border, and without records. The same build writes the same bytes.
 
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/shared/test_model.hpp"
@@ -20,7 +20,7 @@ int main(int argc, char** argv)
     using namespace tactus;
     const std::filesystem::path folder = std::filesystem::path(argv[1]) / "spm_reader";
     std::filesystem::create_directories(folder);
-    // No extension: what ends in .spm is a product and not kept.
+    // There is no extension: files that end in .spm are products and not kept.
     const auto add = [&](const char* name, const TriangleMesh& mesh, std::uint32_t base_faces)
     {
         std::filesystem::copy_file(test::test_model(name, mesh, base_faces).path, folder / name,

@@ -15,7 +15,7 @@ namespace tactus::fuzz
 namespace
 {
 
-constexpr std::uint64_t kMostRecords = 536'870'910; // 2^29 - 2.
+constexpr std::uint64_t kMostRecords = 536'870'910; // The bound is 2^29 - 2.
 
 bool has_lawful_counts(const HeaderFields& f)
 {

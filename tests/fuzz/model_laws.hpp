@@ -9,8 +9,8 @@
 #include <cstddef>
 #include <span>
 
-/// What holds of every piece that a parser accepts: docs/internals/spm-format.md, sections 2, 6, 8,
-/// written down a second time, with the numbers of that page.
+/// Laws of every piece that a parser accepts: docs/internals/spm-format.md, sections 2, 6, 8,
+/// written a second time, with the numbers of that page.
 namespace tactus::fuzz
 {
 
@@ -19,7 +19,7 @@ namespace tactus::fuzz
     return value >= low && value <= high;
 }
 
-/// `bytes` are those that the header was parsed from.
+/// True for a lawful header; `bytes` are those that it was parsed from.
 [[nodiscard]] bool is_lawful_header(const ModelHeader& header, std::span<const std::byte> bytes);
 
 [[nodiscard]] bool is_lawful_base(const ModelHeader& header, const BaseMesh& mesh);
@@ -27,7 +27,7 @@ namespace tactus::fuzz
 [[nodiscard]] bool is_lawful_index_page(const ModelCounts& counts, IndexPageId id,
                                         const IndexPage& page, std::span<const ChunkEntry> entries);
 
-/// Whole quanta, 0 .. extent.
+/// True for whole quanta in 0 .. extent.
 [[nodiscard]] bool is_on_grid(const ModelHeader& header, const Vec3f& position_m);
 
 } // namespace tactus::fuzz

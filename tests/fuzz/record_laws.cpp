@@ -76,7 +76,7 @@ bool is_lawful_owner(const ModelCounts& counts, RecordId id, const CodedRecord::
     return false;
 }
 
-/// There is an L with each error 0 or one of L, L - 2, ... L - 28, at least 1.
+/// True if there is an L with each error 0 or one of L, L - 2, ... L - 28, at least 1.
 bool has_lawful_errors(const CodedRecord& record)
 {
     const int largest = std::ranges::max(record.error);
@@ -95,7 +95,7 @@ bool has_lawful_errors(const CodedRecord& record)
     return false;
 }
 
-/// What the grammar doesn't tell of a record is 0.
+/// True if all fields that the grammar does not store are 0.
 bool has_nothing_else(const CodedRecord& record)
 {
     CodedRecord told;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 /// run_corpus MOST PATH...: the fixed part of fuzzing, for builds without libFuzzer. Runs each file
-/// of the folders (or a file by itself) as it is, cut at every byte, with every single bit flipped,
-/// and with a byte more; at most MOST of these for each file, evenly chosen. No chance is involved.
-/// Prints which input it was when one ends the program. Exit 1 when a file is refused as it is,
-/// unless its name begins with refused_: make the seeds anew (README.md).
+/// of the folders (or a single file) unchanged, cut at every byte, with every single bit flipped,
+/// and with a byte more; at most MOST of these for each file, evenly chosen, without randomness.
+/// Prints the input that ends the program. Exit 1 if an unchanged file is refused, unless its name
+/// begins with refused_: rewrite the seeds (README.md).
 #include "rt_core/base/assert.hpp"
 #include "tests/fuzz/law.hpp"
 
@@ -21,7 +21,7 @@
 #include <system_error>
 #include <vector>
 
-// Of the sanitizers' run-time library, when the program has one.
+// Function of the sanitizers' run-time library, if the program has one.
 extern "C" void __sanitizer_set_death_callback(void (*callback)()) __attribute__((weak));
 
 namespace tactus::fuzz
@@ -32,7 +32,7 @@ namespace
 
 using Input = std::vector<std::uint8_t>;
 
-/// What is being run, for the last words.
+/// Present input, to print if the program ends.
 struct Current
 {
     std::array<char, 256> file{};
@@ -42,7 +42,7 @@ struct Current
 
 Current current;
 
-/// Cuts come first, then flips, then what is longer.
+/// Changes in order: cuts, then flips, then longer inputs.
 enum class Change
 {
     none,
@@ -73,7 +73,7 @@ Variant variant_of(std::size_t number, std::size_t bytes)
                               : Variant{Change::append, number - 8 * bytes};
 }
 
-/// The file, its cuts, its flips and one more byte, 0 or 255.
+/// Number of variants: the file, its cuts, its flips and one more byte, 0 or 255.
 std::size_t variants_of(std::size_t bytes)
 {
     return 1 + bytes + 8 * bytes + 2;
@@ -96,7 +96,7 @@ Input changed(const Input& input, const Variant& variant)
         result.push_back(variant.place == 0 ? 0 : 255);
         break;
     }
-    result.shrink_to_fit(); // So that a read beyond the end is seen.
+    result.shrink_to_fit(); // Reads beyond the end are detected.
     return result;
 }
 
@@ -154,7 +154,8 @@ struct Tally
 {
     std::size_t files{0};
     std::size_t inputs{0};
-    std::size_t useless_files{0}; ///< Refused as they are, though their names don't say so.
+    /// Unchanged files that are refused although their names do not say so.
+    std::size_t useless_files{0};
 };
 
 void run_file(const std::filesystem::path& path, std::size_t most, Tally& tally)
@@ -168,7 +169,7 @@ void run_file(const std::filesystem::path& path, std::size_t most, Tally& tally)
     const std::size_t runs = std::min(all, most);
     for (std::size_t run = 0; run < runs; ++run)
     {
-        current.variant = run * all / runs; // 0, the file itself, is always among them.
+        current.variant = run * all / runs; // Always includes 0, the unchanged file.
         const Input variant = changed(input, variant_of(current.variant, input.size()));
         const std::size_t accepted = accepted_inputs;
         LLVMFuzzerTestOneInput(variant.data(), variant.size());
@@ -183,7 +184,7 @@ void run_file(const std::filesystem::path& path, std::size_t most, Tally& tally)
     tally.inputs += runs;
 }
 
-/// An error when a seed is refused, since it leads nowhere then, or when there is none.
+/// Error if a seed is refused, which makes it useless, or if there is none.
 int run(std::size_t most, const std::vector<std::filesystem::path>& paths)
 {
     Tally tally;

@@ -14,11 +14,11 @@
 namespace tactus::fuzz
 {
 
-/// A file whose content is replaced for each input, for readers that want a path.
+/// File with new content for each input, for readers that take a path.
 class ScratchFile
 {
 public:
-    /// `name` with its extension; readers of meshes go by that. Ends the program when the disk
+    /// Creates the file `name`, whose extension readers of meshes use. Ends the program if the disk
     /// refuses.
     explicit ScratchFile(const char* name)
         : path_(folder_.path() / name)

@@ -41,7 +41,7 @@ void put(Bytes to, std::size_t at, const T& value)
     std::memcpy(to.data() + at, &value, sizeof(T));
 }
 
-/// Empty when it doesn't lie in the file whole.
+/// Part of the file; empty unless entirely inside.
 Bytes part(Bytes file, std::uint64_t offset, std::uint64_t bytes)
 {
     const bool is_inside = bytes <= file.size() && offset <= file.size() - bytes;
@@ -54,8 +54,7 @@ ContentHash seal_and_hash(Bytes piece)
     return content_hash(piece);
 }
 
-/// The chunks of one index page, `chunk` and those behind it, and then the page itself; returns the
-/// page's hash.
+/// Corrects the chunks of one index page, from `chunk` on, then the page; returns the page's hash.
 ContentHash seal_index_page(Bytes file, Bytes page, std::uint64_t chunks_offset, ChunkId chunk)
 {
     for (std::size_t at = 4; at + kChunkEntryBytes + kChecksumBytes <= page.size();

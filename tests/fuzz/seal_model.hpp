@@ -10,15 +10,15 @@
 namespace tactus::fuzz
 {
 
-/// Writes every checksum and hash of a model's file anew, from the chunks up to the root hash, as
-/// far as its parts lie where it says; the versions and the file's size become those that a reader
-/// expects. A changed byte then reaches the checks behind the hashes, which it never would.
+/// Corrects every checksum and hash of a model's file, from the chunks up to the root hash, as far
+/// as its parts are where it says; versions and file size become the expected ones. A changed byte
+/// then reaches the checks behind the hashes.
 void seal_model(std::span<std::byte> file);
 
-/// The last four bytes become the checksum of what stands before them; no effect on fewer.
+/// Replaces the last four bytes by the checksum of the others; no effect on fewer.
 void seal_piece(std::span<std::byte> piece);
 
-/// The same for a coded chunk, whose checksum covers its number, too.
+/// The same for a coded chunk, whose checksum also covers its number.
 void seal_chunk(std::span<std::byte> chunk, ChunkId id);
 
 } // namespace tactus::fuzz
