@@ -27,7 +27,7 @@ std::int64_t integer_root(std::int64_t square)
     return root;
 }
 
-/// Moves a point to a radius that depends on its direction, so that no two areas are alike.
+/// Moves a point to a radius that depends on its direction, so that no two regions are alike.
 Point push_out(const Point& p)
 {
     std::int64_t square = 0;
@@ -50,7 +50,7 @@ Point push_out(const Point& p)
     return out;
 }
 
-/// Cuts every face into four.
+/// Splits every face into four.
 QuantisedMesh subdivide(const QuantisedMesh& mesh)
 {
     QuantisedMesh finer;
@@ -82,7 +82,7 @@ QuantisedMesh subdivide(const QuantisedMesh& mesh)
     return finer;
 }
 
-/// The mesh while it is collapsed; a removed face has three equal corners.
+/// Mesh during its collapse; a removed face has three equal corners.
 class PlainCollapser
 {
 public:
@@ -114,7 +114,8 @@ public:
     }
 
 private:
-    /// By vertex: what follows each neighbour counter-clockwise, and the face between them.
+    /// Map from each neighbour of a vertex to the next one counter-clockwise and the face between
+    /// them.
     using Ring = std::map<std::uint32_t, std::pair<std::uint32_t, std::uint32_t>>;
 
     bool is_left(std::uint32_t face) const { return corners_[face][0] != corners_[face][1]; }

@@ -19,7 +19,7 @@ namespace tactus
 namespace
 {
 
-/// A chunk in the middle: its records depend on others before, beside and in itself.
+/// Chunk in the middle: its records depend on earlier, neighbouring and own ones.
 constexpr ChunkId kGoldenChunk{1};
 
 std::string hex_of(std::span<const std::byte> bytes)
@@ -65,7 +65,7 @@ protected:
     }
     void TearDown() override { std::filesystem::remove(path_); }
 
-    // Tests run side by side in processes of their own.
+    // Tests run in parallel in separate processes.
     std::filesystem::path path_ =
         std::filesystem::path(testing::TempDir()) /
         (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + ".spm");
