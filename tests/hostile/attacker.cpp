@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// attacker DOMAIN SECONDS ATTACK[@MICROSECONDS] [PORT...]: a stranger on a domain where a host and
-/// a controller are. It needs no rights and nothing of ours but the topics' types, and those that
-/// begin with rtps_ nothing but the others' UDP ports. Waits until it has seen both, for
-/// ATTACKER_PATIENCE_S at most, then does one thing again and again, with its own or the given
-/// pause (0: none), as often as the attack takes and at least for so long, and tells how often.
-/// Exits 2 when it saw nobody.
+/// attacker DOMAIN SECONDS ATTACK[@MICROSECONDS] [PORT...]: unauthenticated peer on the domain of a
+/// model server and a controller. It uses only the topics' types; attacks rtps_* use only the
+/// others' UDP ports. Waits until it has seen both, for at most ATTACKER_PATIENCE_S, then repeats
+/// one action, with its own or the given pause (0: none), at least SECONDS long and as often as the
+/// attack needs, and prints the number. Exits 2 if it saw no peer.
 
 #include "tests/hostile/raw_rtps.hpp"
 #include "transport/content_hash.hpp"
@@ -36,7 +35,7 @@ namespace
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
-/// Only what never comes is waited for so long.
+/// Limit of the wait; only an absent peer takes that long.
 std::chrono::seconds patience()
 {
     const char* text = std::getenv("ATTACKER_PATIENCE_S");
@@ -75,7 +74,7 @@ public:
     Attacker(const Attacker&) = delete;
     Attacker& operator=(const Attacker&) = delete;
 
-    /// Whether a host and a controller that speaks to it were seen.
+    /// True once a server and its controller were seen.
     bool sees_both()
     {
         const auto end = Clock::now() + patience();
@@ -88,7 +87,7 @@ public:
         return host.host_epoch != 0 && victim.host_epoch != 0;
     }
 
-    /// As the honest ones are, so that all readers match; one of the others' has.
+    /// Writer with the QoS of the honest ones, so that all readers match and one of the others has.
     [[nodiscard]] std::int32_t writer(const char* topic, const dds_topic_descriptor_t& type,
                                       const std::string& partition, bool best_effort = false) const
     {
@@ -129,18 +128,18 @@ public:
     {
         return static_cast<const char*>(victim.controller_name);
     }
-    /// Where the host sends the victim its pieces.
+    /// Partition of the server's pieces for the victim.
     [[nodiscard]] std::string victim_partition() const
     {
         tactus::ContentHash id{};
         std::memcpy(id.data(), victim.controller, id.size());
         return victim_name() + "." + tactus::hash_text(id);
     }
-    /// Under which the others' filters believe us to be a host.
+    /// Epoch by which the others' filters take us for a server.
     [[nodiscard]] std::uint64_t own_epoch() const { return tactus::dds::host_epoch_of(own_); }
     [[nodiscard]] const std::array<std::uint8_t, 16>& own() const { return own_; }
 
-    /// Also of what is for others; or of what is for us alone, reliably.
+    /// Reader of all partitions, or reliably of ours alone.
     [[nodiscard]] std::int32_t reader(const char* topic, const dds_topic_descriptor_t& type,
                                       const std::string& partition = "*") const
     {
@@ -158,12 +157,12 @@ public:
         return made;
     }
 
-    /// Where the host sends us pieces when we are called so.
+    /// Partition of the server's pieces for us under that name.
     [[nodiscard]] std::string own_partition(const std::string& name) const
     {
         return name + "." + tactus::hash_text(own_);
     }
-    /// The GUIDs of the host's writers of a topic, as discovery tells them to everybody.
+    /// GUIDs of the server's writers of a topic, which discovery publishes.
     [[nodiscard]] std::vector<RawRtps::Guid> writers_of_host(const std::string& topic) const
     {
         const auto known = checked(
@@ -188,14 +187,14 @@ public:
     }
     [[nodiscard]] std::int32_t participant() const { return participant_; }
 
-    std::vector<std::uint16_t> ports; ///< The others'.
-    std::shared_ptr<RawRtps> raw;     ///< For attacks without DDS.
-    tactus_v5_CatalogueEntry host{};  ///< What was seen.
+    std::vector<std::uint16_t> ports; ///< UDP ports of the others.
+    std::shared_ptr<RawRtps> raw;     ///< Sender for attacks without DDS.
+    tactus_v5_CatalogueEntry host{};  ///< Observed state.
     tactus_v5_Wanted victim{};
     std::uint32_t domain;
 
 private:
-    /// Without what is behind pointers.
+    /// Takes a sample without the data behind its pointers.
     template <typename Sample>
     static void take(std::int32_t reader, Sample& out)
     {
@@ -209,7 +208,7 @@ private:
         }
     }
 
-    /// By a reader that isn't our own.
+    /// True if a foreign reader has matched.
     [[nodiscard]] bool is_heard(std::int32_t writer) const
     {
         std::array<dds_instance_handle_t, 16> readers{};
@@ -234,7 +233,7 @@ private:
     std::array<std::uint8_t, 16> own_{};
 };
 
-/// Returns what is done again and again.
+/// Factory of the repeated action.
 using Attack = std::function<std::function<void(std::uint64_t turn)>(Attacker&)>;
 
 tactus_v5_Placement placement(double x_m)
@@ -246,7 +245,7 @@ tactus_v5_Placement placement(double x_m)
     return place;
 }
 
-/// The first object stands where it stood, or farther along x by `x_m` every other time.
+/// Moves the first object: to its own place, or `x_m` farther along x every other time.
 Attack move_object(std::uint64_t serial, double x_m)
 {
     return [=](Attacker& self)
@@ -286,7 +285,7 @@ Attack dispose_catalogue()
     };
 }
 
-/// The host's entry with another hash.
+/// Sends the server's entry with another hash.
 Attack forge_catalogue()
 {
     return [](Attacker& self)
@@ -301,14 +300,14 @@ Attack forge_catalogue()
     };
 }
 
-/// Every other one is a number that no model or object may have.
+/// Number; every other one is not a valid model or object.
 std::uint32_t number_in(std::uint64_t turn)
 {
     constexpr std::uint64_t kBeyond = 1'000'000;
     return static_cast<std::uint32_t>(turn % 2 == 0 ? turn / 2 : kBeyond + turn);
 }
 
-/// Models of many names, under the host's epoch and our own.
+/// Sends models of many names, under the server's epoch and our own.
 Attack spam_catalogue()
 {
     return [](Attacker& self)
@@ -327,7 +326,7 @@ Attack spam_catalogue()
     };
 }
 
-/// Controllers of many ids: of the host's epoch, or of another one.
+/// Sends controllers of many ids, with the server's epoch or another one.
 Attack spam_wanted(bool right_epoch)
 {
     return [=](Attacker& self)
@@ -346,7 +345,7 @@ Attack spam_wanted(bool right_epoch)
     };
 }
 
-/// Wishes in the victim's name, with credit without end.
+/// Sends requests in the victim's name, with unlimited credit.
 Attack forge_wanted()
 {
     return [](Attacker& self)
@@ -385,7 +384,7 @@ Attack dispose_wanted()
     };
 }
 
-/// The first object is said to be gone.
+/// Reports the first object as removed.
 Attack dispose_object()
 {
     return [](Attacker& self)
@@ -401,7 +400,7 @@ Attack dispose_object()
     };
 }
 
-/// Objects of many numbers, under the host's epoch and our own.
+/// Sends objects of many numbers, under the server's epoch and our own.
 Attack spam_objects()
 {
     return [](Attacker& self)
@@ -425,7 +424,7 @@ Attack spam_objects()
     };
 }
 
-/// Pieces to the victim, in the host's name and in our own, whose counts give all credit away.
+/// Sends pieces to the victim, in the server's name and in our own, whose counts use up all credit.
 Attack forge_pieces()
 {
     return [](Attacker& self)
@@ -436,7 +435,7 @@ Attack forge_pieces()
         {
             std::array<std::uint8_t, 4'000> bytes{};
             std::memcpy(bytes.data(), self.host.model_hash, sizeof(self.host.model_hash));
-            bytes[20] = 2; // A chunk.
+            bytes[20] = 2; // Kind: chunk.
             bytes[24] = static_cast<std::uint8_t>(turn);
             bytes[28] = 100;
             tactus_v5_Pieces pieces = {};
@@ -451,7 +450,7 @@ Attack forge_pieces()
     };
 }
 
-/// What the host sends the victim, again and again.
+/// Repeats the server's pieces to the victim.
 Attack replay_pieces()
 {
     return [](Attacker& self)
@@ -479,7 +478,7 @@ Attack replay_pieces()
     };
 }
 
-/// Telemetry in the victim's name, and in names that are none.
+/// Sends telemetry in the victim's name, and in invalid names.
 Attack forge_telemetry()
 {
     return [](Attacker& self)
@@ -502,7 +501,7 @@ Attack forge_telemetry()
     };
 }
 
-/// A controller that comes and goes, now and then under a name that is none.
+/// Adds and removes a controller, sometimes with an invalid name.
 Attack visit()
 {
     return [](Attacker& self)
@@ -517,14 +516,14 @@ Attack visit()
             std::strcpy(static_cast<char*>(wanted.controller_name),
                         turn % 8 == 0 ? "\x1b[31mred\x07" : "stranger");
             dds_write(writer, &wanted);
-            std::this_thread::sleep_for(1ms); // Or the two are one piece of news.
+            std::this_thread::sleep_for(1ms); // Without a pause the two merge into one event.
             dds_dispose(writer, &wanted);
         };
     };
 }
 
-/// 50 controllers of one process, each with 256 wishes 50 times a second, readers of its own,
-/// credit without end, and the wish to be let in to the objects.
+/// Creates 50 controllers in one process, each with 256 requests 50 times a second, readers of its
+/// own, unlimited credit, and a request for the objects.
 Attack crowd_of_controllers()
 {
     struct Member
@@ -577,7 +576,7 @@ Attack crowd_of_controllers()
     };
 }
 
-/// So many participants of one process, which do nothing.
+/// Creates `count` idle participants in one process.
 Attack crowd_of_participants(int count)
 {
     return [=](Attacker& self)
@@ -590,7 +589,7 @@ Attack crowd_of_participants(int count)
     };
 }
 
-/// So many readers of one participant.
+/// Creates `count` readers of one participant.
 Attack crowd_of_endpoints(int count)
 {
     return [=](Attacker& self)
@@ -605,7 +604,8 @@ Attack crowd_of_endpoints(int count)
     };
 }
 
-/// A packet in the name of each of the host's writers of a topic that tells of a much later sample.
+/// Sends a packet in the name of each of the server's writers of a topic that announces a much
+/// later sample.
 Attack forge_sequence(const char* topic,
                       RawRtps::Datagram (*make)(const RawRtps::Guid&, std::uint64_t host_epoch))
 {
@@ -631,7 +631,7 @@ Attack forge_sequence(const char* topic,
     };
 }
 
-/// Datagrams to all ports of the others, made by `make`.
+/// Sends datagrams by `make` to all ports of the others.
 Attack send_raw(RawRtps::Datagram (*make)(RawRtps&))
 {
     return [=](Attacker& self)
@@ -663,7 +663,7 @@ struct Habit
 {
     Attack attack;
     std::chrono::microseconds every;
-    std::uint64_t least; ///< Times.
+    std::uint64_t least; ///< Least number of repetitions.
 };
 
 const std::map<std::string, Habit>& habits()
@@ -716,7 +716,8 @@ int main(int argc, char** argv)
         return 3;
     }
     const auto domain = static_cast<std::uint32_t>(std::atoi(argv[1]));
-    // Before our participant says to all ports who it is: that is what it begins with.
+    // The raw socket is opened first, since our participant announces itself to all ports at its
+    // start.
     const auto raw = habit->first.starts_with("rtps_") ? std::make_shared<RawRtps>(domain)
                                                        : std::shared_ptr<RawRtps>();
     Attacker attacker(domain);

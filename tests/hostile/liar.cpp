@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// liar MODEL OUT LIE: writes a model that says of itself what isn't so, with all checksums and
-/// hashes as they should be. Exits 3 for a lie that it doesn't know.
+/// liar MODEL OUT LIE: writes a model with false content and valid checksums and hashes. Exits 3
+/// for an unknown LIE.
 
 #include "rt_core/spm/base_mesh.hpp"
 #include "rt_core/spm/header.hpp"
@@ -46,7 +46,7 @@ void put_bits(File& file, std::uint64_t at_bit, std::uint32_t bits, std::uint32_
     }
 }
 
-/// Of each base face the field that begins `from_end` bits before the face's end.
+/// Sets a field of each base face, `from_end` bits before the face's end.
 void put_in_base_faces(const HeaderFields& fields, File& file, std::uint32_t from_end,
                        std::uint32_t bits, std::uint32_t value)
 {
@@ -60,7 +60,7 @@ void put_in_base_faces(const HeaderFields& fields, File& file, std::uint32_t fro
     }
 }
 
-/// Of each chunk's box both corners, in steps of its page's box.
+/// Sets both corners of each chunk's box, in steps of its page's box.
 void put_in_chunk_boxes(const HeaderFields& fields, File& file, int low_byte, int high_byte)
 {
     const ModelCounts counts{fields.base_vertices, fields.base_faces, fields.records};
@@ -73,13 +73,13 @@ void put_in_chunk_boxes(const HeaderFields& fields, File& file, int low_byte, in
     }
 }
 
-/// All chunks' boxes are the low corner of their page's.
+/// Shrinks all chunks' boxes to the low corner of their page's.
 void shrink_boxes(HeaderFields& fields, File& file)
 {
     put_in_chunk_boxes(fields, file, 0, 0);
 }
 
-/// All chunks' boxes are as large as the format has them.
+/// Enlarges all chunks' boxes to the greatest size of the format.
 void spread_chunk_boxes(HeaderFields& fields, File& file)
 {
     put_in_chunk_boxes(fields, file, 0, 0xFF);
@@ -90,7 +90,7 @@ void put_i32(char* at, std::int32_t value)
     std::memcpy(at, &value, sizeof(value));
 }
 
-/// All boxes are the largest that there are: every chunk is needed everywhere.
+/// Makes all boxes the greatest possible: every chunk is needed everywhere.
 void spread_boxes(HeaderFields& fields, File& file)
 {
     spread_chunk_boxes(fields, file);

@@ -2,9 +2,9 @@
 // Copyright the Tactus authors.
 
 /// lying_host DOMAIN MODEL RADIUS_M ATTACK [NUMBER]: serves a model and shows it once, as the scene
-/// "toy". It reads what controllers tell, and is honest until a tool, a ball of that radius, is
-/// where the attack wants it; then does it again and again, until it is told to end. Prints how
-/// often. Exits 2 where it can't serve, 3 for an attack that it doesn't know.
+/// "toy". It reads telemetry and behaves correctly until a tool, a sphere of that radius, is at the
+/// attack's place; then it repeats the attack until told to end. Prints the number of attacks.
+/// Exits 2 if it cannot serve, 3 for an unknown ATTACK.
 
 #include "platform/program/stop_signals.hpp"
 #include "rt_core/math/vec3.hpp"
@@ -42,13 +42,13 @@ Vec3 vec3(const std::array<double, 3>& of)
     return {of[0], of[1], of[2]};
 }
 
-/// What a controller told of its first tool and of what is nearest to that.
+/// A controller's first tool with its nearest point.
 struct Hand
 {
     bool is_there{false};
     bool touches{false};
     double gap_m{0.0};
-    Vec3 away{0.0, 0.0, 1.0}; ///< From the object to the tool.
+    Vec3 away{0.0, 0.0, 1.0}; ///< Direction from the object to the tool.
 };
 
 class LyingHost
@@ -61,7 +61,7 @@ public:
         come();
     }
 
-    /// For so long at least. Meanwhile it is where it was put last, and says so 250 times a second
+    /// Serves for at least `time`. The object stays at its place, which is sent 250 times a second
     /// unless it rests.
     void serve(std::chrono::milliseconds time, bool rests = false)
     {
@@ -77,7 +77,7 @@ public:
             reader_->poll();
         } while (Clock::now() < end && !is_stop_requested());
     }
-    /// To where it is meant to be, at the pace of a hand.
+    /// Moves to the intended place at the speed of a hand.
     void go_home()
     {
         while (at_m_.norm() > 1e-6 && !is_stop_requested())
@@ -91,7 +91,7 @@ public:
     {
         at_m_ = at_m;
         moved_ = Clock::now();
-        jitter_m_ = jitter_m_ > 0.0 ? 0.0 : 1e-7; // A pose that is the last one again isn't sent.
+        jitter_m_ = jitter_m_ > 0.0 ? 0.0 : 1e-7; // A pose equal to the last one is not sent.
         shown_.pose.translation_m = {at_m.x() + jitter_m_, at_m.y(), at_m.z()};
         static_cast<void>(host_->objects().move(number_, shown_.pose));
     }
@@ -143,11 +143,11 @@ private:
     Clock::time_point moved_{};
 };
 
-/// Returns whether it did it. Called whenever something was heard.
+/// Attack step, called after each received sample; returns true if it attacked.
 using Turn = std::function<bool(LyingHost& self, std::uint64_t turn)>;
 using Attack = std::function<Turn(LyingHost& self, double number)>;
 
-/// N1: towards a tool that is 0.2 to 4 mm off; between poses, and after a rest.
+/// N1: moves towards a tool that is 0.2 to 4 mm away; between poses, and after a rest.
 Turn strike(double way_m)
 {
     return [=](LyingHost& self, std::uint64_t turn)
@@ -169,7 +169,7 @@ Turn strike(double way_m)
     };
 }
 
-/// N12: with the hand on it, against it and away.
+/// N12: moves with the hand on it, against it and away.
 Turn drag(double speed_m_per_s)
 {
     return [=](LyingHost& self, std::uint64_t turn)
@@ -191,7 +191,7 @@ Turn drag(double speed_m_per_s)
     };
 }
 
-/// N13: what it feels like is another thing every 60 ms.
+/// N13: changes the material every 60 ms.
 Turn change_materials()
 {
     return [](LyingHost& self, std::uint64_t turn)
@@ -213,7 +213,7 @@ Turn change_materials()
     };
 }
 
-/// N15: under the hand, five times a second.
+/// N15: adds and removes the object under the hand, five times a second.
 Turn come_and_go()
 {
     return [](LyingHost& self, std::uint64_t)
@@ -230,7 +230,7 @@ Turn come_and_go()
     };
 }
 
-/// N14: it swings by 1 mm, by a clock that says anything.
+/// N14: swings by 1 mm, with false time stamps.
 Turn lie_about_the_time(LyingHost& self)
 {
     auto motion =

@@ -29,7 +29,7 @@ sockaddr_in loopback(std::uint16_t port)
 
 constexpr std::uint64_t kMuchLater = std::uint64_t{1} << 40U;
 
-/// Little-endian.
+/// Appends a number, little-endian.
 template <typename Number>
 void append(RawRtps::Datagram& datagram, Number number)
 {
@@ -39,15 +39,15 @@ void append(RawRtps::Datagram& datagram, Number number)
     }
 }
 
-/// High half first.
+/// Appends a sequence number, high half first.
 void append_sequence(RawRtps::Datagram& datagram, std::uint64_t sequence)
 {
     append(datagram, static_cast<std::uint32_t>(sequence >> 32U));
     append(datagram, static_cast<std::uint32_t>(sequence));
 }
 
-/// Up to the identity of the writer: a submessage of that kind and with so many bytes after its
-/// own header, to all of its readers.
+/// Message up to the identity of the writer: a submessage of that kind with `bytes` after its own
+/// header, to all of its readers.
 RawRtps::Datagram begin_message(const RawRtps::Guid& writer, std::uint8_t kind, std::uint8_t flags,
                                 std::uint16_t bytes)
 {
@@ -55,7 +55,7 @@ RawRtps::Datagram begin_message(const RawRtps::Guid& writer, std::uint8_t kind, 
     datagram.insert(datagram.end(), writer.begin(), writer.begin() + 12);
     datagram.insert(datagram.end(), {kind, flags});
     append(datagram, bytes);
-    if (kind == 0x15) // No flags more, and no inline QoS.
+    if (kind == 0x15) // No further flags, and no inline QoS.
     {
         append(datagram, std::uint16_t{0});
         append(datagram, std::uint16_t{16});
@@ -75,12 +75,12 @@ RawRtps::Datagram RawRtps::later_motion(const Guid& writer, std::uint64_t host_e
     append_sequence(datagram, kMuchLater);
     datagram.insert(datagram.end(), {0, 1, 0, 0}); // Little-endian CDR.
     append(datagram, host_epoch);
-    append(datagram, ~std::uint64_t{0}); // Serial: none is later.
+    append(datagram, ~std::uint64_t{0}); // Serial number, the largest.
     append(datagram, std::uint64_t{1});  // Time.
-    append(datagram, std::uint32_t{1});  // Objects that there are.
-    append(datagram, std::uint32_t{1});  // That have moved.
-    append(datagram, std::uint32_t{0});  // Its number.
-    append(datagram, std::uint32_t{1});  // Its generation.
+    append(datagram, std::uint32_t{1});  // Number of objects.
+    append(datagram, std::uint32_t{1});  // Number of moved objects.
+    append(datagram, std::uint32_t{0});  // Number of the object.
+    append(datagram, std::uint32_t{1});  // Generation of the object.
     for (const double value : kPlace)
     {
         append(datagram, std::bit_cast<std::uint64_t>(value));
@@ -100,7 +100,8 @@ RawRtps::Datagram RawRtps::later_heartbeat(const Guid& writer, std::uint64_t /*h
 
 RawRtps::Datagram RawRtps::another_participant()
 {
-    constexpr std::array<std::uint8_t, 4> kFinder{0, 1, 0, 0xC2}; // Who tells of participants.
+    // Writer of participant announcements.
+    constexpr std::array<std::uint8_t, 4> kFinder{0, 1, 0, 0xC2};
     constexpr std::array<std::uint8_t, 4> kLease{2, 0, 8, 0};
     const auto holds = [](const Datagram& heard, const auto& bytes)
     { return std::search(heard.begin(), heard.end(), bytes.begin(), bytes.end()) != heard.end(); };
@@ -117,7 +118,7 @@ RawRtps::Datagram RawRtps::another_participant()
                                         datagram.begin() + kPrefixAt + 12);
     std::array<std::uint8_t, 12> prefix{};
     std::ranges::generate(prefix, [this] { return static_cast<std::uint8_t>(random_()); });
-    prefix[0] = 1; // As Cyclone's do without security.
+    prefix[0] = 1; // The first byte is Cyclone's without security.
     for (auto at = datagram.begin();
          (at = std::search(at, datagram.end(), old.begin(), old.end())) != datagram.end();)
     {
@@ -130,7 +131,7 @@ RawRtps::Datagram RawRtps::another_participant()
     return datagram;
 }
 
-/// The last of the ports where participants are looked for; they are taken from the first one on.
+/// Binds the last discovery port; participants take them from the first one on.
 RawRtps::RawRtps(std::uint32_t domain) : socket_(::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK, 0))
 {
     const sockaddr_in own = loopback(static_cast<std::uint16_t>(7'400 + 250 * domain + 10 + 2 * 8));

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// A device for --device plugin:FILE,LOG that keeps what its motors do in LOG, a line a change:
-/// monotonic time in ns, force in N, and who gave it: `force`, `brake`, or `guard`, the guardian.
-/// The last line is what the motors go on doing. Its hand goes up and down along z by 2 cm in 4 s.
-/// With HAS_NO_GUARD the library has no guard. With ",refuse" behind the log's name the guard
-/// refuses itself.
+/// Device for --device plugin:FILE,LOG that logs its motors in LOG, one line a change: monotonic
+/// time in ns, force in N, and its source: `force`, `brake`, or `guard`, the guardian. The last
+/// line is the motors' lasting state. Its hand moves along z by 2 cm in 4 s. With HAS_NO_GUARD the
+/// library has no guard. With ",refuse" after the log's name the guard refuses to start.
 
 #include "platform/devices/plugin/device_plugin.hpp"
 
@@ -37,7 +36,7 @@ std::string log_of(const DeviceWish& wish)
     return std::string(words.substr(0, words.find(',')));
 }
 
-/// The motors, which outlive the programs that drive them.
+/// Motors, which outlive the programs that drive them.
 class Motors
 {
 public:

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// squatter DOMAIN KIND NAME SCENE MODEL [COUNT]: a server that isn't meant, until it is told to
-/// end. It offers the model of the file MODEL under the name, and the scene, "-" for none. KIND is
-/// what it does besides:
+/// squatter DOMAIN KIND NAME SCENE MODEL [COUNT]: an unintended server, until told to end. It
+/// offers the model of the file MODEL under NAME, and the scene, "-" for none. KIND is its
+/// behaviour:
 ///
 ///     silent   answers nothing
 ///     header   sends the header and nothing else
-///     forger   sends the header, and all else with a byte that is wrong
+///     forger   sends the header, and everything else with a wrong byte
 ///     crowd    COUNT participants, each with 256 models of other names
 ///     claque   COUNT participants, each with 256 models of that name, hash and scene
 ///
-/// Exits 2 where it can't, 3 for a kind that it doesn't know.
+/// Exits 2 on failure, 3 for an unknown KIND.
 
 #include "platform/program/stop_signals.hpp"
 #include "rt_core/limits.hpp"
@@ -83,8 +83,7 @@ public:
         entry.base_bytes = store.header().fields().base_bytes;
         dds_write(catalogue_.handle, &entry);
     }
-    /// Of header parts the true ones; of what else is asked for nothing, or the truth with a byte
-    /// that is wrong.
+    /// Answers requests for header parts correctly; others not at all, or with a wrong byte.
     void answer(bool forges)
     {
         if (!wanted_.is_valid())
@@ -120,7 +119,7 @@ private:
         }
         if (!is_matched(chunks_.at(id)))
         {
-            return; // It will be asked for again.
+            return; // It will be requested again.
         }
         std::vector<std::byte> bytes;
         if (!model_.has(key) || !model_.read(key, bytes))
@@ -145,7 +144,7 @@ private:
     dds::Domain domain_;
     std::uint64_t epoch_;
     dds::Endpoint catalogue_;
-    dds::Endpoint wanted_; ///< From answer() on.
+    dds::Endpoint wanted_; ///< Reader of requests, after the first answer().
     std::map<dds::ControllerId, dds::Endpoint> chunks_;
     std::uint64_t sent_{0};
 };
