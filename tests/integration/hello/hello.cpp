@@ -13,14 +13,14 @@
 
 using namespace tactus;
 
-// All memory of the frame, lent once. Too little is refused, nothing grows.
+// All memory of the frame, provided once. Too little is refused, nothing grows.
 alignas(Arena::kAlignment) static std::array<std::byte, std::size_t{4} << 20U> memory;
 
 int main(int argc, char** argv)
 {
-    print_failed_assertions(); // A call that breaks a promise says so before it stops the program.
+    print_failed_assertions(); // Assertions are printed before they end the program.
 
-    // A model of a local file; DdsClient::find() gives the same record of a published one.
+    // The model is from a local file; DdsClient::find() returns the same record of a published one.
     const auto served = serve_from_file(argc > 1 ? argv[1] : "torus.spm", "hello", {});
     if (!served)
     {
@@ -30,7 +30,7 @@ int main(int argc, char** argv)
     const ServedModel& model = served.value();
     const ModelHeader header = ModelHeader::parse(model.header).value();
 
-    // One ball of 1 % of the model's size, one object, half of the memory for the model's pools.
+    // One sphere of 1 % of the model's size, one object, half of the memory for the model's pools.
     const double radius_m = 0.01 * header.diagonal_m();
     const std::array<ToolSpec, 1> tools{ToolSpec{radius_m, 500.0, 8.0, 1.0}};
     const std::array<ObjectSpec, 1> objects{ObjectSpec{ModelId{0}}};
@@ -53,13 +53,13 @@ int main(int argc, char** argv)
         return 2;
     }
 
-    // What the transport thread does in hrtc. Here both take turns on one thread.
+    // In hrtc the transport thread does this. Here both run in turn on one thread.
     Model& parts = frame->model({0});
     Courier courier(arena, frame->pools().slots, frame->pools().cache.door, {});
     courier.add(parts.header, parts.linker, *model.link, model.name);
 
-    // A model stands where its source mesh stood, unless a pose says otherwise. Its base vertices
-    // lie on the surface. Down to the highest one and 0.5 mm into it, in 0.5 s.
+    // A model has the pose of its source mesh unless another one is given. Its base vertices are on
+    // the surface. The tool descends to the highest one and 0.5 mm into it, in 0.5 s.
     const auto vertices = parts.slots.base.positions_m;
     const Vec3 top =
         header.origin_m() +
@@ -67,7 +67,7 @@ int main(int argc, char** argv)
                                   [](const Vec3f& a, const Vec3f& b) { return a[2] < b[2]; }));
     std::array<ToolState, 1> states{};
     const double period_s = 1e-9 * static_cast<double>(setup.period_ns);
-    // What a device allows, and how a force fades where the frame says that it must.
+    // Limits of the device, and the fading of a force if the frame requires it.
     ForcePipeline pipeline(pipeline_setup(tools[0], DeviceLimits{}, period_s, 1.0));
     FrameOutput output;
     Vec3 to_device_n(0.0, 0.0, 0.0);

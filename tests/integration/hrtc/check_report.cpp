@@ -3,9 +3,9 @@
 
 /// check_report REPORT [LEFT OP RIGHT]...: compares figures of a JSON report. LEFT is a key such as
 /// answers.exact or pairs.0.tool, or several joined by '+'; its value is the number, the truth
-/// value as 0 or 1, or the size of the list or object that stands there. OP is one of == < <= > >=.
-/// RIGHT is a number, or NUMBER*KEY. Names every comparison that fails; exits 1 then, and 2 when
-/// the report can't be read.
+/// value as 0 or 1, or the size of the list or object. OP is one of == < <= > >=. RIGHT is a
+/// number, or NUMBER*KEY. Prints every comparison that fails; exits 1 then, and 2 if the report
+/// cannot be read.
 
 #include <nlohmann/json.hpp>
 
@@ -84,7 +84,7 @@ bool holds(double left, const std::string& op, double right)
     throw std::runtime_error("no comparison " + op);
 }
 
-/// Whether LEFT OP RIGHT holds; one line when not.
+/// True if LEFT OP RIGHT holds; prints one line otherwise.
 bool compare(const Json& report, const std::string& left, const std::string& op,
              const std::string& right)
 {

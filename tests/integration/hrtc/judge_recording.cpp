@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// judge_recording RECORDING MODEL [FRAME]...: runs the frames of a recording of one sphere and one
-/// object again, holds each answer against the whole source mesh, and prints what it saw as JSON,
-/// for check_report: of the whole, and of each span between the frames that are named. A bracket
-/// that misses the true distance gets a line on stderr. Exits 2 when a file can't be read or the
-/// replay differs from the recording.
+/// judge_recording RECORDING MODEL [FRAME]...: repeats the frames of a recording of one sphere and
+/// one object, compares each answer with the whole source mesh, and prints figures as JSON for
+/// check_report: of the whole, and of each span between the given frames. Bounds that miss the true
+/// distance are reported on stderr. Exits 2 if a file cannot be read or the replay differs from the
+/// recording.
 
 #include "host_tools/encode/extract.hpp"
 #include "platform/recording/replay.hpp"
@@ -29,11 +29,11 @@ using Json = nlohmann::ordered_json;
 
 struct Span
 {
-    std::uint64_t end{0}; ///< Its first frame that is the next one's.
+    std::uint64_t end{0}; ///< First frame of the next span.
     std::uint64_t frames{0};
     std::uint64_t contact_frames{0};
-    std::uint64_t violations{0}; ///< The true distance is not between L and U.
-    double force_max_n{0.0};     ///< Of the frame; what went to the device may be less.
+    std::uint64_t violations{0}; ///< Frames whose true distance is not between L and U.
+    double force_max_n{0.0};     ///< Force of the frame; the device may get less.
 };
 
 struct Refused
@@ -41,7 +41,7 @@ struct Refused
     std::string text;
 };
 
-/// All faces of the source on its grid, in the model's frame, as another program would read them.
+/// All faces of the source on its grid, in the model frame, read independently.
 test::TestModel source_of(const std::string& path)
 {
     const auto store = ModelStore::open(path);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// list_safety REPORT: the events of a report's `safety`, one a line: TIME_S FRAME STATE CAUSES,
-/// FRAME being "-" for an event of the supervisor, and CAUSES joined by commas, "-" for none. Of
-/// tool 0. Exits 2 when the report can't be read.
+/// list_safety REPORT: prints the events of tool 0 in a report's `safety`, one a line: TIME_S FRAME
+/// STATE CAUSES. FRAME is "-" for an event of the supervisor; CAUSES are joined by commas, "-" for
+/// none. Exits 2 if the report cannot be read.
 
 #include <nlohmann/json.hpp>
 

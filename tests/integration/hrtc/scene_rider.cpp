@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// scene_rider: a hand that flies through a host's scene at one speed and touches object after
-/// object. Its controller is hrtc's, with a loop of its own: the hand is exactly as fast as told or
-/// slower, however the machine is loaded. Tells as JSON how often it was held up by a model that
-/// wasn't here: because that was wanted too late, or because the machine was late to bring it.
+/// scene_rider: simulated operator that flies through a server's scene at one speed and touches
+/// object after object. The controller is hrtc's with its own loop: the hand has the given speed or
+/// less under any load. Prints as JSON how often it was blocked by a model that was not resident:
+/// because it was requested too late, or because the machine delivered it late.
 
 #include "platform/controller/controller.hpp"
 #include "platform/program/command_line.hpp"
@@ -35,13 +35,14 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double kPeriod_s = 1e-3;
 constexpr auto kPeriod = std::chrono::milliseconds(1);
-/// The hand rises so far above an object's ball before it goes to the next one.
+/// Height of the hand above an object's sphere before it moves to the next one.
 constexpr double kRise_m = 0.3;
-/// It stays on each until that is felt: chunks come after the base mesh. No longer than the second.
+/// Frames on each object until a force is rendered, since chunks follow the base mesh; at most the
+/// second number.
 constexpr int kRestFrames = 20;
 constexpr int kRestFramesMost = 60'000;
-/// A base mesh is wanted 150 ms before the hand is there. One that takes longer than this to come
-/// is late by the machine's doing.
+/// A base mesh is requested 150 ms before the hand arrives. A delivery that takes longer than this
+/// is the machine's delay.
 constexpr double kInTime_ms = 70.0;
 
 struct Arguments
@@ -58,18 +59,19 @@ double ms_since(Clock::time_point begin)
     return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
 }
 
-/// What the ride showed.
+/// Figures of the ride.
 struct Figures
 {
     std::uint64_t frames{0};
-    std::uint64_t invisible_wall_frames{0}; ///< For no other reason than the program's.
-    std::uint64_t machine_late_frames{0};   ///< The hand was held up as well.
+    /// Frames with a wall for which only the program is responsible.
+    std::uint64_t invisible_wall_frames{0};
+    std::uint64_t machine_late_frames{0}; ///< Frames with a blocked hand because of the machine.
     std::uint32_t visits{0};
-    std::uint32_t touched{0}; ///< Of those, with an exact answer in contact.
+    std::uint32_t touched{0}; ///< Objects with an exact answer in contact.
     std::uint32_t came{0};    ///< Models that became resident.
     std::uint32_t went{0};
     std::uint32_t here_max{0};
-    double came_ms_max{0.0}; ///< From wanted to resident, by the wall clock.
+    double came_ms_max{0.0}; ///< Longest time from request to residence, by the wall clock.
     double late_ms_max{0.0}; ///< Longest frame.
 };
 
@@ -88,7 +90,7 @@ public:
         place_ = above(0);
     }
 
-    /// Down on the object at full speed, a short rest, up again, and over to the next one.
+    /// Descends on the object at full speed, rests, rises, and moves to the next one.
     void visit(std::uint32_t object)
     {
         is_touched_ = false;
@@ -111,7 +113,7 @@ private:
         double radius_m;
     };
 
-    /// In the world, round the model's box.
+    /// Sphere around the model's box, in the world.
     [[nodiscard]] Ball ball_of(std::uint32_t object) const
     {
         const ModelId model = controller_.objects()[object].model;
@@ -128,7 +130,7 @@ private:
         const Ball ball = ball_of(object);
         return ball.centre_m + Vec3(0.0, 0.0, ball.radius_m + kRise_m);
     }
-    /// Well below the surface of anything round.
+    /// Place well below the surface of any round object.
     [[nodiscard]] Vec3 inside(std::uint32_t object) const
     {
         const Ball ball = ball_of(object);
@@ -144,7 +146,7 @@ private:
         }
     }
 
-    /// At least a period after the last one, so that the hand is never faster.
+    /// Runs a frame at least a period after the last one, so that the hand is never faster.
     void frame()
     {
         due_ = std::max(due_ + kPeriod, Clock::now());
@@ -209,7 +211,7 @@ private:
     Controller& controller_;
     double step_m_;
     std::vector<ModelStage> stages_;
-    std::vector<Clock::time_point> wanted_; ///< When, by model.
+    std::vector<Clock::time_point> wanted_; ///< Times of the requests, by model.
     std::vector<ToolState> states_;
     Vec3 place_{0.0, 0.0, 0.0};
     Clock::time_point due_;
