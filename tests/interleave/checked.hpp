@@ -16,8 +16,8 @@
 namespace tactus::interleave
 {
 
-/// Stands in for std::atomic in code that is explored: each operation is one that other threads may
-/// come before. Integers of up to 64 bits; loads and stores only.
+/// Replacement of std::atomic in explored code: every operation may be preceded by other threads'.
+/// Integers of up to 64 bits; loads and stores only.
 template <typename T>
 class CheckedAtomic
 {
@@ -48,8 +48,7 @@ private:
     std::size_t location_;
 };
 
-/// A plain variable that threads share: two accesses, one a write, must be ordered by what happens
-/// before.
+/// Shared plain variable: two accesses, one a write, must be ordered by happens-before.
 template <typename T>
 class CheckedSlot
 {
@@ -78,7 +77,7 @@ private:
     mutable PlainHistory history_{};
 };
 
-/// In a program: what must hold. The execution fails with `what` when it does not.
+/// Requirement in a program; the execution fails with `what` if it does not hold.
 inline void require(bool holds, const char* what)
 {
     if (!holds)
@@ -87,7 +86,7 @@ inline void require(bool holds, const char* what)
     }
 }
 
-/// A program made of functions over one shared state, which is built anew for each execution.
+/// Program of functions over one shared state, which is created for each execution.
 template <typename State>
 class SmallProgram final : public Program
 {

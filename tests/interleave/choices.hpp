@@ -8,13 +8,12 @@
 namespace tactus::interleave
 {
 
-/// Walks a tree of choices depth first, one leaf a run. A run is deterministic but for choose(): it
-/// is started from the beginning for each leaf and gets the old answers up to the place where it
-/// takes another branch.
+/// Depth-first walk of a tree of choices, one leaf a run. A run is deterministic except for
+/// choose(): it is restarted for each leaf and repeats the old answers up to the next branch.
 class Choices
 {
 public:
-    /// The branch to take here, 0 .. count - 1.
+    /// Branch to take here, 0 .. count - 1.
     [[nodiscard]] std::size_t choose(std::size_t count)
     {
         if (depth_ == branches_.size())
@@ -24,7 +23,7 @@ public:
         return branches_[depth_++].taken;
     }
 
-    /// After a run: makes the next one take the next branch; false when all were taken.
+    /// Advances to the next branch after a run; false if all were taken.
     [[nodiscard]] bool try_advance()
     {
         depth_ = 0;

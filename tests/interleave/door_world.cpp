@@ -64,7 +64,8 @@ DoorWorld::DoorWorld(const Truth& truth, std::span<std::byte> memory)
     TACTUS_ASSERT(loaded.has_value());
     courier_.copy_pieces_to(&copies_);
     FrameVariant every_frame;
-    every_frame.keeps_searches = false; // A want looks for everything, as often as it comes.
+    // A frame that wants chunks searches for all of them every time.
+    every_frame.keeps_searches = false;
     cache_.set_variant(every_frame);
 }
 
@@ -174,12 +175,12 @@ void DoorWorld::adopt()
     ledger_.adopted(pool_.taken());
 }
 
-/// A frame that adopts nothing: what arrived may wait for the next one, however near it is.
+/// Frame that adopts nothing: arrived pages may wait for the next one, even urgent ones.
 void DoorWorld::want(std::span<const ChunkId> chunks, std::uint32_t frames)
 {
     frame_ += frames;
     work_ = {};
-    pool_.adopt_arrivals(0, frame_, work_); // Looks how many wishes the door has room for.
+    pool_.adopt_arrivals(0, frame_, work_); // Updates the door's capacity for requests.
     std::vector<RankedRegion> regions;
     for (const ChunkId chunk : chunks) // See TinyModelSpec::boxes_in_a_row.
     {
@@ -245,7 +246,7 @@ bool DoorWorld::is_settled() const
            courier_.free_pages() + pages_.used() == kPages;
 }
 
-/// Then a wish may have to expire before it is made anew.
+/// True if a request may have to expire before it can be repeated.
 bool DoorWorld::was_anything_lost() const
 {
     const CourierCounters& counters = courier_.counters();

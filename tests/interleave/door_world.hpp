@@ -19,26 +19,26 @@
 namespace tactus::interleave
 {
 
-/// What either thread may do next; the haptic thread up to be_late.
+/// Next operation of either thread; those of the haptic thread are up to be_late.
 enum class Verb : std::uint8_t
 {
     adopt,
-    want_a,   ///< A frame that needs chunk 0,
-    want_b,   ///< chunk 1,
-    want_c,   ///< chunk 2,
-    want_all, ///< all of the model, which is one page more than there are slots.
-    evict,    ///< Every page that isn't pinned.
-    pin,      ///< A page that isn't, by refining a record.
-    unpin,    ///< All.
-    be_late,  ///< A frame so late that unanswered wishes expire.
-    step,     ///< With a link as its Weather says, and the next ones in its order.
+    want_a,   ///< Frame that needs chunk 0.
+    want_b,   ///< Frame that needs chunk 1.
+    want_c,   ///< Frame that needs chunk 2.
+    want_all, ///< Frame that needs the whole model, one page more than there are slots.
+    evict,    ///< Evicts every page that is not pinned.
+    pin,      ///< Pins an unpinned page by refining a record.
+    unpin,    ///< Unpins all.
+    be_late,  ///< Frame so late that unanswered requests expire.
+    step,     ///< Step; this and the next verbs are in the order of Weather.
     step_holding,
     step_losing,
     step_damaging,
     step_reversing,
     step_repeating,
-    change_host, ///< It goes away, or another one comes.
-    /// A step with a frame in the middle: adopt, evict, want everything.
+    change_host, ///< The server disappears, or another one appears.
+    /// Steps with a frame in the middle: adopt, evict, want everything.
     step_frame_at_request,
     step_frame_at_piece,
     step_frame_at_hand_over,
@@ -47,35 +47,34 @@ inline constexpr std::uint32_t kVerbs = 19;
 
 [[nodiscard]] const char* name_of(Verb verb);
 
-/// The product's courier, linker, cache and page table for a model of three chunks, with two page
-/// slots; a link that does as it is told; and a ledger beside it.
+/// The product's loader, linker, cache and page table for a model of three chunks with two page
+/// slots, a controlled link, and a ledger.
 ///
-/// The verbs are whole: what one does to several queues is not cut up by the other thread, except
-/// in the middle of a step. Finer cuts add little. A thread learns of the other only by what it
-/// pops and by counts; pops come in the order of pushes, and whoever takes a wish has taken what
-/// was freed before it (QueueOrders, DoorOrders). So a cut decides no more than how far into the
-/// other's pushes a thread sees:
-/// - `adopt` sees one queue, up to some hand-over; those within a step are the middle steps' cuts.
-/// - A step sees wishes up to some point and freed slots up to that or a later one. Between a
-///   freeing and the wish behind it that is what a step after `evict` sees, before `want_...`.
-///   What is pushed while the step runs is there in the middle steps.
-/// - Counts that are out of date make for less room or fewer values, never more.
+/// The verbs are atomic: operations on several queues are not interrupted by the other thread,
+/// except within a step. Finer cuts add little. A thread learns of the other only by its pops and
+/// by counts; pops are in the order of pushes, and after taking a request all earlier freed slots
+/// were taken (QueueOrders, DoorOrders). A cut thus only decides how many of the other's pushes a
+/// thread sees:
+/// - `adopt` sees one queue up to some hand-over; those within a step are the middle steps' cuts.
+/// - A step sees requests up to some point and freed slots up to that or a later one. Between a
+///   freeing and the request behind it that is a step after `evict` and before `want_...`. Pushes
+///   during the step are in the middle steps.
+/// - Outdated counts mean less capacity or fewer values, never more.
 class DoorWorld
 {
 public:
     static constexpr std::uint32_t kPages = 2;
     static constexpr std::size_t kBytes = std::size_t{256} << 10U;
 
-    /// `memory` is used anew by each world; starts on Arena::kAlignment.
+    /// Starts a world in `memory`, which is reused and aligned to Arena::kAlignment.
     DoorWorld(const Truth& truth, std::span<std::byte> memory);
 
-    /// The verbs that do something now.
+    /// Verbs that have an effect now.
     [[nodiscard]] std::vector<Verb> offered() const;
-    /// Does it and checks. False when it came to the same as a plain `step`.
+    /// Applies a verb and checks. False if the result was that of a plain `step`.
     [[nodiscard]] bool apply(Verb verb);
-    /// With a good link and no pins: the first two chunks come, linked as far as they can be
-    /// without the third, and nothing stays open. Where nothing was lost on the way, also without
-    /// any wish that expires.
+    /// Runs with a good link and no pins: the first two chunks arrive, linked as far as possible
+    /// without the third, and nothing stays open. If nothing was lost, no request expires either.
     void settle();
 
     [[nodiscard]] const std::string& failure() const { return ledger_.failure(); }
@@ -95,7 +94,7 @@ private:
     [[nodiscard]] bool was_anything_lost() const;
     [[nodiscard]] std::uint32_t page_to_pin() const;
 
-    /// Runs a frame when it is told of a hand-over.
+    /// Runs a frame at a hand-over.
     struct Copies final : PieceSink
     {
         explicit Copies(DoorWorld& owner) : world(owner) {}
@@ -120,7 +119,7 @@ private:
     std::uint32_t frame_{ChunkCache::kFirstFrame};
     std::int64_t now_ns_{0};
     bool had_middle_{false};
-    bool had_losses_{false}; ///< Of the link, or wishes that expired.
+    bool had_losses_{false}; ///< True if the link lost pieces, or requests expired.
 };
 
 } // namespace tactus::interleave

@@ -12,7 +12,7 @@
 namespace tactus::interleave
 {
 
-/// Every order was run, `at_least` so many, and none broke a promise.
+/// Expects that every order was run, at least `at_least`, and all were correct.
 inline void expect_sound(const char* what, const Exploration& result, std::uint64_t at_least)
 {
     EXPECT_EQ(result.failure, "");

@@ -61,7 +61,7 @@ void Execution::run(const MakeProgram& make)
     for (std::size_t thread = 0; thread < count_; ++thread)
     {
         fibers_[thread].start(std::move(bodies[thread]));
-        resume(thread); // Up to its first operation; what comes before concerns nobody else.
+        resume(thread); // Runs to its first operation; earlier code concerns no other thread.
     }
     ThreadSet asleep = 0;
     for (ThreadSet left = waiting(); left != 0; left = waiting())
@@ -71,14 +71,14 @@ void Execution::run(const MakeProgram& make)
             is_redundant_ = true;
             memory_.stop_branching();
         }
-        if (is_redundant_) // To the end, so that every fiber's stack is left in order.
+        if (is_redundant_) // Runs to the end, so that every fiber's stack is unwound.
         {
             resume(static_cast<std::size_t>(std::countr_zero(left)));
             continue;
         }
         const ThreadSet awake = left & ~asleep;
         const std::size_t chosen = choose_thread(awake);
-        // Its elders among those awake were tried here before.
+        // Awake threads with lower numbers were tried here before.
         asleep = still_asleep(asleep | (awake & ((1U << chosen) - 1U)), chosen);
         resume(chosen);
     }
@@ -109,7 +109,7 @@ std::size_t Execution::choose_thread(ThreadSet awake)
     return static_cast<std::size_t>(std::countr_zero(awake));
 }
 
-/// Those whose next operation commutes with that of `chosen`.
+/// Threads whose next operation commutes with that of `chosen`.
 Execution::ThreadSet Execution::still_asleep(ThreadSet asleep, std::size_t chosen) const
 {
     for (std::size_t thread = 0; thread < count_; ++thread)

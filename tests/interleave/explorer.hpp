@@ -16,9 +16,9 @@
 namespace tactus::interleave
 {
 
-/// A small program of a few threads, built anew for each execution. Threads share CheckedAtomic and
-/// CheckedSlot (checked.hpp); what else they share must not decide what they do. Each must end
-/// after a bounded number of steps.
+/// Small program of a few threads, created for each execution. Threads share CheckedAtomic and
+/// CheckedSlot (checked.hpp); other shared data must not affect them. Each must end after a bounded
+/// number of steps.
 class Program
 {
 public:
@@ -29,17 +29,18 @@ public:
     Program& operator=(Program&&) = delete;
     virtual ~Program() = default;
 
-    /// At most kMaxThreads.
+    /// Threads, at most kMaxThreads.
     [[nodiscard]] virtual std::vector<std::function<void()>> threads() = 0;
-    /// After all threads ended.
+    /// Called after all threads ended.
     virtual void at_end() {}
 };
 
 struct Exploration
 {
-    std::uint64_t executions{0}; ///< Run to the end; no two differ only by what commutes.
-    std::uint64_t redundant{0};  ///< Given up, since one before differs only so.
-    std::string failure;         ///< The first, with the schedule that led to it; empty: none.
+    /// Complete executions; no two differ only by commuting operations.
+    std::uint64_t executions{0};
+    std::uint64_t redundant{0}; ///< Abandoned executions that differ only so from an earlier one.
+    std::string failure;        ///< First failure with its schedule; empty: none.
 };
 
 using MakeProgram = std::function<std::unique_ptr<Program>()>;
@@ -47,12 +48,12 @@ using MakeProgram = std::function<std::unique_ptr<Program>()>;
 /// Runs the program in every order of its threads' atomic operations, with every value that each
 /// load may return, or until one execution fails.
 ///
-/// Depth first and from the start each time. An order is left out when it differs from one before
-/// by operations that don't touch the same location, or only load it (sleep sets: a thread whose
-/// next operation was tried here isn't tried again until another one touches its location).
+/// Depth first, from the start each time. An order is skipped if it differs from an earlier one by
+/// operations on different locations, or loads only (sleep sets: a thread whose next operation was
+/// tried here is not tried again until another one touches its location).
 [[nodiscard]] Exploration explore(const MakeProgram& make, std::span<const Fault> faults = {});
 
-/// One run of a program; what its threads' operations go through.
+/// One run of a program, which its threads' operations call.
 class Execution
 {
 public:
@@ -67,7 +68,7 @@ public:
     [[nodiscard]] bool is_redundant() const { return is_redundant_; }
     [[nodiscard]] const std::string& failure() const { return memory_.failure(); }
 
-    /// The one that is running: there is one thread of the machine, and one execution at a time.
+    /// Present execution: there is one real thread, and one execution at a time.
     [[nodiscard]] static Execution& current();
 
     [[nodiscard]] std::size_t add_location(std::uint64_t value);
@@ -80,7 +81,7 @@ public:
     void fail(const std::string& what) { memory_.fail(what); }
 
 private:
-    using ThreadSet = std::uint32_t; ///< One bit a thread.
+    using ThreadSet = std::uint32_t; ///< Set with one bit a thread.
     struct Operation
     {
         std::size_t location{0};

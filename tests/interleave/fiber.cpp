@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <utility>
 
-// The address sanitizer has to be told of every change of the stack.
+// The address sanitizer must be notified of every change of the stack.
 #if defined(__SANITIZE_ADDRESS__)
 #define TACTUS_TELLS_SANITIZER
 #elif defined(__has_feature)
@@ -58,7 +58,7 @@ void Fiber::start(std::function<void()> body)
     inside_.uc_stack.ss_size = kStackBytes;
     inside_.uc_link = &outside_;
     const auto self =
-        reinterpret_cast<std::uintptr_t>(this); // Passed on as two ints, all it takes.
+        reinterpret_cast<std::uintptr_t>(this); // Passed as two ints, the only parameters possible.
     ::makecontext(&inside_, reinterpret_cast<void (*)()>(&Fiber::enter), 2,
                   static_cast<unsigned>(std::uint64_t{self} >> 32U), static_cast<unsigned>(self));
 }
@@ -90,7 +90,7 @@ void Fiber::run()
     end_switch(nullptr, &outside_stack_, &outside_bytes_);
     body_();
     is_done_ = true;
-    begin_switch(nullptr, outside_stack_, outside_bytes_); // For good: this stack is left.
+    begin_switch(nullptr, outside_stack_, outside_bytes_); // Final: this stack is left.
 }
 
 } // namespace tactus::interleave

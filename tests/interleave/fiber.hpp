@@ -10,8 +10,8 @@
 namespace tactus::interleave
 {
 
-/// A function with a stack of its own, which runs until it pauses and goes on when it is resumed.
-/// Everything happens on one thread; must run to its end before it is destroyed.
+/// Function with its own stack, which runs until it pauses and continues when resumed. Everything
+/// is on one thread; it must end before it is destroyed.
 class Fiber
 {
 public:
@@ -22,11 +22,11 @@ public:
     Fiber& operator=(Fiber&&) = delete;
     ~Fiber() = default;
 
-    /// Makes `body`, which must not throw, what the next resume() begins with.
+    /// Sets the `body` of the next resume(), which must not throw.
     void start(std::function<void()> body);
     /// Runs the body until it pauses or ends.
     void resume();
-    /// Inside of the body: back to the caller of resume().
+    /// Returns from the body to the caller of resume().
     void pause();
     [[nodiscard]] bool is_done() const noexcept { return is_done_; }
 
@@ -41,7 +41,7 @@ private:
     ucontext_t outside_{};
     std::function<void()> body_;
     bool is_done_{true};
-    const void* outside_stack_{nullptr}; ///< For the address sanitizer, as the next one.
+    const void* outside_stack_{nullptr}; ///< Stack bounds for the address sanitizer.
     std::size_t outside_bytes_{0};
 };
 

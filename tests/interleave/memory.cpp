@@ -97,7 +97,7 @@ void Memory::store(std::size_t thread, std::size_t location, std::uint64_t value
     if (used == std::memory_order_release)
     {
         at.stores.push_back({value, true, known});
-        ++known.clock[thread]; // What the thread does from here on isn't published.
+        ++known.clock[thread]; // Later operations of the thread are not published.
         return;
     }
     at.stores.push_back({value, false, {}});

@@ -17,53 +17,53 @@ namespace tactus::interleave
 {
 
 inline constexpr std::size_t kMaxThreads = 4;
-/// Builds the program before its threads start, and looks at what is left after they ended.
+/// Pseudo-thread that builds the program before its threads start and inspects it after they ended.
 inline constexpr std::size_t kMainThread = kMaxThreads;
 inline constexpr std::size_t kMaxLocations = 16;
 
-/// A wrong turn put into the code under test: operations of one kind on one location (counted as
-/// they were built, from 0) become relaxed, or a load's value is off.
+/// Fault in the code under test: operations of one kind on one location (numbered in the order of
+/// construction, from 0) become relaxed, or a load's value is changed.
 struct Fault
 {
     std::size_t location{0};
     bool is_store{false};
-    std::int64_t adds{0};                ///< To what a load returns; 0: relaxes instead.
-    std::optional<std::size_t> thread{}; ///< None: on every thread.
+    std::int64_t adds{0};                ///< Added to a load's value; 0: relaxes instead.
+    std::optional<std::size_t> thread{}; ///< Affected thread; empty: every thread.
 };
 
-/// A moment in one thread's life.
+/// Moment in one thread's execution.
 struct Moment
 {
     std::size_t thread{kMainThread};
     std::uint32_t time{0};
 };
 
-/// Who has looked at a plain variable, and when.
+/// Accesses to a plain variable, by thread and time.
 struct PlainHistory
 {
     Moment written;
     std::array<std::uint32_t, kMaxThreads + 1> read{};
 };
 
-/// The memory of one execution: what each store left, and which of it each thread may see.
+/// Memory of one execution: the stores, and the ones visible to each thread.
 ///
-/// Of every location the stores stand in one order. A load may return the newest one that its
-/// thread knows of (has read or written, or learnt of by an acquire from a release), and every
-/// later one: so a thread never goes back, and staleness ends where happens-before says so. What a
-/// thread knows is one place in that order for each location (its view), and how far it has seen of
-/// the others' lives (its clock), by which plain accesses are judged.
+/// The stores of every location have one order. A load may return the newest store that its thread
+/// knows (has read or written, or learnt of by an acquire from a release) and every later one: a
+/// thread never goes back, and staleness ends by happens-before. A thread's knowledge is one place
+/// in that order for each location (its view), and its progress in the others' executions (its
+/// clock), which decides about plain accesses.
 ///
-/// Exact for relaxed, acquire and release, as C++20 has them, while only one thread writes each
-/// location (anything else is reported as a failure of the program) and no relaxed load is moved
-/// behind a later store of its thread. There are no fences, no seq_cst and no read-modify-writes.
+/// Exact for relaxed, acquire and release of C++20 as long as only one thread writes each location
+/// (otherwise the program fails) and no relaxed load is moved behind a later store of its thread.
+/// No fences, no seq_cst and no read-modify-writes.
 class Memory
 {
 public:
     Memory(Choices& choices, std::span<const Fault> faults) : choices_(choices), faults_(faults) {}
 
     [[nodiscard]] std::size_t add_location(std::uint64_t value);
-    /// The threads begin knowing all that the main thread did, which afterwards knows all of
-    /// theirs.
+    /// Publishes the main thread's operations to all threads at the start, and theirs to it at the
+    /// end.
     void begin_threads();
     void join_threads();
 
@@ -71,7 +71,7 @@ public:
                                      std::memory_order order);
     void store(std::size_t thread, std::size_t location, std::uint64_t value,
                std::memory_order order);
-    /// Whether nobody else has written it: an access then means nothing to the others.
+    /// True if no other thread has written the location: an access then has no meaning for others.
     [[nodiscard]] bool is_own(std::size_t thread, std::size_t location) const;
 
     void read_plain(std::size_t thread, PlainHistory& history);
@@ -86,10 +86,10 @@ public:
         return moment.time <= threads_[thread].clock[moment.thread];
     }
 
-    /// From now on loads return the newest value and nothing branches.
+    /// Lets loads return the newest value from now on, without branches.
     void stop_branching() { branches_ = false; }
     void fail(const std::string& what);
-    /// What went wrong first, and all that happened before it; empty while nothing did.
+    /// First failure with its history; empty if there is none.
     [[nodiscard]] const std::string& failure() const { return failure_; }
 
 private:
@@ -104,7 +104,7 @@ private:
     {
         std::uint64_t value{0};
         bool is_release{false};
-        Knowledge knowledge; ///< The writer's, when it is a release.
+        Knowledge knowledge; ///< Knowledge of the writer, for a release.
     };
     struct Location
     {

@@ -13,7 +13,7 @@ namespace tactus::interleave
 namespace
 {
 
-/// All but `next`, which the transport thread may be writing.
+/// Compares all but `next`, which the transport thread may be writing.
 bool is_same_but_next(const VsplitRecord& a, const VsplitRecord& b)
 {
     return a.position_m == b.position_m && a.parent == b.parent && a.star == b.star &&
@@ -31,7 +31,7 @@ Truth::Truth(const test::TinyModel& tiny)
         const auto done = parse_chunk(tiny.chunks[chunk], header, {chunk}, parsed[chunk]);
         TACTUS_ASSERT(done.has_value());
     }
-    for (bool is_more = true; is_more;) // A record whose dependencies are, is one itself.
+    for (bool is_more = true; is_more;) // A record whose dependencies are linkable is linkable too.
     {
         is_more = false;
         for (std::uint32_t id = 0; id < linkable.size() * kRecordsPerChunk; ++id)
@@ -128,7 +128,7 @@ void SlotLedger::update(const DoorEvent& update)
     Slot& slot = slots_.at(update.slot);
     if (slot.chunk.value != update.key.number)
     {
-        ++late_updates_; // It was freed meanwhile.
+        ++late_updates_; // The slot was freed meanwhile.
         return;
     }
     ++updates_;
@@ -150,7 +150,8 @@ void SlotLedger::find_freed()
 
 void SlotLedger::check(const Courier& courier, const SlotDoor& door, const ChunkCache& cache)
 {
-    const std::size_t freed = door.freed.size(); // Of pages alone: no index page goes back here.
+    // Freed slots are of pages alone: no index page returns here.
+    const std::size_t freed = door.freed.size();
     require(courier.free_pages() + handed_chunks_ + table_.used() + freed == slots_.size(),
             "a page slot is in no place or in two");
     require(courier.free_index_pages() + handed_indices_ + cache.index_pages_used() ==

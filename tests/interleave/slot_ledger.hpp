@@ -17,15 +17,15 @@
 namespace tactus::interleave
 {
 
-/// A model, and what its chunks are when parsed, before any link: the same for all runs.
+/// Model with its parsed, unlinked chunks: the same for all runs.
 struct Truth
 {
     explicit Truth(const test::TinyModel& tiny);
 
     const test::TinyModel& model;
     ModelHeader header;
-    std::vector<Page> parsed; ///< By chunk.
-    /// Records of chunks 0 and 1 that depend on no other chunk.
+    std::vector<Page> parsed; ///< Pages by chunk.
+    /// Records of chunks 0 and 1 without dependencies on other chunks.
     std::array<std::uint64_t, 2> linkable{};
 
 private:
@@ -33,46 +33,45 @@ private:
     [[nodiscard]] bool depends_on_linkable(std::uint32_t id) const;
 };
 
-/// Who owns which page slot, kept from what passes the door and from nothing inside of courier,
-/// linker, cache or page table; these are held against it. The first contradiction is kept.
+/// Owners of the page slots, derived only from the data through the queues and compared with
+/// loader, linker, cache and page table. Keeps the first contradiction.
 class SlotLedger final : public PieceSink
 {
 public:
     SlotLedger(const Truth& truth, const PageSlots& slots, const PageTable& pages);
 
-    /// What the courier is about to hand over (Courier::copy_pieces_to()).
+    /// Receives a piece that the loader is about to hand over (Courier::copy_pieces_to()).
     void receive(ContentKey key, std::span<const std::byte> bytes) override;
-    /// The courier begins a step: what is freed by now it will take back.
+    /// Marks the start of a step, which will take back all slots freed so far.
     void begin_step() { freed_at_step_ = freed_; }
-    /// After the cache adopted.
+    /// Checks after the cache adopted.
     void adopted(const DoorTake& take);
-    /// After any verb of the haptic thread: pages that are away now were freed.
+    /// Finds pages freed by a verb of the haptic thread.
     void find_freed();
-    /// After any verb: every slot is in one place, every page holds what the model says.
+    /// Checks after any verb that every slot is in one place and every page equals the model's.
     void check(const Courier& courier, const SlotDoor& door, const ChunkCache& cache);
 
-    /// Keeps `what` when it does not hold and nothing failed before; `number` is of what it is
-    /// about.
+    /// Keeps `what` with `number` if it does not hold and nothing failed before.
     void require(bool holds, const char* what, std::uint32_t number = 0);
-    /// Link updates that came in time, and those of pages that were freed meanwhile.
+    /// Link updates in time, and those of pages freed meanwhile.
     [[nodiscard]] std::uint64_t updates() const { return updates_; }
     [[nodiscard]] std::uint64_t late_updates() const { return late_updates_; }
     [[nodiscard]] bool has_failed() const { return !failure_.empty(); }
     [[nodiscard]] const std::string& failure() const { return failure_; }
-    /// Records of a chunk that the haptic thread was told of and may use.
+    /// Records of a chunk that were notified to the haptic thread for use.
     [[nodiscard]] std::uint64_t told(ChunkId chunk) const;
 
 private:
     struct Slot
     {
-        ChunkId chunk{}; ///< None: not with the haptic thread.
+        ChunkId chunk{}; ///< Chunk; empty: not on the haptic thread.
         std::uint64_t told{0};
-        std::uint32_t freed_as{0}; ///< The how manieth freed slot it was last.
+        std::uint32_t freed_as{0}; ///< Order of its last freeing.
     };
     struct HandOver
     {
         ContentKey key;
-        std::uint32_t freed{0}; ///< Slots that the courier had taken back.
+        std::uint32_t freed{0}; ///< Slots that the loader had taken back.
     };
 
     void adopt(const DoorEvent& arrival);
@@ -87,7 +86,7 @@ private:
     const PageTable& table_;
     std::vector<Slot> slots_;
     std::deque<HandOver> on_their_way_;
-    std::uint32_t handed_chunks_{0}; ///< Not adopted yet.
+    std::uint32_t handed_chunks_{0}; ///< Handed-over chunks that are not adopted yet.
     std::uint32_t handed_indices_{0};
     std::uint32_t freed_{0};
     std::uint32_t freed_at_step_{0};

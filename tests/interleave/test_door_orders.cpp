@@ -12,10 +12,10 @@
 #include <functional>
 #include <span>
 
-/// What the two threads of the door rely on besides each queue by itself: that a page goes round
-/// without a race, that whoever sees a wish sees the freeing before it, that whoever was told of a
-/// linked record reads it whole. The product's queues; the verbs round them as in Courier, Linker
-/// and ChunkCache, each cut down to the accesses that threads share. Thread 0 is the transport's.
+/// Assumptions of the two threads at the door besides each queue alone: a page circulates without a
+/// race; a thread that sees a request sees the earlier freeing; a notified linked record is read
+/// completely. Uses the product's queues, with verbs as in Courier, Linker and ChunkCache, reduced
+/// to shared accesses. Thread 0 is the transport's.
 namespace tactus::interleave
 {
 namespace
@@ -49,10 +49,10 @@ Exploration two_threads(const DoorBody& transport, const DoorBody& haptic,
     return explore_small<Door>({transport, haptic}, {}, faults);
 }
 
-/// Fills free pages with numbers that go up and hands them over, in so many turns.
+/// Fills free pages with ascending numbers and hands them over, `turns` times.
 void lend_and_fill(Door& door, std::uint32_t pages, int turns)
 {
-    std::uint32_t free = pages; // A stack of the pages in `stack`, as the courier's.
+    std::uint32_t free = pages; // Stack of the pages in `stack`, like the loader's.
     std::array<std::uint32_t, 2> stack{0, 1};
     std::uint32_t number = 0;
     for (int turn = 0; turn < turns; ++turn)
@@ -112,7 +112,7 @@ TEST(DoorOrders, a_page_handed_over_or_back_by_a_weaker_order_is_found)
     }
 }
 
-/// Frees a page before each wish, twice; a wish says how many were freed before it.
+/// Frees a page before each request, twice; a request carries the number freed before it.
 void free_and_wish(Door& door)
 {
     for (std::uint32_t freed = 1; freed <= 2; ++freed)
@@ -122,7 +122,7 @@ void free_and_wish(Door& door)
     }
 }
 
-/// Courier::step(): wishes are counted before the freed pages are taken.
+/// Courier::step(): requests are counted before the freed pages are taken.
 void take_freed_and_wishes(Door& door, bool counts_first)
 {
     std::uint32_t taken = 0;
@@ -165,13 +165,13 @@ TEST(DoorOrders, wishes_counted_too_late_or_published_too_weakly_are_found)
 
 enum class Telling
 {
-    in_order,         ///< As Linker and Courier do it.
+    in_order,         ///< Order of Linker and Courier.
     before_it_is_so,  ///< The linked bit is pushed before `next` and the record are written.
     is_not_waited_for ///< The haptic thread reads the record of a page that has only arrived.
 };
 
-/// A page is handed over with a record that waits. Then the record is linked: its content is
-/// written in the page that the haptic thread has, `next` of its owner is set, and it is told.
+/// Hands over a page with a waiting record. Then the record is linked: its content is written in
+/// the page that the haptic thread has, `next` of its owner is set, and it is notified.
 Exploration link_later(Telling telling, std::span<const Fault> faults = {})
 {
     constexpr std::uint32_t kArrival = 1;
@@ -185,7 +185,7 @@ Exploration link_later(Telling telling, std::span<const Fault> faults = {})
         {
             require(door.arrived.try_push(kUpdate), "no room for an update");
         }
-        door.pages[1] = 1; // The record: unlinked until here, the transport thread's own.
+        door.pages[1] = 1; // The record: unlinked until here, owned by the transport thread.
         door.next.store(kId, std::memory_order_relaxed);
         if (telling != Telling::before_it_is_so)
         {

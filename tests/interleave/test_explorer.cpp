@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-/// What is known of the memory model, in tiny programs: that the explorer finds what is allowed,
-/// all of it, and nothing else.
+/// Known results of the memory model in tiny programs: the explorer finds all allowed outcomes and
+/// no others.
 namespace tactus::interleave
 {
 namespace
@@ -21,7 +21,7 @@ constexpr auto kRelaxed = std::memory_order_relaxed;
 constexpr auto kAcquire = std::memory_order_acquire;
 constexpr auto kRelease = std::memory_order_release;
 
-/// Two locations, a plain variable, and what was read; each element by one thread.
+/// Two locations, a plain variable, and the values read; each element by one thread.
 struct Shared
 {
     CheckedAtomic<std::uint32_t> x;
@@ -31,7 +31,7 @@ struct Shared
 };
 using Bodies = std::vector<SmallProgram<Shared>::Body>;
 
-/// Explores and collects what the first `count` reads were, as digits.
+/// Explores and collects the first `count` reads as digits.
 std::set<std::string> outcomes(const Bodies& bodies, std::size_t count)
 {
     std::set<std::string> seen;
@@ -109,7 +109,7 @@ TEST(Explorer, one_location_never_goes_back_even_relaxed)
     EXPECT_EQ(outcomes(bodies, 2), (Outcomes{"00", "01", "02", "11", "12", "22"}));
 }
 
-/// Also when the thread learnt of the later value from another one's read of it.
+/// The thread may learn of the later value from another one's read of it.
 TEST(Explorer, what_one_thread_read_and_passed_on_is_not_older_for_the_next)
 {
     const Bodies bodies{[](Shared& s) { s.x.store(1, kRelaxed); },
@@ -129,7 +129,7 @@ TEST(Explorer, what_one_thread_read_and_passed_on_is_not_older_for_the_next)
     EXPECT_EQ(seen.size(), 7U);
 }
 
-/// A store that follows a release on its thread continues nothing, since C++20.
+/// A store that follows a release on its thread continues no release sequence, since C++20.
 TEST(Explorer, a_relaxed_store_after_a_release_publishes_nothing)
 {
     const Bodies bodies{[](Shared& s)
@@ -230,12 +230,12 @@ TEST(Explorer, leaves_out_only_orders_of_what_commutes)
     EXPECT_EQ(independent.executions, 1U);
     EXPECT_EQ(independent.redundant, 1U);
 
-    // The load before the store; after it, and old or new.
+    // The load is before the store; or after it, with the old or new value.
     const Bodies together{[](Shared& s) { s.x.store(1, kRelaxed); },
                           [](Shared& s) { s.read[0] = s.x.load(kRelaxed); }};
     EXPECT_EQ(explore_small<Shared>(together).executions, 3U);
 
-    // No store, one or two of them before the load, which then sees 1, 2 or 3 values.
+    // None, one or two stores precede the load, which then sees 1, 2 or 3 values.
     const Bodies twice{[](Shared& s)
                        {
                            s.x.store(1, kRelaxed);
@@ -244,8 +244,8 @@ TEST(Explorer, leaves_out_only_orders_of_what_commutes)
                        [](Shared& s) { s.read[0] = s.x.load(kRelaxed); }};
     EXPECT_EQ(explore_small<Shared>(twice).executions, 6U);
 
-    // Two loads, so many stores before the first and until the second: the first sees any of
-    // those, the second nothing older than that.
+    // Two loads, with stores before the first and the second: the first sees any of the former, the
+    // second nothing older than that.
     const Bodies loads{twice[0], [](Shared& s)
                        {
                            s.read[0] = s.x.load(kRelaxed);

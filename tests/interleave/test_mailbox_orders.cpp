@@ -12,7 +12,7 @@
 #include <span>
 
 /// The product's Mailbox, of two words and with two tries a read, in every order that the memory
-/// model allows, and with each of its orders weakened, which has to be found.
+/// model permits, and with each of its orders weakened, which must be detected.
 namespace tactus::interleave
 {
 namespace
@@ -26,7 +26,7 @@ struct Letter
 
 struct Post
 {
-    /// A letter is whole and no older than the last one read.
+    /// Reads a letter that must be whole and no older than the last one.
     void read()
     {
         Letter letter{last, last};
@@ -39,7 +39,7 @@ struct Post
     }
 
     Mailbox<Letter, CheckedAtomic, 2> mailbox;
-    std::uint64_t last{0}; ///< The reader's.
+    std::uint64_t last{0}; ///< Last letter of the reader.
 };
 
 Exploration write_and_read(std::uint64_t letters, int reads, std::span<const Fault> faults = {})

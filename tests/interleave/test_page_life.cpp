@@ -19,7 +19,7 @@
 #include <utility>
 #include <vector>
 
-/// The life of pages between the two threads: the product's courier, linker, cache and page table,
+/// Life of pages between the two threads: the product's loader, linker, cache and page table,
 /// driven through every sequence of verbs up to a length (see DoorWorld).
 namespace tactus::interleave
 {
@@ -53,7 +53,7 @@ struct FreeDeleter
     } // NOLINT: aligned_alloc's partner.
 };
 
-/// What came to pass in all sequences, so that none of it goes untried unnoticed.
+/// Events in all sequences, so that none remains untested.
 struct Tally
 {
     void add(const DoorWorld& world)
@@ -87,8 +87,8 @@ protected:
     PageLife(PageLife&&) = delete;
     PageLife& operator=(PageLife&&) = delete;
 
-    /// Every sequence of `length` verbs after those of `beginning`; of `allowed` ones, where given.
-    /// All that is named in `happens` must come to pass.
+    /// Runs every sequence of `length` verbs after `beginning`, optionally only of `allowed` ones.
+    /// All events in `happens` must occur.
     void explore(const char* what, std::span<const Verb> beginning, int length,
                  std::initializer_list<const char*> happens, std::span<const Verb> allowed = {})
     {
@@ -105,7 +105,7 @@ protected:
             }
             if (!run(world, choices, length, allowed))
             {
-                continue; // Came to the same as another.
+                continue; // Same result as another sequence.
             }
             ASSERT_EQ(world.failure(), "") << "after" << text_of(verbs_so_far);
             world.settle();
@@ -137,7 +137,7 @@ private:
     AssertHandler before_;
 };
 
-/// False when a verb came to the same as another that is tried, too.
+/// Runs one sequence; false if a verb had the same result as another that is also tried.
 bool PageLife::run(DoorWorld& world, Choices& choices, int length, std::span<const Verb> allowed)
 {
     for (int i = 0; i < length && world.failure().empty(); ++i)
@@ -158,13 +158,13 @@ bool PageLife::run(DoorWorld& world, Choices& choices, int length, std::span<con
     return true;
 }
 
-/// What brings the index page, then chunk 0, then chunk 1; each up to where it is adopted.
+/// Verbs that load the index page, then chunk 0, then chunk 1, each until adopted.
 constexpr std::array kAllHere{Verb::want_a, Verb::step,   Verb::adopt, Verb::want_a, Verb::step,
                               Verb::adopt,  Verb::want_b, Verb::step,  Verb::adopt};
 constexpr std::size_t kIndexHere = 3;
 constexpr std::size_t kOneOnItsWay = 7;
 
-/// Otherwise nothing would be linked after its arrival.
+/// Precondition: some records are linked after their arrival.
 TEST_F(PageLife, of_a_model_whose_pages_need_each_other)
 {
     EXPECT_EQ(std::popcount(truth_.linkable[0]), 64) << "the base mesh is enough";

@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-/// The product's SpscQueue in every order that the memory model allows, and with each of its orders
-/// weakened, which has to be found.
+/// The product's SpscQueue in every order that the memory model permits, and with each of its
+/// orders weakened, which must be detected.
 namespace tactus::interleave
 {
 namespace
@@ -29,12 +29,12 @@ constexpr std::size_t kTail = 1;
 constexpr std::size_t kProducer = 0;
 constexpr std::size_t kConsumer = 1;
 
-/// A queue, and what its two threads did: each list is written by one of them.
+/// Queue with the history of its two threads; each list is written by one of them.
 template <std::size_t capacity>
 struct Bench
 {
-    /// Numbers from 1, as many tries as told. A refusal must be true of what the producer can know:
-    /// every slot is full but for pops that happened before.
+    /// Pushes ascending numbers from 1. A refusal must be consistent with the producer's knowledge:
+    /// every slot is full except for pops that happened before.
     void push()
     {
         const Moment began = Execution::current().now();
@@ -85,7 +85,7 @@ struct Bench
 
     std::array<CheckedSlot<std::uint32_t>, capacity> slots{};
     CheckedQueue<std::uint32_t> queue{slots};
-    std::vector<Moment> pushes; ///< When those that succeeded began.
+    std::vector<Moment> pushes; ///< Start times of successful pushes.
     std::vector<Moment> pops;
 };
 
@@ -132,7 +132,8 @@ struct Mutation
     const char* found_as;
 };
 
-/// Every operation of try_push() and try_pop() on the other thread's counter, and every store.
+/// Weakens every operation of try_push() and try_pop() on the other thread's counter, and every
+/// store.
 TEST(QueueOrders, each_weaker_order_is_found)
 {
     const std::array<Mutation, 4> mutations{{
@@ -168,8 +169,8 @@ TEST(QueueOrders, counts_that_are_off_by_one_are_found)
     }
 }
 
-/// Each refusal is true of some moment, but both at once need not be of the same one: here the
-/// queue of two holds one value, is full for the producer and empty for the consumer.
+/// Each refusal is true at some moment, but two need not be true at the same one: here the queue of
+/// two holds one value, is full for the producer and empty for the consumer.
 TEST(QueueOrders, a_refusal_may_be_late_on_both_sides_at_once)
 {
     struct Both

@@ -15,19 +15,18 @@
 namespace tactus::interleave
 {
 
-/// What the link does with all that is on its way when it is polled next.
+/// Effect of the link on everything in transit at the next poll.
 enum class Weather : std::uint8_t
 {
     delivers,
     holds,
     loses,
-    damages,  ///< One bit of the first piece.
-    reverses, ///< The last piece comes first.
-    repeats,  ///< Each piece comes twice.
+    damages,  ///< Flips one bit of the first piece.
+    reverses, ///< Delivers the last piece first.
+    repeats,  ///< Delivers each piece twice.
 };
 
-/// A link that does as it is told, and calls out where the haptic thread may run in the middle of
-/// the courier's step.
+/// Controlled link, with callbacks where the haptic thread may run within the loader's step.
 class VerbLink final : public ChunkLink
 {
 public:
@@ -84,12 +83,12 @@ public:
     [[nodiscard]] LinkState state() const override { return state_; }
     [[nodiscard]] std::uint64_t session() const override { return session_; }
     [[nodiscard]] std::uint64_t bytes_received() const override { return 0; }
-    /// Whether the last poll() would have differed had the weather been another.
+    /// True if another weather would have changed the last poll().
     [[nodiscard]] bool was_weather_felt() const { return was_felt_; }
 
     Weather weather{Weather::delivers};
-    std::function<void()> at_request;   ///< After wishes and freed slots were taken.
-    std::function<void()> before_piece; ///< Each piece that is delivered.
+    std::function<void()> at_request;   ///< Called after requests and freed slots were taken.
+    std::function<void()> before_piece; ///< Called for each delivered piece.
 
 private:
     static void call(const std::function<void()>& function)
