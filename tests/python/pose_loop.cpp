@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 //
-// pose_loop MODEL POSES RADIUS OUT: what a call to tactus.Frame.run() does, as a loop of C++. POSES
-// are doubles, x y z of each; OUT gets a force, lower and upper bound for each. The model is loaded
-// as a whole first. Prints the processor's seconds of the loop.
+// pose_loop MODEL POSES RADIUS OUT: equivalent of tactus.Frame.run() as a loop in C++. POSES are
+// doubles, x y z of each; OUT gets a force, lower and upper bound for each. The model is loaded
+// completely first. Prints the CPU time of the loop in seconds.
 #include "rt_core/frame/frame.hpp"
 #include "transport/courier.hpp"
 #include "transport/store/store_link.hpp"
