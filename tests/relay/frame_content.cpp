@@ -21,7 +21,7 @@ std::uint32_t byte_at(std::span<const std::byte> bytes, std::size_t at)
     return std::to_integer<std::uint32_t>(bytes[at]);
 }
 
-/// Big-endian, as on the wire.
+/// Big-endian number of the wire.
 std::uint32_t word_at(std::span<const std::byte> bytes, std::size_t at)
 {
     return byte_at(bytes, at) << 8U | byte_at(bytes, at + 1);

@@ -9,17 +9,17 @@
 namespace tactus::relay
 {
 
-/// What is said of an Ethernet frame by its headers.
+/// Content of an Ethernet frame by its headers.
 struct FrameContent
 {
     bool is_arp{false};
-    std::uint32_t udp_datagrams{0};     ///< 1 for a whole datagram and for the first piece of one.
-    std::uint32_t udp_payload_bytes{0}; ///< Without the eight bytes of UDP's header.
+    /// Datagrams: 1 for a whole one and for the first fragment of one.
+    std::uint32_t udp_datagrams{0};
+    std::uint32_t udp_payload_bytes{0}; ///< Bytes without the eight bytes of UDP's header.
 };
 
-/// Reads Ethernet, IPv4 and UDP headers. A datagram that was cut into IP fragments is counted once,
-/// with its first one, and its payload piece by piece. Headers that are cut short or contradict
-/// each other count as no UDP.
+/// Reads Ethernet, IPv4 and UDP headers. A datagram in IP fragments is counted once, with its first
+/// one, and its payload in each. Truncated or contradictory headers count as no UDP.
 [[nodiscard]] FrameContent content_of(std::span<const std::byte> frame);
 
 } // namespace tactus::relay

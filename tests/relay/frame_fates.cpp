@@ -10,13 +10,14 @@ namespace tactus::relay
 namespace
 {
 
-/// The random numbers of one frame.
+/// Random numbers of one frame.
 constexpr std::uint64_t kLoss = 0;
 constexpr std::uint64_t kDuplicate = 1;
-constexpr std::uint64_t kJitter = 2; ///< And one more, for the second copy.
+/// Jitter of the first copy; the next number is the second copy's.
+constexpr std::uint64_t kJitter = 2;
 constexpr std::uint64_t kNumbers = 4;
 
-/// Uniform in 0 .. 1, 1 not included: a share of 1 takes every frame and one of 0 none.
+/// Uniform number in 0 .. 1, without 1: a share of 1 takes every frame and one of 0 none.
 double unit(std::uint64_t seed, std::uint64_t index)
 {
     return static_cast<double>(test::mixed(seed, index) >> 11U) * 0x1p-53;

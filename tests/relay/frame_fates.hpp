@@ -12,23 +12,22 @@
 namespace tactus::relay
 {
 
-/// What becomes of one frame.
+/// Fate of one frame.
 struct FrameFate
 {
-    std::size_t copies{0};            ///< That arrive: 0 when it is lost, 2 when it is duplicated.
-    std::array<Duration, 2> delays{}; ///< Of each copy.
+    std::size_t copies{0}; ///< Copies that arrive: 0 if it is lost, 2 if it is duplicated.
+    std::array<Duration, 2> delays{}; ///< Delay of each copy.
 };
 
-/// Decides what becomes of frame n of one direction: a function of seed, n and condition alone,
-/// whatever became of the frames before and whenever they came. So a run with the same frames
-/// repeats, and one with a larger loss loses the frames of the smaller one, too.
+/// Fates of the frames of one direction. That of frame n is a function of seed, n and condition
+/// alone, independent of other frames and their times. A run with the same frames thus repeats, and
+/// one with a larger loss also loses the frames of the smaller one.
 class FrameFates
 {
 public:
     explicit FrameFates(std::uint64_t seed) : seed_(seed) {}
 
-    /// Of the next frame. One that must arrive is neither lost nor duplicated, but delayed like the
-    /// others.
+    /// Fate of the next frame. One that must arrive is neither lost nor duplicated, but delayed.
     [[nodiscard]] FrameFate next(const LinkCondition& condition, bool must_arrive);
 
 private:

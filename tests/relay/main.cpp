@@ -27,7 +27,7 @@ namespace tactus::relay
 namespace
 {
 
-constexpr int kMtuMin_bytes = 576; // What every IPv4 host must take.
+constexpr int kMtuMin_bytes = 576; // Least MTU of an IPv4 host.
 constexpr int kMtuMax_bytes = 9'000;
 constexpr std::size_t kLineBytesMax = 200;
 constexpr const char* kHostAddress = "10.77.0.1";
@@ -42,14 +42,15 @@ struct Options
 
 volatile std::sig_atomic_t stop_requested = 0;
 
-/// Held back but while the loop waits, so that none comes between its look and its wait.
+/// Blocks the signals except during the loop's wait, so that none is missed between its check and
+/// its wait.
 void stop_on_signals(sigset_t& while_waiting)
 {
     struct sigaction action = {};
     action.sa_handler = [](int) { stop_requested = 1; };
     ::sigaction(SIGINT, &action, nullptr);
     ::sigaction(SIGTERM, &action, nullptr);
-    action.sa_handler = SIG_IGN; // Nobody reads the answers any more: told by the write.
+    action.sa_handler = SIG_IGN; // A closed reader of the answers is detected by the write.
     ::sigaction(SIGPIPE, &action, nullptr);
     sigset_t held_back;
     ::sigemptyset(&held_back);
@@ -85,14 +86,14 @@ void declare_options(CommandLine& line, Options& options)
         .show_default();
 }
 
-/// False when nobody reads any more.
+/// Prints a line; false if the reader is gone.
 bool say(const std::string& line)
 {
     return std::puts(line.c_str()) >= 0 && std::fflush(stdout) == 0;
 }
 
-/// What docs/protocol.md says of a network; without a double quote, so that it stands in JSON as it
-/// is.
+/// DDS configuration of a network by docs/protocol.md; without a double quote, so that it fits into
+/// JSON.
 std::string dds_configuration(const char* interface)
 {
     return fmt::format(
@@ -126,12 +127,12 @@ std::string ready_line(const TapNetwork& host, const TapNetwork& controller)
         .dump();
 }
 
-/// The lines of stdin, as they come.
+/// Lines of stdin as they arrive.
 class CommandLines
 {
 public:
     /// Reads once and answers each whole line. False at the end of the file, for a line that is too
-    /// long, and when nobody reads the answers.
+    /// long, or if the reader of the answers is gone.
     bool answer_by(Relay& relay)
     {
         std::array<char, kLineBytesMax> bytes{};
@@ -207,7 +208,7 @@ int run(int argc, char** argv)
     {
         return line.fail("no network can be made here: " + controller.error().text);
     }
-    // The system otherwise wakes a sleeper up to 50 us late, to save power.
+    // By default the system wakes a sleeper up to 50 us late, to save power.
     static_cast<void>(::prctl(PR_SET_TIMERSLACK, 1UL));
     sigset_t while_waiting;
     stop_on_signals(while_waiting);

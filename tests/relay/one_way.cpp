@@ -19,7 +19,7 @@ void OneWay::take(std::span<const std::byte> frame, const LinkCondition& conditi
     counts_.bytes += frame.size();
     counts_.udp_datagrams += content.udp_datagrams;
     counts_.udp_payload_bytes += content.udp_payload_bytes;
-    // A lost ARP costs the system's retry, a second, and that is not what is measured.
+    // A lost ARP costs the system's retry of a second, which is not to be measured.
     const FrameFate fate = fates_.next(condition, content.is_arp);
     if (is_cut_)
     {

@@ -15,27 +15,27 @@
 namespace tactus::relay
 {
 
-/// Since the start. Of all frames that came, frames + duplicated = delivered + lost + cut +
-/// dropped_full + those under way.
+/// Counts since the start: frames + duplicated = delivered + lost + cut + dropped_full + frames in
+/// transit.
 struct OneWayCounts
 {
-    std::uint64_t frames{0}; ///< That the sender gave, whatever became of them; so the next three.
-    std::uint64_t bytes{0};  ///< Of whole frames, from the Ethernet header on.
+    std::uint64_t frames{0}; ///< Frames from the sender, independent of their fate.
+    std::uint64_t bytes{0};  ///< Bytes of whole frames, from the Ethernet header on.
     std::uint64_t udp_datagrams{0};
     std::uint64_t udp_payload_bytes{0};
-    std::uint64_t delivered{0};    ///< Each copy.
-    std::uint64_t lost{0};         ///< By `LinkCondition::loss`.
-    std::uint64_t duplicated{0};   ///< By `LinkCondition::duplicates`.
-    std::uint64_t cut{0};          ///< That came, or were under way, while nothing passed.
-    std::uint64_t dropped_full{0}; ///< Copies that found no room.
+    std::uint64_t delivered{0};  ///< Copies delivered.
+    std::uint64_t lost{0};       ///< Frames lost by `LinkCondition::loss`.
+    std::uint64_t duplicated{0}; ///< Frames duplicated by `LinkCondition::duplicates`.
+    std::uint64_t cut{0}; ///< Frames that arrived, or were in transit, while the link was cut.
+    std::uint64_t dropped_full{0}; ///< Copies that exceeded the capacity.
 };
 
-/// One direction of the link: frames wait in it until they are due. Knows no clock and no device.
-/// One thread.
+/// One direction of the link, in which frames wait until they are due. It has no clock and no
+/// device. One thread.
 class OneWay
 {
 public:
-    /// A second's worth of a link of 500 Mbit/s.
+    /// Capacity: one second of a link of 500 Mbit/s.
     static constexpr std::size_t kBytesMax = std::size_t{64} << 20U;
 
     explicit OneWay(std::uint64_t seed, std::size_t bytes_max = kBytesMax)
@@ -43,17 +43,17 @@ public:
     {
     }
 
-    /// A frame that was sent at `now`. O(log n) of the frames under way.
+    /// Takes a frame sent at `now`. O(log n) of the frames in transit.
     void take(std::span<const std::byte> frame, const LinkCondition& condition, MonotonicTime now);
 
-    /// When the next frame is due; none when nothing is under way.
+    /// Time at which the next frame is due; empty if none is in transit.
     [[nodiscard]] std::optional<MonotonicTime> next_due() const;
 
-    /// The frame that is due first, when that is not later than `now`; of several with the same
-    /// time the one that came first. Each copy comes out once.
+    /// Frame that is due first, if not later than `now`; the first one of several with the same
+    /// time. Each copy is returned once.
     [[nodiscard]] std::optional<std::vector<std::byte>> take_due(MonotonicTime now);
 
-    /// Nothing passes from now on, and what is under way is gone.
+    /// Blocks the link from now on and drops all frames in transit.
     void cut();
     void mend() { is_cut_ = false; }
 
@@ -74,7 +74,7 @@ private:
     std::size_t bytes_max_;
     std::size_t bytes_waiting_{0};
     std::uint64_t next_order_{0};
-    std::vector<Waiting> heap_; ///< The next one that is due is in front.
+    std::vector<Waiting> heap_; ///< Heap with the next due frame in front.
     bool is_cut_{false};
     OneWayCounts counts_;
 };

@@ -20,9 +20,9 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-/// With the largest MTU of main.cpp and headers of all kinds.
+/// Size for the largest MTU of main.cpp with headers of all kinds.
 constexpr std::size_t kFrameBytesMax = std::size_t{16} << 10U;
-/// Taken from one network before it is the other's turn, and what is due goes out.
+/// Frames taken from one network before the other's turn and the delivery of due ones.
 constexpr int kFramesInTurn = 64;
 
 Json json_of(const OneWayCounts& counts, std::uint64_t missed, std::uint64_t refused_by_system)

@@ -17,24 +17,24 @@
 namespace tactus::relay
 {
 
-/// Carries frames between two networks. One thread.
+/// Relay of frames between two networks. One thread.
 class Relay
 {
 public:
-    /// Both networks must outlive it. The directions have random numbers of their own, made of
-    /// `seed`.
+    /// Connects both networks, which must outlive it. Each direction has its own random numbers
+    /// from `seed`.
     Relay(const TapNetwork& host, const TapNetwork& controller, const LinkCondition& condition,
           std::uint64_t seed);
 
-    /// Takes what both networks have sent and hands over what is due at the clock's time.
+    /// Takes all frames sent by both networks and delivers those due at the clock's time.
     void carry();
 
-    /// When it has to carry again though nobody sends; none when nothing is under way.
+    /// Time of the next delivery; empty if no frame is in transit.
     [[nodiscard]] std::optional<MonotonicTime> next_due() const;
 
-    /// Does what the line says; the answer is one line, "done", "refused: " and what is allowed, or
-    /// the counts as JSON: of each direction OneWayCounts, `missed`, frames that the system dropped
-    /// before they could be read, and `refused_by_system`, those that it didn't take.
+    /// Executes a line. The answer is one line: "done", "refused: " with the allowed forms, or the
+    /// counts as JSON. These are OneWayCounts of each direction, `missed`, frames that the system
+    /// dropped before they could be read, and `refused_by_system`, those that it did not accept.
     [[nodiscard]] std::string answer(std::string_view line);
 
 private:

@@ -27,7 +27,7 @@ constexpr std::array<Figure, 4> kFigures{{{"delay-ms", &LinkCondition::delay_ms,
                                           {"loss", &LinkCondition::loss, 1.0},
                                           {"duplicates", &LinkCondition::duplicates, 1.0}}};
 
-/// All of `text` as a number of 0 .. `most`.
+/// Number in 0 .. `most` that is all of `text`.
 std::optional<double> parse_number(std::string_view text, double most)
 {
     double value = 0.0;
@@ -36,7 +36,7 @@ std::optional<double> parse_number(std::string_view text, double most)
     return is_whole && value >= 0.0 && value <= most ? std::optional(value) : std::nullopt;
 }
 
-/// "FIGURE VALUE".
+/// Parses "FIGURE VALUE".
 std::optional<Command> parse_set(std::string_view words)
 {
     const std::size_t space = words.find(' ');

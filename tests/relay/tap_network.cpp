@@ -32,11 +32,11 @@ constexpr const char* kTunDevice = "/dev/net/tun";
 constexpr const char* kOwnNamespace = "/proc/thread-self/ns/net";
 constexpr const char* kStatistics = "/proc/thread-self/net/dev";
 constexpr const char* kNetmask = "255.255.255.0";
-/// Frames that the system keeps until the relay reads them: a hundred milliseconds' worth of large
-/// ones at 500 Mbit/s. frames_missed() has those beyond.
+/// Frames that the system keeps until the relay reads them: a hundred milliseconds of large ones at
+/// 500 Mbit/s. frames_missed() counts further ones.
 constexpr int kSystemQueueFrames = 4'096;
 
-/// Closed at the end, unless released.
+/// Descriptor, closed by the destructor unless released.
 class Descriptor
 {
 public:
@@ -63,7 +63,7 @@ TapError refusal(const std::string& what)
     return {fmt::format("{}: {}", what, std::strerror(errno))};
 }
 
-/// The thread is back in this namespace at the end.
+/// Guard that returns the thread to this namespace.
 class NamespaceReturn
 {
 public:
@@ -105,7 +105,7 @@ bool turn_on(int socket, const std::string& interface)
     return ioctl(socket, SIOCSIFFLAGS, &request) == 0;
 }
 
-/// Where there is no IPv6 there is nothing to turn off.
+/// No effect without IPv6.
 void turn_ipv6_off()
 {
     for (const char* whose : {"all", "default"})
@@ -116,7 +116,8 @@ void turn_ipv6_off()
     }
 }
 
-/// Address, MTU, queue, up; of the namespace that the thread is in. What was refused, or none.
+/// Sets address, MTU and queue in the thread's namespace and enables the interface. Returns what
+/// was refused, if anything.
 std::optional<TapError> set_up(const TapOptions& options)
 {
     const Descriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
@@ -219,7 +220,8 @@ std::size_t TapNetwork::read(std::span<std::byte> buffer) const
 
 std::uint64_t TapNetwork::frames_missed() const
 {
-    constexpr int kColumn = 12; // "interface: 8 columns of what came, 8 of what went", its fourth.
+    // Fourth of the sent columns in "interface: 8 received columns, 8 sent columns".
+    constexpr int kColumn = 12;
     std::array<char, 4'096> text{};
     const ssize_t bytes = ::pread(statistics_, text.data(), text.size(), 0);
     TACTUS_ASSERT(bytes > 0);
@@ -237,7 +239,7 @@ std::uint64_t TapNetwork::frames_missed() const
         }
         return figure;
     }
-    TACTUS_ASSERT(false); // The interface lives as long as this object.
+    TACTUS_ASSERT(false); // The interface exists as long as this object.
     return 0;
 }
 

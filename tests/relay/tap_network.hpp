@@ -14,8 +14,8 @@ namespace tactus::relay
 
 struct TapOptions
 {
-    std::string interface; ///< Its name, at most 15 characters.
-    std::string address;   ///< IPv4; its network has 24 bits.
+    std::string interface; ///< Name, at most 15 characters.
+    std::string address;   ///< IPv4 address; its network has 24 bits.
     int mtu_bytes{1'500};
 };
 
@@ -24,15 +24,15 @@ struct TapError
     std::string text;
 };
 
-/// A network namespace of its own with one interface besides `lo`, the end of which is here. It has
-/// no name and lives as long as this object, or a process in it: others enter it by
-/// `nsenter --net=/proc/PID/fd/N` with this process and namespace_descriptor(). IPv6 is off in it,
-/// so that nothing is sent in it that no program sends.
+/// Network namespace with one interface besides `lo`, whose other end is here. It has no name and
+/// exists as long as this object, or a process in it: others enter it by `nsenter
+/// --net=/proc/PID/fd/N` with this process and namespace_descriptor(). IPv6 is off, so that only
+/// programs send.
 class TapNetwork
 {
 public:
-    /// Makes namespace and interface, both up; the calling thread is back in its own namespace
-    /// then. Needs CAP_SYS_ADMIN, CAP_NET_ADMIN and /dev/net/tun; says what was refused.
+    /// Creates namespace and interface, both up; the calling thread returns to its own namespace.
+    /// Needs CAP_SYS_ADMIN, CAP_NET_ADMIN and /dev/net/tun; otherwise reports what was refused.
     [[nodiscard]] static Result<TapNetwork, TapError> create(const TapOptions& options);
 
     TapNetwork(TapNetwork&& other) noexcept;
@@ -40,16 +40,16 @@ public:
     ~TapNetwork();
 
     [[nodiscard]] int namespace_descriptor() const { return namespace_; }
-    /// To wait for frames that the network sends.
+    /// Descriptor to wait for frames from the network.
     [[nodiscard]] int tap_descriptor() const { return tap_; }
 
-    /// The next frame that the network sent, whole; its size, 0 when there is none.
+    /// Reads the next whole frame from the network; returns its size, 0 if there is none.
     [[nodiscard]] std::size_t read(std::span<std::byte> buffer) const;
 
-    /// Frames that the network sent and the system dropped, since nobody read them in time.
+    /// Frames from the network that the system dropped because they were not read in time.
     [[nodiscard]] std::uint64_t frames_missed() const;
 
-    /// Gives the network a frame. False when the system refused it.
+    /// Sends a frame to the network. False if the system refused it.
     [[nodiscard]] bool write(std::span<const std::byte> frame) const;
 
 private:
@@ -61,7 +61,7 @@ private:
     std::string interface_;
     int namespace_;
     int tap_;
-    int statistics_; ///< Of the interfaces of the namespace in which it was opened.
+    int statistics_; ///< Statistics of the interfaces of the namespace in which it was opened.
 };
 
 } // namespace tactus::relay
