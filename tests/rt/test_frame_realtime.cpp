@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The frame as the haptic thread runs it, streaming and in want of everything, while its heap
-/// calls and system calls are counted: there must be none (I7). In a build with the realtime
-/// sanitizer that one watches, too, and ends the program at the first breach.
+/// I7: the frame as the haptic thread runs it, streaming with all shortages, makes no heap calls
+/// and no system calls. A build with the realtime sanitizer also ends at the first violation.
 
 #include "host_tools/shapes/shapes.hpp"
 #include "platform/machine/allocation_counter.hpp"
@@ -33,18 +32,18 @@ constexpr bool kHasRealtimeSanitizer = false;
 constexpr bool kHasRealtimeSanitizer = false;
 #endif
 
-/// What frames did that they must not do, and that they did something at all.
+/// Forbidden operations of frames, and evidence that they did any work.
 struct Watched
 {
     std::uint64_t heap_calls{0};
     std::uint64_t system_calls{0};
     WorkCounters work;
-    std::string not_trapped; ///< Why system calls could not be counted; empty when they were.
+    std::string not_trapped; ///< Reason why system calls could not be counted; empty if they were.
 };
 
-/// Where a tool goes: it hops from one random corner of the model to the next, round its middle, so
-/// that it lands on new ground each time and is never caught inside. It begins in mid-air: a proxy
-/// that starts on the surface stays there.
+/// Path of a tool: it hops between random corners of the model, around its middle, so that it lands
+/// on new ground each time and is never caught inside. It begins in mid-air: a proxy that starts on
+/// the surface stays there.
 class Wander
 {
 public:
@@ -82,7 +81,7 @@ private:
 
     const TestModel& model_;
     std::uint32_t leg_frames_;
-    Random& random_; ///< Shared, so that no two go the same way.
+    Random& random_; ///< Shared, so that all paths differ.
     Vec3 middle_{0.0, 0.0, 0.0};
     Vec3 from_;
     Vec3 to_;
@@ -96,7 +95,8 @@ struct Touch
     StageMark mark;
     std::uint32_t leg_frames{200};
     std::uint32_t frames{3'000};
-    bool scene_changes{false}; ///< Objects and tools come, move and go; most of it is refused.
+    /// True if objects and tools are added, moved and removed; most of it is refused.
+    bool scene_changes{false};
 };
 
 const TestModel& model_to_touch()
@@ -114,7 +114,7 @@ void add_work(WorkCounters& sum, const WorkCounters& work)
     sum.evictions += work.evictions;
 }
 
-/// Of any kind, of anything; a thousand now and then.
+/// Makes random changes of any kind; a thousand occasionally.
 void make_changes(std::uint32_t frame, Random& random, std::vector<SceneChange>& changes)
 {
     changes.resize(frame % 100 == 99 ? 1'000 : random.below(4U));
@@ -135,7 +135,7 @@ std::uint64_t heap_calls()
     return calls.allocations + calls.frees;
 }
 
-/// Every frame with its rehearsal, alone under watch; what the transport side does is not.
+/// Runs every frame with its warm-up, the only parts watched; the transport side is not.
 void watch_frames(FrameRig& rig, const Touch& touch, Random& random, Watched& watched)
 {
     const std::size_t tool_count = std::max<std::size_t>(touch.options.tools.size(), 1);
@@ -166,7 +166,7 @@ void watch_frames(FrameRig& rig, const Touch& touch, Random& random, Watched& wa
     watched.system_calls = system_call_trap::of_this_thread().in_frame;
 }
 
-/// On a thread of its own, since a trap is for good.
+/// Watches on a separate thread, since a trap is permanent.
 Watched watch(const Touch& touch)
 {
     const std::uint64_t seed = seed_of(1);
@@ -247,14 +247,15 @@ TEST(FrameRealtime, nor_over_a_link_that_loses_and_damages)
     expect_clean(watch(touch));
 }
 
-// A hook runs inside the frame, so what it does wrong is the frame's, and the watch must see it.
-// These two are not to be trusted at all: what they break is seen when they run.
+// A hook runs inside the frame, so its faults are the frame's and must be detected. These two are
+// not trusted: their violations are detected when they run.
 TACTUS_TRUSTED_BEGIN
 void allocate(void* /*context*/, Stage /*stage*/) noexcept TACTUS_NONBLOCKING
 {
     // NOLINTBEGIN(cppcoreguidelines-no-malloc,cppcoreguidelines-owning-memory): to be seen.
     void* block = std::malloc(16);
-    *static_cast<volatile char*>(block) = 1; // Or the compiler leaves both calls out.
+    // The access keeps the compiler from removing both calls.
+    *static_cast<volatile char*>(block) = 1;
     std::free(block);
     // NOLINTEND(cppcoreguidelines-no-malloc,cppcoreguidelines-owning-memory)
 }
