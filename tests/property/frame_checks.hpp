@@ -18,7 +18,7 @@ inline void expect_all_budgets_kept(const FrameOutput& output, const Budgets& bu
     EXPECT_EQ(broken_budget(output, budgets).value_or(""), "");
 }
 
-/// L <= d <= U against every face of the source, and an open question has a named reason.
+/// True if L <= d <= U against every face of the source, and an open answer has a named reason.
 [[nodiscard]] inline testing::AssertionResult answer_is_sound(const TestModel& model,
                                                               const FrameOutput& output)
 {
@@ -37,7 +37,7 @@ inline void expect_all_budgets_kept(const FrameOutput& output, const Budgets& bu
     return testing::AssertionSuccess();
 }
 
-/// A point outside at this distance from the model, reached from a random direction.
+/// Place outside at this distance from the model, in a random direction.
 [[nodiscard]] inline Vec3 place_at_distance(const TestModel& model, Random& random,
                                             double distance_m)
 {

@@ -22,7 +22,7 @@ namespace tactus::test
     return std::move(recording).value();
 }
 
-/// A replay of a rig's recording has all its frames, so many, bit for bit.
+/// Expects that a replay of a rig's recording has all its frames, `frames` if given, bit for bit.
 inline void expect_same_again(const std::vector<std::byte>& bytes,
                               std::optional<std::uint64_t> frames = {})
 {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// Pairs that are asked for their distance however far they are (ToolSpec::wants_distance), against
-/// every face of the source.
+/// Pairs whose distance is requested at any range (ToolSpec::wants_distance), against every face of
+/// the source.
 
 #include "rt_core/geometry/placed_core.hpp"
 #include "tests/property/frame_checks.hpp"
@@ -22,7 +22,7 @@ namespace tactus::test
 namespace
 {
 
-constexpr int kFramesMax = 4'000; ///< Until an answer has to be exact.
+constexpr int kFramesMax = 4'000; ///< Limit of frames until an answer must be exact.
 
 ToolSpec measuring_tool(double radius_m, const ToolCore& core = PointCore{})
 {
@@ -45,7 +45,7 @@ ObjectPose some_pose(Random& random, double diagonal_m)
     return pose;
 }
 
-/// The answer must hold the truth, and an exact one must be it.
+/// The bounds must hold the truth, and an exact answer must equal it.
 void check(const PairOutput& pair, double truth_m, double slack_m)
 {
     ASSERT_LE(pair.lower_m, truth_m + slack_m);
@@ -169,7 +169,7 @@ TEST(FarDistance, is_told_of_every_object_and_every_core)
     }
 }
 
-/// Of the same rig and frames, without the wish: so that the tests above can fail.
+/// The same rig and frames without the request, which shows that the tests above can fail.
 TEST(FarDistance, is_a_bracket_where_nobody_asks)
 {
     const TestModel& model = small_model(0);
@@ -186,7 +186,7 @@ TEST(FarDistance, is_a_bracket_where_nobody_asks)
     EXPECT_GT(output.pairs[0].upper_m - output.pairs[0].lower_m, 0.01 * model.diagonal_m);
 }
 
-/// A hand that presses on, beside a tool that measures from afar.
+/// Forces of a pressing hand beside a query-only tool far away.
 std::vector<Vec3> forces_beside(bool wants_distance)
 {
     const TestModel& model = small_model(0);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The forest's invariants on whole small models, with every chunk loaded: I1 full refinement is
-/// the source, I2 undoing returns the base state, I3 every cut is manifold, I10 the finest corner.
-/// The validators look at the cuts, too.
+/// I1 full refinement is the source, I2 undoing returns the base state, I3 every cut is manifold,
+/// I10 the finest corner: the forest's invariants on whole small models with every chunk loaded.
+/// The validators also check the cuts.
 
 #include "rt_core/forest/validate_forest.hpp"
 #include "rt_core/query/surface_query.hpp"
@@ -22,7 +22,7 @@ namespace tactus::test
 namespace
 {
 
-/// A face with its corners rotated so that the least comes first: the orientation is kept.
+/// Face with its corners rotated so that the least is first, orientation kept.
 Face canonical(Face face)
 {
     std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
@@ -174,7 +174,7 @@ TEST_P(ForestProperties, the_record_that_last_changed_a_face_is_its_finest_corne
 
 INSTANTIATE_TEST_SUITE_P(small_models, ForestProperties, testing::Range<std::size_t>(0, 6));
 
-/// I4: a certified ball equals the full mesh.
+/// I4: a certified sphere equals the full mesh.
 class CertifiedBall : public testing::TestWithParam<std::size_t>
 {
 };
@@ -206,7 +206,7 @@ TEST_P(CertifiedBall, holds_the_same_faces_and_distances_as_the_full_mesh)
         {
             found.insert(surface.triangles[i].corners_m);
         }
-        // A face at the very edge of the ball may fall on either side of it by rounding.
+        // A face at the very edge of the sphere may be on either side by rounding.
         const double slack = 1e-12 * model.diagonal_m;
         for (const Face& source : model.faces)
         {

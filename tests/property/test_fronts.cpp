@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The refined and the loaded front by region (I9), with the cache as it is and with it off.
+/// I9: refined and loaded front by region, with and without the cache.
 
 #include "rt_core/frame/fronts.hpp"
 #include "tests/property/frame_checks.hpp"
@@ -30,7 +30,7 @@ std::vector<std::uint32_t> listed(const Model& model, RegionId region, List list
     return records;
 }
 
-/// The region of a point by the partition's definition, from the header's fields alone.
+/// Region of a point by the partition's definition, from the header's fields alone.
 std::uint32_t cell_of(const HeaderFields& fields, const Vec3f& point_m)
 {
     const double cell_m = std::ldexp(fields.region_cell_quanta, fields.quantum_log2);
@@ -43,7 +43,8 @@ std::uint32_t cell_of(const HeaderFields& fields, const Vec3f& point_m)
     return (cell[2] * fields.region_grid[1] + cell[1]) * fields.region_grid[0] + cell[0];
 }
 
-/// Over the whole model, cheap enough for every frame: what is refined is counted among the loaded.
+/// Expects the refined records among the loaded ones. Over the whole model, cheap enough for every
+/// frame.
 void expect_refined_is_loaded(const Model& model)
 {
     const FrontCount count = count_fronts(model);
@@ -51,7 +52,8 @@ void expect_refined_is_loaded(const Model& model)
     EXPECT_LE(count.refined, count.loaded);
 }
 
-/// Every region's lists: refined in loaded, each record once and in its own region; sums agree.
+/// Checks every region's lists: refined in loaded, each record once and in its own region; sums
+/// agree.
 void expect_fronts_sound(const Model& model)
 {
     std::set<std::uint32_t> loaded_once;
@@ -60,7 +62,7 @@ void expect_fronts_sound(const Model& model)
     {
         if (!model.header.is_occupied(RegionId{region}))
         {
-            continue; // The sums below say that nothing is in there.
+            continue; // The sums below show that it is empty.
         }
         const auto loaded = listed(model, RegionId{region}, list_loaded_front);
         const auto refined = listed(model, RegionId{region}, list_refined_front);
@@ -80,7 +82,7 @@ void expect_fronts_sound(const Model& model)
     EXPECT_EQ(whole.refined, sum.refined);
 }
 
-/// Adopted pages in which nothing is refined.
+/// Number of adopted pages without a refined record.
 std::uint32_t idle_pages(const Model& model)
 {
     std::uint32_t idle = 0;
@@ -100,7 +102,7 @@ protected:
     Random random_ = Random::seeded(seed_);
     Vec3 goal_{0.0, 0.0, 0.0};
 
-    /// Slides, and a jump every 60 frames.
+    /// Goal of a slide with a jump every 60 frames.
     Vec3 next_goal(int frame)
     {
         if (frame % 60 == 0)
@@ -128,7 +130,7 @@ TEST_P(Fronts, refined_is_a_subset_of_loaded_in_every_region_and_frame)
         refined_max = std::max(refined_max, count_fronts(sut.model()).refined);
     }
     EXPECT_GT(refined_max, 20U);
-    if (GetParam() == 0) // Others may be so small that all of their pages are in use.
+    if (GetParam() == 0) // Other caches may be so small that all their pages are in use.
     {
         EXPECT_GT(idle_pages(sut.model()), 0U) << "a cache keeps what it does not need now";
     }
@@ -163,7 +165,7 @@ TEST_P(Fronts, a_copy_that_is_brought_up_to_date_now_and_then_is_what_the_slots_
 {
     SCOPED_TRACE(model_.name + " seed " + std::to_string(seed_));
     RigOptions options;
-    options.cache_off = random_.one_in(2); // Then many pages go.
+    options.cache_off = random_.one_in(2); // Without the cache many pages are evicted.
     FrameRig sut(model_, options);
     PagePool& pages = sut.frame().pools().cache.pages;
     std::vector<ShownPage> copy(pages.metas.begin(), pages.metas.end());

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// Models of which a frame starts with the header alone: they come when a tool is near, enter in
-/// slices, answer truly from the first frame on, and go again.
+/// Models of which a frame starts with the header alone: they are loaded when a tool is near, enter
+/// in slices, answer correctly from the first frame on, and are removed again.
 
 #include "platform/recording/replay_door.hpp"
 #include "tests/property/replay_checks.hpp"
@@ -23,7 +23,7 @@ namespace tactus::test
 namespace
 {
 
-constexpr double kSide_m = 10.0; ///< Between two models: out of each other's way.
+constexpr double kSide_m = 10.0; ///< Distance between two models, out of each other's reach.
 
 ModelCounts counts_of(const TestModel& model)
 {
@@ -31,7 +31,7 @@ ModelCounts counts_of(const TestModel& model)
     return ModelHeader::parse(served.value().header).value().counts();
 }
 
-/// Pools for so many base meshes of the largest model, and what touching needs beside them.
+/// Pools for `meshes` base meshes of the largest model, with the needs of touching.
 ModelCapacities room_for(const std::vector<const TestModel*>& models, std::uint32_t meshes)
 {
     std::uint32_t cells = 0;
@@ -49,7 +49,7 @@ ModelCapacities room_for(const std::vector<const TestModel*>& models, std::uint3
     return room;
 }
 
-/// `count` models in a row, each shown once, and room for some of them.
+/// `count` models in a row, each shown once, with capacity for some of them.
 struct Row
 {
     Row(std::uint32_t count, std::uint32_t meshes, const LoopbackFaults& faults = {},
@@ -71,7 +71,7 @@ struct Row
         options.tools[0].passes_through = passes_through;
         rig.emplace(models, options);
     }
-    /// Half a metre above the model's highest vertex, or lower.
+    /// Place above the model's highest vertex.
     [[nodiscard]] Vec3 above(std::uint32_t model, double height_m) const
     {
         const auto top = std::ranges::max_element(models[model]->faces, {},
@@ -141,7 +141,7 @@ TEST(ModelLife, goes_from_known_to_known_by_way_of_every_stage)
                                            ModelStage::leaving,  ModelStage::known};
     const std::uint32_t slots = sut.options.for_guests.pages + sut.options.for_guests.index_pages;
     EXPECT_GE(leaving, (slots + kLeavingSlotsPerFrame - 1) / kLeavingSlotsPerFrame);
-    // It may enter within one frame, and is then never seen to arrive.
+    // The model may enter within one frame, and is then never seen arriving.
     std::erase(stages, ModelStage::arriving);
     std::vector<ModelStage> seen = expected;
     std::erase(seen, ModelStage::arriving);
@@ -156,11 +156,11 @@ TEST(ModelLife, goes_from_known_to_known_by_way_of_every_stage)
 
 TEST(ModelLife, the_model_left_longest_ago_makes_room_for_one_that_is_wanted)
 {
-    Row sut(4, 2, {}, false, false, 1); // Of one size: any two have room.
+    Row sut(4, 2, {}, false, false, 1); // One size, so that any two fit.
     sut.step(0, 0.05);
     EXPECT_LT(sut.until(ModelStage::resident, 0, 0, 0.05), 200U);
     std::uint32_t before = 0;
-    for (const std::uint32_t model : {1U, 2U, 3U, 2U, 1U, 0U}) // Next to one another.
+    for (const std::uint32_t model : {1U, 2U, 3U, 2U, 1U, 0U}) // Adjacent models.
     {
         EXPECT_LT(sut.until(ModelStage::resident, model, model, 0.05), 200U);
         for (const std::uint32_t any : {0U, 1U, 2U, 3U})
@@ -173,7 +173,7 @@ TEST(ModelLife, the_model_left_longest_ago_makes_room_for_one_that_is_wanted)
     }
 }
 
-/// A hand that rests may set out at any speed.
+/// A resting hand may start at any speed.
 TEST(ModelLife, is_wanted_as_soon_as_a_tool_that_rests_is_near)
 {
     for (const double away_m : {0.12, 0.3})
@@ -201,7 +201,7 @@ TEST(ModelLife, is_wanted_as_soon_as_a_tool_that_rests_is_near)
     }
 }
 
-/// The tool is held where the box begins, without a force, and the frames are counted.
+/// The tool is held at the box's border without a force, and the frames are counted.
 TEST(ModelLife, a_tool_stops_before_a_model_whose_host_is_gone_and_goes_on_when_it_is_back)
 {
     Row sut(1, 1);
@@ -229,8 +229,8 @@ TEST(ModelLife, a_tool_stops_before_a_model_whose_host_is_gone_and_goes_on_when_
     EXPECT_EQ(sut.output.scene.walled_tools, 0U);
 }
 
-/// A host that never answers holds nothing for ever: its model is known again, and is asked for a
-/// while later while the tool stays.
+/// A silent server blocks nothing permanently: its model becomes known again, and is requested
+/// later while the tool stays.
 TEST(ModelLife, a_model_whose_host_is_silent_gives_its_room_to_others_and_comes_when_it_speaks)
 {
     Row sut(2, 1, {}, false, true, 1);
@@ -255,7 +255,7 @@ TEST(ModelLife, a_model_whose_host_is_silent_gives_its_room_to_others_and_comes_
     EXPECT_GT(knows, 200U);
     EXPECT_LT(knows, 1'000U);
     EXPECT_EQ(sut.rig->courier().counters(0).overdue, stages.size() / 2);
-    // Another one has the room.
+    // Another model occupies the memory.
     EXPECT_LT(sut.until(ModelStage::resident, 1, 1, 0.05), 1'500U);
     EXPECT_EQ(sut.output.models[0].stage, ModelStage::known);
     sut.rig->link({0}).regain_host();
@@ -263,8 +263,8 @@ TEST(ModelLife, a_model_whose_host_is_silent_gives_its_room_to_others_and_comes_
     expect_same_again(sut.rig->finish_recording());
 }
 
-/// All hosts are silent, and there is room for one. The nearest waits for that of the next, which
-/// gives it back in a frame in which the farthest may be wanted, too.
+/// All servers are silent, and the memory holds one model. The nearest waits for that of the next,
+/// which frees it in a frame in which the farthest may be requested too.
 TEST(ModelLife, room_that_is_given_back_is_for_the_most_urgent_one_that_waits)
 {
     Row sut(3, 1, {}, false, false, 1);
@@ -291,7 +291,7 @@ TEST(ModelLife, room_that_is_given_back_is_for_the_most_urgent_one_that_waits)
     EXPECT_EQ(sut.output.models[2].stage, ModelStage::known);
 }
 
-/// 20 ms from a wish to its answer, 2 m/s towards the model and away.
+/// Answers take 20 ms; the hand moves at 2 m/s towards the model and away.
 TEST(ModelLife, no_hand_at_two_metres_a_second_meets_an_invisible_wall_at_20_ms)
 {
     Row sut(4, 2, {.delay_polls_min = 80, .delay_polls_max = 80});
@@ -320,9 +320,9 @@ TEST(ModelLife, a_base_mesh_that_is_damaged_on_its_way_is_refused_and_brought_ag
     EXPECT_EQ(sut.rig->courier().counters().refused_content, 0U);
 }
 
-/// Objects come, move and go, tools wander and jump, pieces are late and lost: what is said of the
-/// distance holds, whatever is here. With room for two of three models one is always on its way.
-/// Where no answer becomes exact, as with 3 of 8 seeds in 250 frames, the next seeds count as well.
+/// Objects are added, moved and removed, tools wander and jump, pieces are late and lost: the
+/// bounds always hold. With memory for two of three models one is always in transit. If no answer
+/// becomes exact, as with 3 of 8 seeds in 250 frames, the next seeds count as well.
 TEST(ModelLife, every_answer_is_true_in_any_order_of_coming_and_going)
 {
     const std::vector<const TestModel*> models{&small_model(0), &small_model(1), &small_model(2)};
@@ -342,8 +342,8 @@ TEST(ModelLife, every_answer_is_true_in_any_order_of_coming_and_going)
     EXPECT_GE(all.exact, 20U);
 }
 
-/// What holds of models that come and go, whatever tools, links and hosts do. Distances are those
-/// of FaceTree, which has nothing of the product.
+/// Laws of streamed models for all tools, links and servers. Distances are those of FaceTree, which
+/// shares no code with the product.
 class Laws
 {
 public:
@@ -359,7 +359,7 @@ public:
         silent_until_.assign(row.models.size(), 0);
     }
 
-    /// Tools hop from model to model, sink in, and rest; hosts fall silent and speak again.
+    /// Tools hop between models, sink in, and rest; servers fall silent and answer again.
     void wander(std::uint32_t frames)
     {
         for (std::uint32_t frame = 0; frame < frames; ++frame)
@@ -385,8 +385,8 @@ public:
         }
     }
 
-    /// All hosts speak and the tools rest on what has room at once: in the end that is here, with
-    /// exact answers.
+    /// All servers answer and the tools rest on models that fit together: finally these are
+    /// resident, with exact answers.
     void rest()
     {
         for (std::uint32_t i = 0; i < models(); ++i)
@@ -403,7 +403,7 @@ public:
         }
         for (const PairOutput& pair : output_.pairs)
         {
-            // Others may have pairs, too, and no room.
+            // Other models may also have pairs, without memory.
             EXPECT_TRUE(pair.lower_m > 1.0 || stages_[pair.object] == ModelStage::resident)
                 << pair.object << " of " << output_.pairs.size() << ", tool " << pair.tool << " L "
                 << pair.lower_m << " U " << pair.upper_m;
@@ -488,8 +488,8 @@ private:
         }
     }
 
-    /// From one frame to the next, where it may go on through stages that end at once: a small base
-    /// mesh enters as it comes, and one that nobody is near any more may have to leave then.
+    /// Permitted stages in the next frame, including ones that end at once: a small base mesh
+    /// enters when it arrives, and one without a tool nearby may have to leave then.
     static bool may_follow(ModelStage before, ModelStage after)
     {
         using enum ModelStage;
@@ -513,7 +513,7 @@ private:
     Random random_;
     std::vector<FaceTree> trees_;
     std::vector<std::uint32_t> cells_;
-    std::vector<ModelStage> stages_; ///< After the last frame.
+    std::vector<ModelStage> stages_; ///< Stages after the last frame.
     std::vector<Vec3> goals_;
     std::vector<std::uint32_t> silent_until_;
     FrameOutput output_;
@@ -522,7 +522,7 @@ private:
     std::uint32_t exact_at_rest_{0};
 };
 
-/// With room for three of the largest two that are wanted find it however it is cut up.
+/// Memory for three of the largest models suffices for two wanted ones under any fragmentation.
 TEST(ModelLife, laws_hold_whatever_tools_links_and_hosts_do)
 {
     std::uint32_t changes = 0;
@@ -542,10 +542,10 @@ TEST(ModelLife, laws_hold_whatever_tools_links_and_hosts_do)
     }
     EXPECT_GT(changes, 100U);
     EXPECT_GT(given_back, 1U);
-    EXPECT_EQ(exact, 8U); // Each tool's, each time.
+    EXPECT_EQ(exact, 8U); // Each tool has one each time.
 }
 
-/// Five that are all near one tool, and room for two.
+/// Five models near one tool, with memory for two.
 struct Crowd : Row
 {
     Crowd() : Row(5, 2, {}, false, false, 1)
@@ -567,7 +567,7 @@ struct Crowd : Row
     }
 };
 
-/// Those that it is nearest to, wherever it goes.
+/// The nearest models are resident at every place of the tool.
 TEST(ModelLife, what_is_touched_has_room_though_pairs_are_of_all)
 {
     Crowd sut;
@@ -592,7 +592,7 @@ TEST(ModelLife, what_is_here_stays_while_another_is_as_near)
     Crowd sut;
     for (int i = 0; i < 600; ++i)
     {
-        sut.step_above(2, 0.05); // Two neighbours on either side, of which one is here.
+        sut.step_above(2, 0.05); // Two neighbours on either side, one of them resident.
     }
     const auto stages = [&sut]
     {
@@ -610,10 +610,10 @@ TEST(ModelLife, what_is_here_stays_while_another_is_as_near)
     }
 }
 
-/// Models that are all resident answer as in a frame that had them from the start.
+/// Fully resident models answer as in a frame that had them from the start.
 TEST(ModelLife, a_model_that_came_and_one_that_was_here_from_the_start_are_refined_alike)
 {
-    Row sut(1, 1, {}, true); // Their places don't depend on what was here before.
+    Row sut(1, 1, {}, true); // The path does not depend on earlier models.
     RigOptions options = with_room_for_all();
     options.tools = sut.options.tools;
     FrameRig from_start(*sut.models[0], options);
@@ -647,7 +647,7 @@ TEST(ModelLife, a_run_with_models_that_come_and_go_replays_bit_for_bit)
     expect_same_again(sut.rig->finish_recording(), 300);
 }
 
-/// A frame that wants a base mesh, and a replay's door before it.
+/// Frame that requests a base mesh, with a replay's door before it.
 struct WantedBase : Row
 {
     WantedBase() : Row(1, 1, {}, false, true)
@@ -666,7 +666,7 @@ struct WantedBase : Row
         door.emplace(*recording, rig->frame());
     }
     void run() { output = rig->step_without_delivery({above(0, 0.05)}, {}, {}); }
-    /// What the door says of these events of the model's base mesh.
+    /// Result of the door for these events of the model's base mesh.
     std::optional<std::string> open(const std::vector<DoorEventKind>& kinds,
                                     std::uint32_t freed_taken = 0)
     {
@@ -684,7 +684,7 @@ struct WantedBase : Row
     std::optional<ReplayDoor> door;
 };
 
-/// A frame takes several events at once, and knows of none before it has.
+/// A frame takes several events at once, and knows none before.
 TEST(ReplayDoor, takes_no_second_event_of_a_base_mesh_until_the_frame_knows_of_the_first)
 {
     using enum DoorEventKind;
@@ -705,7 +705,7 @@ TEST(ReplayDoor, takes_no_second_event_of_a_base_mesh_until_the_frame_knows_of_t
         sut.run();
     }
     ASSERT_EQ(sut.rig->frame().model({0}).stage, ModelStage::wanted);
-    EXPECT_EQ(sut.open({arrival}), came); // It doesn't say that what the frame freed was taken.
+    EXPECT_EQ(sut.open({arrival}), came); // The event does not confirm the freed cells.
     EXPECT_EQ(sut.open({arrival}, 1), std::nullopt);
     sut.run();
     EXPECT_GE(sut.output.models[0].stage, ModelStage::arriving);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// No livelock: the smallest budget still gets there, and what can't be had is not tried again and
-/// again.
+/// No livelock: the smallest budget suffices, and impossible work is not repeated.
 
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/property/frame_checks.hpp"
@@ -19,8 +18,8 @@ namespace tactus::test
 namespace
 {
 
-/// A tool that reaches a little farther than the surface and does not touch it, so that a still
-/// goal is a still proxy.
+/// Tool that reaches slightly beyond the surface without touching it, so that a still goal is a
+/// still proxy.
 struct NearbyTool
 {
     ToolSpec spec;
@@ -50,7 +49,7 @@ struct Effort
     bool exact{false};
 };
 
-/// Frames until the answer is exact, everything loaded before.
+/// Frames until the answer is exact, with everything loaded before.
 Effort run_until_exact(const TestModel& model, const NearbyTool& tool, std::uint32_t splits,
                        std::uint32_t frames_max)
 {
@@ -88,8 +87,8 @@ TEST_P(Progress, one_split_a_frame_is_exact_after_as_many_frames_as_the_closure_
         ASSERT_TRUE(unlimited.exact) << "trial " << trial;
         const Effort single = run_until_exact(model_, tool, 1, 4'000);
         EXPECT_TRUE(single.exact) << "trial " << trial;
-        // One frame more, since a frame without any split may be the one that answers. The records
-        // may be taken in another order, which may need a few that the other did not.
+        // One frame more is allowed, since a frame without a split may be the one that answers.
+        // Another order of the records may need a few more.
         EXPECT_LE(single.frames, unlimited.splits + unlimited.splits / 16 + 1)
             << "trial " << trial << ", closure of " << unlimited.splits;
         EXPECT_LE(single.splits, single.frames);
@@ -107,7 +106,7 @@ TEST_P(Progress, the_depth_of_every_closure_is_within_what_the_header_says)
     EXPECT_LE(fields.max_depth, kMaxDepth);
     std::vector<std::uint32_t> depth(fields.records, 0);
     std::uint32_t deepest = 0;
-    // Dependencies have higher or lower ids, so the walk has a stack of its own.
+    // Dependencies have higher or lower ids, so the walk has its own stack.
     for (std::uint32_t i = 0; i < fields.records; ++i)
     {
         std::vector<std::uint32_t> stack{i};
@@ -143,7 +142,7 @@ TEST_P(Progress, the_depth_of_every_closure_is_within_what_the_header_says)
     EXPECT_EQ(deepest, fields.max_depth);
 }
 
-/// Whether nothing at all is moved: no page, no record, no wish.
+/// True if nothing changes: no page, no record, no request.
 bool is_at_rest(const WorkCounters& work)
 {
     return work.splits == 0 && work.merges == 0 && work.pages_adopted == 0 && work.requests == 0 &&
@@ -162,7 +161,7 @@ TEST_P(Progress, a_cache_full_of_pinned_pages_leaves_a_stable_bracket_and_no_thr
         options.cache_bytes = pages * sizeof(Page);
         FrameRig rig(model_, options);
         FrameOutput output;
-        // Unanswered wishes are asked again after kWishTimeoutFrames; none may be left by then.
+        // Unanswered requests are repeated after kWishTimeoutFrames; none may be left by then.
         for (std::uint32_t frame = 0; frame < 3 * kWishTimeoutFrames; ++frame)
         {
             output = rig.step(tool.goal);
@@ -190,7 +189,7 @@ TEST_P(Progress, a_cache_full_of_pinned_pages_leaves_a_stable_bracket_and_no_thr
     EXPECT_GT(open, 3) << "of 12 caches";
 }
 
-/// Records split for a closure that is not complete.
+/// Records split for an incomplete closure.
 std::vector<std::uint32_t> held_records(const Model& model)
 {
     std::vector<std::uint32_t> held;
@@ -239,8 +238,8 @@ TEST_P(Progress, a_record_of_a_pending_closure_is_neither_merged_nor_evicted)
 
 INSTANTIATE_TEST_SUITE_P(small_models, Progress, testing::Range<std::size_t>(0, 6));
 
-/// Nothing stays refined for good because pages come and go: a tool that has been all over a model
-/// holds as much with a small cache as with one for all of it.
+/// No region stays refined because pages come and go: after a tool has visited the whole model, the
+/// refined records are as few with a small cache as with a complete one.
 TEST(Coarsening, what_a_tool_leaves_behind_is_merged_in_a_small_cache_too)
 {
     constexpr double kRadius_diag = 0.02;

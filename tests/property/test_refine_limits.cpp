@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// What refinement and loading do where a list of theirs is full.
+/// Behaviour of refinement and loading when one of their lists is full.
 
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/property/frame_checks.hpp"
@@ -17,7 +17,7 @@ namespace tactus::test
 namespace
 {
 
-/// Coarse faces of the front, each distance less error from a point, ascending; in metres.
+/// Distances minus errors of the front's coarse faces from a point, ascending, in metres.
 std::vector<double> coarse_distances(const Model& model, const Vec3& point)
 {
     std::vector<double> distances;
@@ -38,7 +38,7 @@ std::vector<double> coarse_distances(const Model& model, const Vec3& point)
     return distances;
 }
 
-/// 40,000 faces over a base mesh of more than kRefineHeap, all loaded.
+/// 40,000 faces over a base mesh larger than kRefineHeap, all loaded.
 class WideModel
 {
 public:
@@ -54,7 +54,7 @@ public:
     }
     static Vec3 far_away() { return Vec3(10.0, 10.0, 10.0) * model().diagonal_m; }
 
-    /// One frame of the refiner alone, for everything within `reach_m` of a point.
+    /// One frame of the refiner alone, within `reach_m` of a point.
     FrameFault refine(const Vec3& point, double reach_m, const Budgets& budgets)
     {
         const RefineQuestion question{point, reach_m, 1.25 * reach_m, &memory};
@@ -110,7 +110,7 @@ TEST(RefineLimits, a_full_heap_leaves_faces_for_the_next_frame_and_says_so)
         WideModel sut;
         const std::vector<double> distances = coarse_distances(sut.rig.model(), point);
         ASSERT_GT(distances.size(), 2 * kRefineHeap);
-        // What is looked ahead for is in the heap, too. A split adds a few faces, and takes some.
+        // The heap also holds the look-ahead. A split adds a few faces and removes some.
         const std::size_t last = is_over ? 2 * kRefineHeap : kRefineHeap - 64;
         const double reach_m = distances[last] / (is_over ? 1.0 : 1.0 + Refiner::kLookAhead);
 
@@ -183,7 +183,8 @@ TEST(RefineLimits, as_many_records_are_held_as_the_limit_and_the_frame_says_when
     WideModel sut;
     const TestModel& model = WideModel::model();
     Random random = Random::seeded(seed_of(740));
-    // One split a frame, each for another place, and all places wanted: no closure is ever done.
+    // One split a frame, each for another place, and all places wanted: no closure is ever
+    // complete.
     FrameFault faults = FrameFault::none;
     std::uint32_t before = 0;
     for (int frame = 0; frame < 20'000 && !has_fault(faults, FrameFault::held_records_full);
@@ -238,14 +239,14 @@ TEST(RefineLimits, what_is_left_behind_is_merged_without_a_look_in_vain)
     {
         const std::uint32_t before = forest.refined_records();
         static_cast<void>(sut.refine(WideModel::far_away(), 0.1 * model.diagonal_m, budgets));
-        // In the first frame the closure that the way was split for is held yet.
+        // The first frame still holds the closure of the last split.
         ASSERT_TRUE(frame == 0 || sut.work.merges == std::min(before, 100U));
         ASSERT_EQ(sut.work.scanned, sut.work.merges);
         ASSERT_LT(frame, 20);
     }
 }
 
-/// Tools of eight balls each, near every object.
+/// Faults of tools of eight spheres each, near every object.
 FrameFault faults_of_long_tools(std::uint32_t tools, std::uint32_t objects)
 {
     const TestModel& model = small_model(0);
@@ -261,7 +262,7 @@ FrameFault faults_of_long_tools(std::uint32_t tools, std::uint32_t objects)
 
 TEST(RefineLimits, a_frame_says_when_it_does_not_ask_for_what_a_tool_is_at)
 {
-    constexpr std::uint32_t kFive = 5 * kMaxCoverBalls; // Now, and four times ahead.
+    constexpr std::uint32_t kFive = 5 * kMaxCoverBalls; // Present and four predicted covers.
     static_assert(9 * kFive < kMaxRankedRegions && 10 * kFive > kMaxRankedRegions);
     EXPECT_FALSE(has_fault(faults_of_long_tools(2, 5), FrameFault::ranking_full));
     EXPECT_TRUE(has_fault(faults_of_long_tools(3, 4), FrameFault::ranking_full));
@@ -272,7 +273,7 @@ TEST(RefineLimits, a_frame_walks_so_often_to_refine_and_no_more_and_says_so)
     EXPECT_EQ(walk_left(10, 0), 10U);
     EXPECT_EQ(walk_left(10, 10 * kFrameWalks - 3), 3U);
     EXPECT_EQ(walk_left(10, 10 * kFrameWalks), 0U);
-    // A node each walk, one walk for each ball, and each tool's query.
+    // One node for each walk, one walk for each sphere, and each tool's query.
     for (const std::uint32_t tools : {1U, 2U})
     {
         const TestModel& model = small_model(0);
@@ -319,7 +320,7 @@ TEST(RefineLimits, a_query_that_is_cut_knows_no_less_than_the_last_one)
     EXPECT_LE(pair.lower_m, before_m);
 }
 
-/// A tool that has some nine tenths of a surface's room in reach of every object.
+/// Frame of a tool with about nine tenths of a surface's capacity in reach of every object.
 FrameOutput fill_surfaces(FrameRig& rig, const Vec3& place)
 {
     rig.settle(place, unlimited(kMaxSplitsPerFrame), 400);
@@ -358,7 +359,7 @@ TEST(RefineLimits, a_tool_that_is_a_mesh_looks_at_so_many_times_the_budget_in_ea
 {
     const TestModel& object = small_model(0);
     const TestModel& tool = small_model(1);
-    // Either model's, now and a little ahead; the cover's; and the query.
+    // Walks of either model, present and predicted; of the cover; and of the query.
     constexpr std::uint32_t kWalks = 4 * kMeshRefineFactor + 1 + kMeshBudgetFactor;
     for (const std::uint32_t nodes : {1U, 1'000'000U})
     {
@@ -375,7 +376,7 @@ TEST(RefineLimits, a_tool_that_is_a_mesh_looks_at_so_many_times_the_budget_in_ea
     }
 }
 
-/// Most of what frames did.
+/// Greatest work of the frames.
 struct MostWork
 {
     std::uint32_t nodes{0};
@@ -388,8 +389,8 @@ struct MostWork
     }
 };
 
-/// All of the one meets the other, so that any walk of the two could go through all of them. A tool
-/// that is only felt asks for one pair that meets, and for what is about it.
+/// Both meshes coincide, so that any walk of the two could visit all of them. A tool that only
+/// renders force requests one meeting pair, and its neighbourhood.
 void refine_equals(const TestModel& model, bool wants_contacts, bool fills)
 {
     RigOptions options = with_room_for_all();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// Any run of the frame, whatever ran out, replays bit for bit from its recording, and a replay
-/// with one bit changed is noticed.
+/// Any run of the frame, under any hardship, replays bit for bit from its recording, and a replay
+/// with one changed bit is detected.
 
 #include "platform/recording/frame_encoder.hpp"
 #include "tests/property/replay_checks.hpp"
@@ -25,7 +25,7 @@ constexpr std::array kHardships{"usual", "starved", "small-pools", "lossy-link",
 
 constexpr int kFrames = 400;
 
-/// Rehearsals change nothing, so the replay needs none.
+/// Records a run. Cache warming changes nothing, so the replay needs none.
 std::vector<std::byte> record_run(const TestModel& model, const char* name, std::uint64_t seed)
 {
     Random random = Random::seeded(seed);
@@ -40,7 +40,7 @@ std::vector<std::byte> record_run(const TestModel& model, const char* name, std:
     Budgets budgets = hardship.budgets;
     for (int frame = 0; frame < kFrames; ++frame)
     {
-        // Budgets follow what frames cost in a real run, so they change here, too.
+        // Budgets change here as in a real run, where they follow the costs of frames.
         budgets.splits = frame % 50 == 49 ? 1U : hardship.budgets.splits;
         rig.frame().rehearse();
         static_cast<void>(rig.step(wander.next(), budgets));
@@ -72,7 +72,7 @@ INSTANTIATE_TEST_SUITE_P(Runs, Replay,
                                                           std::size_t{3}, std::size_t{5}),
                                           testing::Range(std::size_t{0}, kHardships.size())));
 
-/// Slots go from one model to another and back, in pools that are too small for both.
+/// Slots move between two models, in pools that are too small for both.
 TEST(ReplayOfTwoModels, gives_every_frame_again_though_they_take_each_other_s_slots)
 {
     const TestModel& model = small_model(0);
@@ -98,7 +98,7 @@ TEST(ReplayOfTwoModels, gives_every_frame_again_though_they_take_each_other_s_sl
         const std::size_t touched = static_cast<std::size_t>(frame / 100) % 3;
         for (std::size_t i = 0; i < 2; ++i)
         {
-            rig.place_object(touched == i ? away : ObjectPose{}, i); // At times both are there.
+            rig.place_object(touched == i ? away : ObjectPose{}, i); // Sometimes both are present.
         }
         const FrameOutput output = rig.step(wander.next(), {});
         evictions += output.work.evictions;
@@ -133,7 +133,7 @@ TEST(ReplayOfAnAlteredRecording, is_noticed_in_the_frame_that_was_altered)
     for (const std::uint64_t frame : {0U, 57U, 399U})
     {
         SCOPED_TRACE("frame " + std::to_string(frame));
-        // The goal's x; a bit of the state hash; one of the last output hash.
+        // The changes are the goal's x, a bit of the state hash, and one of the last output hash.
         expect_noticed(alter_frame(recording, frame, change_goal), frame);
         expect_noticed(alter_frame(recording, frame, flip_from_end(40)), frame);
         expect_noticed(alter_frame(recording, frame, flip_from_end(1)), frame);
@@ -144,7 +144,7 @@ TEST(ReplayOfAnAlteredRecording, notices_another_budget_once_it_is_spent)
 {
     const TestModel& model = small_model(0);
     const Recording recording = parsed(record_run(model, "usual", 900));
-    constexpr std::size_t kTool = 38; // Not turned, and of no device.
+    constexpr std::size_t kTool = 38; // Bytes of a tool without rotation and device.
     const auto no_splits = [](std::span<std::byte> coded)
     { coded[4 + 1 + 8 + kTool] = std::byte{0}; };
     const auto parsed = Recording::parse(alter_frame(recording, 0, no_splits), "altered");

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 
 /// Force and torque of rigid tools at rest on encoded models, streamed and refined by whole frames,
-/// beside those of a brute-force search over the source's faces (rest_oracle.hpp).
+/// compared with a brute-force search over the source's faces (rest_oracle.hpp).
 
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/property/frame_checks.hpp"
@@ -34,7 +34,7 @@ Vec3 origin_of(const TestModel& model)
     return {model.origin_m[0], model.origin_m[1], model.origin_m[2]};
 }
 
-/// A hand that comes from one place to another, in the source's frame, and stays.
+/// Hand that moves from one place to another, in the source's frame, and stays.
 struct Press
 {
     Vec3 from_m{0.0, 0.0, 0.0};
@@ -45,8 +45,8 @@ struct Press
 
 struct Errors
 {
-    double force{0.0}; ///< As a share of it.
-    /// Likewise of the torque, or of the force times the tool's size where that is more.
+    double force{0.0}; ///< Error as a share of the force.
+    /// Error as a share of the torque, or of the force times the tool's size if that is greater.
     double torque{0.0};
     int presses{0};
 };
@@ -240,7 +240,7 @@ TEST_F(RigidRest, in_a_tight_fit_it_follows_late_and_tells_by_how_much)
         for (int i = 0; i < 200; ++i)
         {
             const double way_m = jumped_m.z() - (output.proxy_m.z() + origin.z());
-            // The lag is of the point of the tool that has farthest to go, as it turns, too.
+            // The lag is that of the tool's point with the longest path, rotation included.
             EXPECT_LE(output.lag_m, 1.25 * std::abs(way_m) + 5e-4) << i;
             EXPECT_TRUE(output.lag_m > 0.0 || way_m < 1e-3) << i;
             late = std::abs(way_m) > 1e-5 ? i : late;
@@ -279,7 +279,7 @@ TEST_F(RigidRest, a_box_a_hull_and_a_mesh_on_bumps_and_on_teeth)
     {
         for (double& coordinate_m : corner)
         {
-            coordinate_m *= 0.2; // Of 10 mm.
+            coordinate_m *= 0.2; // Share of the 10 mm.
         }
     }
     const TestModel& probe = test_model("rest-tool", ball, 60);
@@ -299,7 +299,7 @@ TEST_F(RigidRest, a_box_a_hull_and_a_mesh_on_bumps_and_on_teeth)
                 do // A spike may fit between two teeth.
                 {
                     way = random.in_cube(1.0);
-                    way.z() *= model == &gear ? 0.1 : 1.0; // It is flat.
+                    way.z() *= model == &gear ? 0.1 : 1.0; // The gear is flat.
                     way.normalize();
                     const Vec3 axis = random.in_cube(1.0);
                     turned = rotation_about(axis, random.between(0.0, 3.0));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// Scenes whose objects and tools come, move and go: every bracket and every clearance holds the
-/// distance that is found by trying all (I5), whatever else happens.
+/// I5 in scenes whose objects and tools are added, moved and removed: all bounds and clearances
+/// hold the distance found by trying all objects.
 
 #include "rt_core/frame/list_touches.hpp"
 #include "tests/shared/face_tree.hpp"
@@ -28,7 +28,7 @@ namespace tactus::test
 namespace
 {
 
-constexpr std::uint32_t kPlaces = 24; ///< Of objects.
+constexpr std::uint32_t kPlaces = 24; ///< Places of objects.
 
 RigOptions scene_options(double diagonal_m, std::uint32_t tools)
 {
@@ -57,7 +57,7 @@ TEST(Scene, of_objects_that_come_move_and_go_is_answered_truly_and_refuses_what_
     EXPECT_GT(all.variants, 3U);
 }
 
-/// A ball that is pressed into a cube's top: the highest vertex of the model.
+/// Sphere that is pressed into a cube's top: the highest vertex of the model.
 class Pressed
 {
 public:
@@ -73,7 +73,7 @@ public:
             std::ranges::max_element(model.faces, {}, [](const Face& face) { return face[0][2]; })
                 ->at(0));
     }
-    /// With the ball's centre so far above the vertex.
+    /// Steps with the sphere's centre this far above the vertex.
     ToolOutput step(double height_m)
     {
         const Vec3 goal = top + Vec3(0.0, 0.0, height_m);
@@ -83,7 +83,7 @@ public:
         step_n = (sent_n - before_n).norm();
         return output.tools[0];
     }
-    /// Down from above until it touches, 1 mm deep.
+    /// Descends from above until it touches, 1 mm deep.
     void press()
     {
         for (int i = 0; i < 400; ++i)
@@ -110,7 +110,7 @@ public:
     double step_n{0.0};
 };
 
-/// A brake takes 8 N in kFadeTime_s.
+/// Change of force in a frame while 8 N fade in kFadeTime_s.
 constexpr double kFadeStep_n = 8.0 * 1e-3 / kFadeTime_s;
 
 TEST(SceneChanges, an_object_that_goes_under_a_tool_lets_its_force_fade)
@@ -157,9 +157,9 @@ TEST(SceneChanges, an_object_that_comes_round_a_tool_makes_no_force_until_the_to
     EXPECT_GT(sut.sent_n.norm(), 0.3);
 }
 
-/// Deeper or less deep, left slowly or fast, and touched again at once: from the frame on in which
-/// an object came round the tool its force grows by the spring's part of the hand's way at most,
-/// and by what comes back of a force that had gone (SafeState).
+/// Random depth and speed, with an immediate next touch: from the frame on in which an object
+/// surrounded a tool, the force grows at most by the spring's part of the hand's motion and by the
+/// return of a lost force (SafeState).
 TEST(SceneChanges, an_object_that_came_round_a_tool_and_was_left_makes_a_force_without_a_step)
 {
     constexpr double kRiseStep_n = 2.0 * 8.0 * 1e-3 / kRiseTime_s;
@@ -206,7 +206,7 @@ TEST(SceneChanges, an_object_that_came_round_a_tool_and_was_left_makes_a_force_w
     }
 }
 
-/// It was far away in the last frame, and nothing was known of it.
+/// The object was far away in the last frame, and unknown.
 TEST(SceneChanges, an_object_that_leaps_into_a_tool_makes_no_force_until_the_tool_is_clear_of_it)
 {
     Pressed sut(2);
@@ -237,8 +237,7 @@ TEST(SceneChanges, an_object_that_leaps_into_a_tool_makes_no_force_until_the_too
     EXPECT_TRUE(sut.output.pairs[1].is_joined);
 }
 
-/// A way of 20 mm at once, which is more than 8 N / 500 N/m: to where the tool is, and to where it
-/// is not.
+/// A jump of 20 mm, more than 8 N / 500 N/m: onto the tool, and beside it.
 TEST(SceneChanges, an_object_that_jumps_at_a_tool_is_lost_before_the_touch)
 {
     for (const double height_m : {0.015, 0.035})
@@ -262,7 +261,7 @@ TEST(SceneChanges, an_object_that_jumps_at_a_tool_is_lost_before_the_touch)
     }
 }
 
-/// What moves is told only where it may change the force; what carries the proxy along always.
+/// Motion is reported only if it may change the force; motion that carries the proxy always.
 TEST(SceneChanges, tell_how_far_an_object_at_the_tool_went_and_took_it_along)
 {
     Pressed sut;
@@ -293,7 +292,7 @@ TEST(SceneChanges, tell_how_far_an_object_at_the_tool_went_and_took_it_along)
     EXPECT_EQ(sut.step(0.5 * sut.model.diagonal_m).object_way_m, 0.0);
 }
 
-/// A gap between tool and object, and what is listed there.
+/// Gap between tool and object, with the expected list.
 struct ListedCase
 {
     double gap_m;
@@ -301,7 +300,7 @@ struct ListedCase
     bool is_in_reach;
 };
 
-/// What is listed when the object may move at 0.5 m/s. A second, equal tool without a force is
+/// Checks the list when the object may move at 0.5 m/s. A second, equal tool without a force is
 /// never listed.
 void expect_listed(const ToolSpec& tool, std::span<const ListedCase> cases)
 {
@@ -341,7 +340,7 @@ void expect_listed(const ToolSpec& tool, std::span<const ListedCase> cases)
     }
 }
 
-/// A tool of 2 mm at 1 m/s is near from 5 mm on, and within 20 ms it may come 30 mm nearer.
+/// A tool of 2 mm at 1 m/s is near from 5 mm on, and may approach by 30 mm within 20 ms.
 TEST(SceneTouches, are_what_a_tool_with_a_force_may_meet_within_20_ms_and_near_ones_say_so)
 {
     constexpr std::array<ListedCase, 5> kCases{{{0.0069, 1, true},
@@ -352,7 +351,7 @@ TEST(SceneTouches, are_what_a_tool_with_a_force_may_meet_within_20_ms_and_near_o
     expect_listed({0.002, 500.0, 8.0, 1.0}, kCases);
 }
 
-/// At 0.1 m/s it may come 12 mm nearer within 20 ms. A leap of 24 mm makes 12 N at 500 N/m.
+/// At 0.1 m/s it may approach by 12 mm within 20 ms. A displacement of 24 mm makes 12 N at 500 N/m.
 TEST(SceneTouches, are_also_what_a_leap_that_is_no_jump_may_bring)
 {
     constexpr std::array<ListedCase, 2> kCases{{{0.0309, 1, false}, {0.0311, 0, false}}};
@@ -366,7 +365,7 @@ TEST(SceneChanges, an_object_that_comes_beside_a_touch_leaves_its_force_as_it_is
     const Vec3 before_n = sut.sent_n;
     SceneChange change = sut.change(SceneChangeKind::object_comes, 0);
     change.number = 3;
-    sut.rig->change(change); // Round the tool and the object that it touches.
+    sut.rig->change(change); // Around the tool and the object that it touches.
     for (int i = 0; i < 50; ++i)
     {
         sut.step(sut.pressed_m());
@@ -394,7 +393,8 @@ TEST(SceneChanges, an_object_that_feels_otherwise_changes_the_force_in_small_ste
 {
     Pressed sut;
     sut.press();
-    for (int i = 0; i < 100; ++i) // It comes to rest: nothing would be asked any more.
+    // The tool comes to rest, so that nothing would be evaluated any more.
+    for (int i = 0; i < 100; ++i)
     {
         sut.step(sut.pressed_m());
     }
@@ -407,7 +407,7 @@ TEST(SceneChanges, an_object_that_feels_otherwise_changes_the_force_in_small_ste
         const double from_n = sut.output.tools[0].force_n.norm();
         change.object.material.stiffness_n_per_m = stiffness_n_per_m;
         sut.rig->change(change);
-        // The pressing hand rests: the material alone makes steps, a fiftieth of the change each.
+        // The pressing hand rests: only the material makes steps, a fiftieth of the change each.
         const double most_n =
             1.05 * 1e-3 / kMaterialGlide_s * std::abs(stiffness_n_per_m * depth_m - from_n);
         Vec3 last_n = sut.output.tools[0].force_n;
@@ -482,7 +482,7 @@ TEST(SceneChanges, of_one_frame_are_taken_up_to_the_limit_and_the_rest_is_counte
     }
 }
 
-/// Objects in one place, so that each is near each tool: as many pairs as there is room for.
+/// Objects in one place, near each tool: as many pairs as the capacity.
 FrameOutput crowd(std::uint32_t tools, std::uint32_t objects, std::uint32_t pairs = 0)
 {
     const TestModel& model = small_model(0);
@@ -493,7 +493,7 @@ FrameOutput crowd(std::uint32_t tools, std::uint32_t objects, std::uint32_t pair
     FrameRig rig(model, options);
     const std::vector<Vec3> goals(tools, to_vec3(model.faces[0][0]));
     FrameOutput output;
-    for (std::uint32_t i = 0; i <= tools / kBroadWalks; ++i) // Until each has had its walk.
+    for (std::uint32_t i = 0; i <= tools / kBroadWalks; ++i) // Frames until each has had its walk.
     {
         output = rig.step(goals, Budgets{});
     }
@@ -514,7 +514,7 @@ TEST(SceneCrowd, has_a_pair_of_each_tool_and_object_up_to_the_limit_and_says_wha
     EXPECT_FALSE(has_fault(all.faults, FrameFault::scene_crowded));
     const FrameOutput full = crowd(4, kMaxPairs / 4 + 1);
     EXPECT_TRUE(has_fault(full.faults, FrameFault::scene_crowded));
-    EXPECT_EQ(full.scene.pairs, kMaxPairs); // Though all are as near.
+    EXPECT_EQ(full.scene.pairs, kMaxPairs); // All are equally near.
     EXPECT_FALSE(has_fault(crowd(1, kMaxNear).faults, FrameFault::scene_crowded));
     const FrameOutput over = crowd(1, kMaxNear + 1);
     EXPECT_TRUE(has_fault(over.faults, FrameFault::scene_crowded));
@@ -546,7 +546,7 @@ TEST(SceneCrowd, ends_for_frames_at_rest_with_the_tool_that_was_crowded)
     EXPECT_EQ(rested, 2U);
 }
 
-/// Two objects and room for one pair: the ball may not go where it is not followed, and does not.
+/// Two objects and one pair: the sphere must not move where it is not tracked.
 TEST(SceneCrowd, stops_a_tool_where_what_is_near_is_not_followed)
 {
     const TestModel& model = small_model(0);
@@ -578,7 +578,7 @@ TEST(SceneCrowd, stops_a_tool_where_what_is_near_is_not_followed)
     EXPECT_TRUE(was_crowded);
 }
 
-/// A row of a world of models passes under a tool's hand; the rest of them nobody comes near.
+/// A row of many models passes under a tool's hand; no tool comes near the others.
 TEST(Scene, of_the_most_models_only_those_near_a_tool_are_looked_at_and_that_changes_nothing)
 {
     std::vector<const TestModel*> models;
@@ -597,7 +597,7 @@ TEST(Scene, of_the_most_models_only_those_near_a_tool_are_looked_at_and_that_cha
         options.poses.emplace_back();
         options.poses.back().translation_m = apart_m * Vec3(i % 16, i / 16, 0.0);
     }
-    FrameRig::validate_every(200); // Each time all slots for each model.
+    FrameRig::validate_every(200); // Each validation visits all slots for each model.
     FrameRig usual(models, options);
     options.variant.asks_near_models_only = false;
     FrameRig sut(models, options);
@@ -628,7 +628,7 @@ TEST(Scene, of_the_most_models_only_those_near_a_tool_are_looked_at_and_that_cha
     EXPECT_GT(contacts, 20U);
 }
 
-/// What a tool leaves behind is merged, and only then nobody looks at it any more.
+/// Refinement behind the tool is merged before the model becomes inactive.
 TEST(Scene, a_model_that_a_tool_has_left_is_its_base_mesh_again_before_it_rests)
 {
     const std::vector<const TestModel*> models{&small_model(0), &small_model(1)};

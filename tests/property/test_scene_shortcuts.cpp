@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 
 /// Scenes with any set of a frame's shortcuts: exact answers, contacts and forces are as with all
-/// of them, to the bit where the query starts warm.
+/// of them, to the bit if the query starts warm.
 
 #include "tests/property/frame_checks.hpp"
 #include "tests/stability/scene_trial.hpp"
@@ -22,32 +22,33 @@ namespace
 constexpr std::uint32_t kTwinTools = 3;
 constexpr std::uint32_t kTwinObjects = 6;
 constexpr int kTwinFrames = 900;
-constexpr int kCalmFrames = 100; ///< At first, in which nothing moves.
-constexpr double kAlike = 1e-9;  ///< Newtons, metres, and lengths of differences of unit vectors.
+constexpr int kCalmFrames = 100; ///< Frames at the start in which nothing moves.
+/// Tolerance in newtons, metres, and lengths of differences of unit vectors.
+constexpr double kAlike = 1e-9;
 
-/// How much there was to compare.
+/// Amount of compared data.
 struct Compared
 {
-    std::uint32_t rested{0};        ///< Tools, with all shortcuts.
-    std::uint32_t frames_rested{0}; ///< Likewise.
-    std::uint32_t outputs{0};       ///< Of tools.
-    std::uint32_t touches{0};       ///< Of those, in contact.
-    std::uint32_t answers{0};       ///< Exact ones.
+    std::uint32_t rested{0};        ///< Resting tools, with all shortcuts.
+    std::uint32_t frames_rested{0}; ///< Resting frames, with all shortcuts.
+    std::uint32_t outputs{0};       ///< Outputs of tools.
+    std::uint32_t touches{0};       ///< Outputs in contact.
+    std::uint32_t answers{0};       ///< Exact answers.
     std::uint32_t contacts{0};
-    std::uint32_t came{0}; ///< Objects, after another had their number.
+    std::uint32_t came{0}; ///< Objects with the number of an earlier one.
 };
 
-/// A cold start meets the same triangles in another order: forces, and normals at edges and
-/// vertices, are sums, and round otherwise. So do the distances of models that stream, whose trees
-/// have grown otherwise.
+/// A cold start visits the same triangles in another order: forces, and normals at edges and
+/// vertices, are sums with other rounding. So are the distances of streamed models, whose trees
+/// have grown differently.
 bool are_near(const ToolOutput& a, const ToolOutput& b)
 {
     return (a.force_n - b.force_n).norm() <= kAlike && (a.proxy_m - b.proxy_m).norm() <= kAlike &&
            a.in_contact == b.in_contact && a.frozen == b.frozen && a.squeezed == b.squeezed;
 }
 
-/// What happens to both rigs: tools that rest, wander and press into what is near, among objects
-/// that do likewise, go, and come anywhere.
+/// Events of both rigs: tools that rest, wander and press into nearby objects, among objects that
+/// do the same, are removed, and appear anywhere.
 class TwinEvents
 {
 public:
@@ -82,7 +83,7 @@ public:
         changes_.clear();
         for (std::uint32_t i = 0; i < kTwinTools; ++i)
         {
-            if (random_.one_in(100)) // To a corner of some object and a little into it.
+            if (random_.one_in(100)) // Motion to a corner of some object and slightly into it.
             {
                 const Object& object = objects_[random_.below(kTwinObjects)];
                 const auto& faces = models_[object.model.value]->faces;
@@ -145,9 +146,9 @@ private:
     std::vector<SceneChange> changes_;
 };
 
-/// One scene with all shortcuts, and with a set of them that is drawn. Models that are here as a
-/// whole: each answer that a force rests on is exact. Models that stream: what both know exactly is
-/// the same, and forces of tools that have been free and known of since they last weren't.
+/// One scene with all shortcuts, and with a random set of them. Resident models: every answer
+/// behind a force is exact. Streamed models: compares answers that both know exactly, and forces of
+/// tools that have been free and known since they last were not.
 class ShortcutTwins
 {
 public:
@@ -222,7 +223,7 @@ private:
     {
         return output.work.skipped.times()[static_cast<std::size_t>(skip)];
     }
-    /// Whether all that a tool's force may rest on is known.
+    /// True if all answers behind a tool's force are known.
     [[nodiscard]] static bool is_known(const FrameOutput& output, std::uint32_t tool)
     {
         return std::ranges::none_of(
@@ -230,13 +231,13 @@ private:
             { return pair.tool == tool && pair.kind == AnswerKind::bracket; });
     }
 
-    /// A proxy that has a way to go, or waits for data, goes as far as is known, and that shortcuts
-    /// do change: from then on until it is at the same place again it isn't compared.
+    /// A moving or waiting proxy moves as far as is known, which shortcuts do change: it is not
+    /// compared until it is at the same place again.
     void compare_tool(const FrameOutput& expected, const FrameOutput& output, std::uint32_t i)
     {
         ToolOutput ours = output.tools[i];
         const ToolOutput& theirs = expected.tools[i];
-        ours.clear_m = theirs.clear_m; // Of whatever is no pair.
+        ours.clear_m = theirs.clear_m; // Clearance of objects without a pair.
         const bool is_alike = variant_.starts_warm ? ours == theirs : are_near(ours, theirs);
         const auto waits = [this, i](const FrameOutput& one)
         {
@@ -272,7 +273,7 @@ private:
         SCOPED_TRACE("tool " + std::to_string(pair.tool) + ", object " +
                      std::to_string(pair.object));
         ASSERT_EQ(same->nearest_face, pair.nearest_face);
-        if (streams_ && !variant_.starts_warm) // Both hold the truth, and round otherwise.
+        if (streams_ && !variant_.starts_warm) // Both hold the truth, with different rounding.
         {
             ASSERT_LE(same->lower_m, pair.upper_m);
             ASSERT_GE(same->upper_m, pair.lower_m);
@@ -314,8 +315,8 @@ private:
         }
     }
 
-    /// Of distances that round otherwise: what touches by a rounding is in one report alone, and
-    /// contacts as near as each other come in another order.
+    /// Compares reports of distances with different rounding: contacts at the limit are in one
+    /// report only, and equally near ones are in another order.
     void expect_contacts(const ContactReport& some, const ContactReport& others)
     {
         for (const Contact& contact : some.contacts)

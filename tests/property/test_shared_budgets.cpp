@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// Budgets are kept (I8) and are the frame's: what one model uses up is not missing in another for
-/// long. So are pools: what one model brought another may use, but for what is kept for it.
+/// I8: budgets are kept and shared by the frame; what one model uses is not missing in another for
+/// long. Pools are shared too: pages of one model may serve another, except for a reserve.
 
 #include "tests/property/frame_checks.hpp"
 
@@ -13,7 +13,7 @@ namespace tactus::test
 namespace
 {
 
-/// One tool and two copies of a model, each an object of its own.
+/// One tool and two copies of a model, each with its own object.
 FrameRig two_models(const TestModel& model)
 {
     RigOptions options;
@@ -34,7 +34,7 @@ ObjectPose away_from(const TestModel& model)
     return away;
 }
 
-/// To and fro along a line beside the surface, far enough that records are split and left behind.
+/// Goal that swings along a line beside the surface, so far that records are split and left behind.
 Vec3 swinging(const TestModel& model, const Vec3& place, int frame)
 {
     const double phase = static_cast<double>(frame % 80) / 40.0;
@@ -84,7 +84,7 @@ TEST(SharedBudgets, a_model_that_was_left_coarsens_while_another_is_scanned)
     }
 }
 
-/// Everything that a ball needs comes at once, before the next frame looks.
+/// All pages for a sphere arrive at once, before the next frame.
 TEST(WorstCases, a_full_inbox_is_adopted_a_few_pages_a_frame)
 {
     const TestModel& model = small_model(0);

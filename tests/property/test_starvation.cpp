@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// A tool in contact feels the same whatever the others do: they share its model, its pools and
-/// the frame's budgets.
+/// A tool in contact has the same force for any behaviour of the others, which share its model,
+/// pools and frame budgets.
 
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/shared/greedy_tools.hpp"
@@ -42,7 +42,7 @@ TEST_P(Starvation, a_touch_stays_exact_and_is_not_held_back)
     EXPECT_LE(figures.force_step_n, shares_contact ? 0.1 : 0.05);
 }
 
-/// As many tools as there may be, all but one greedy, in a scene of 100 objects.
+/// The greatest number of tools, all but one greedy, in a scene of 100 objects.
 TEST(StarvationOfMany, sixteen_tools_among_a_hundred_objects_leave_a_touch_as_it_is_when_alone)
 {
     const TestModel& model =
@@ -69,7 +69,7 @@ TEST(StarvationOfMany, sixteen_tools_among_a_hundred_objects_leave_a_touch_as_it
     }
 }
 
-/// Pools in which one touch hardly has room: the others give theirs up, and the frame says so.
+/// Pools that hardly hold one touch: the other tools give theirs up, and the frame reports it.
 TEST(Shedding, begins_where_a_touch_finds_no_room_and_is_told)
 {
     const TestModel& model =

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// A model that fits the pools ends up refined as a whole, and then frames only query.
+/// A model that fits the pools ends up fully refined, and then frames only query.
 
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/property/frame_checks.hpp"
@@ -26,14 +26,14 @@ protected:
         options.static_when_it_fits = true;
         return options;
     }
-    /// A random place up to a tenth of the diagonal from a vertex.
+    /// Random place up to a tenth of the diagonal from a vertex.
     Vec3 random_place()
     {
         const Face& face = model_.faces[random_.below(model_.faces.size())];
         const Vec3 corner_m = to_vec3(face[random_.below(3)]);
         return corner_m + random_.in_cube(0.1 * model_.diagonal_m);
     }
-    /// Steps with a moving tool; every answer on the way holds.
+    /// Steps with a moving tool; every answer meanwhile holds.
     std::uint32_t frames_until_static(FrameRig& rig, const Budgets& budgets)
     {
         std::uint32_t frames = 0;
@@ -59,7 +59,7 @@ TEST_P(StaticMode, a_model_that_fits_ends_refined_and_frames_only_query)
     FrameRig sut(model_, static_options());
     if (frames_until_static(sut, {}) == kFramesMax)
     {
-        // Needles: so few faces share their vertices that the blocks run out before the faces.
+        // So few faces of needles share vertices that the blocks run out before the faces.
         const PoolUse blocks = sut.step(random_place()).models[0].blocks;
         EXPECT_GT(blocks.used_max + AbTree::kReserve + kMaxStarFaces, blocks.capacity);
         EXPECT_EQ(sut.model().residence, Residence::partial);
@@ -86,7 +86,7 @@ TEST_P(StaticMode, a_model_that_fits_ends_refined_and_frames_only_query)
     }
 }
 
-/// Records that are split to fill the pools bring faces that the question wants, too.
+/// Records that are split to fill the pools also add faces that the question needs.
 TEST_P(StaticMode, says_what_it_lacks_while_it_fills)
 {
     SCOPED_TRACE(model_.name + " seed " + std::to_string(seed_));
@@ -126,11 +126,11 @@ TEST_P(StaticMode, comes_to_it_with_one_split_a_frame_and_a_link_that_loses)
             break;
         }
     }
-    // As many as there was time for: what is behind the tool may be merged and split again.
+    // The number depends on the time: refinement behind the tool may be merged and split again.
     EXPECT_GE(refined, std::min(records, kFramesMax / 4));
 }
 
-/// More chunks than the transport side remembers wishes for, and pieces that take long.
+/// More chunks than the transport side has requests for, and slow pieces.
 TEST(StaticModeFarAway, is_reached_and_what_the_tool_needs_comes_first)
 {
     const TestModel& model =

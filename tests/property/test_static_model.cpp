@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// Distances of a whole model beside brute force and the solid angle.
+/// Distances of a whole model compared with brute force and the solid angle.
 
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/shared/random.hpp"
@@ -31,7 +31,7 @@ namespace
 
 using Wide = std::array<long double, 3>;
 
-/// How often a closed surface goes round a point that is not on it (van Oosterom and Strackee).
+/// Winding number of a closed surface about a point that is not on it (van Oosterom and Strackee).
 long double winding_number(const Vec3& point, const std::vector<Face>& faces)
 {
     long double sum = 0.0L;
@@ -70,7 +70,7 @@ std::unique_ptr<StaticModel> open_whole(const TestModel& model)
 class StaticModelOf : public testing::TestWithParam<std::size_t>
 {
 protected:
-    /// Of the source's frame.
+    /// Place in the source's frame.
     Vec3 to_source(const Vec3& here_m) const
     {
         return here_m + Vec3(model_.origin_m[0], model_.origin_m[1], model_.origin_m[2]);
@@ -79,7 +79,7 @@ protected:
     {
         return source_m - Vec3(model_.origin_m[0], model_.origin_m[1], model_.origin_m[2]);
     }
-    /// On the surface, near it, in the box and far away.
+    /// Places on the surface, near it, in the box and far away.
     std::vector<Vec3> places(std::size_t count)
     {
         std::vector<Vec3> places;

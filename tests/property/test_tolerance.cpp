@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// Coarse faces of small error count as the surface: bounds hold, no face of the source is passed,
-/// and a tool for whose footprint there is no room is held by a coarser surface, not frozen.
+/// Coarse faces of small error count as the surface: bounds hold, no face of the source is crossed,
+/// and a tool whose footprint exceeds the capacity rests on a coarser surface instead of halting.
 
 #include "host_tools/shapes/shapes.hpp"
 #include "rt_core/geometry/placed_core.hpp"
@@ -29,15 +29,15 @@ constexpr double kTolerance_n = 0.001;
 struct ToleranceCase
 {
     const char* name;
-    ToolCore core; ///< As that and the next two of a model with a diagonal of 1 m.
+    ToolCore core; ///< Core; this and the next two fields are for a model with a diagonal of 1 m.
     double radius;
-    double height; ///< From the middle of the tool to its lowest place.
+    double height; ///< Distance from the middle of the tool to its lowest place.
     std::size_t pool_kib;
-    bool is_whole; ///< The pool holds all of the model, refined.
+    bool is_whole; ///< The pool holds the fully refined model.
     bool is_held_by_exact_faces;
 };
 
-/// What has room as a whole is flat: of a surface that is less so there is room, too.
+/// Model of a case: a flat one fits as a whole, and a rougher one fits too.
 const TestModel& model_of(const ToleranceCase& test_case)
 {
     static const TestModel& bumpy =
@@ -47,7 +47,7 @@ const TestModel& model_of(const ToleranceCase& test_case)
     return test_case.is_whole ? plate : bumpy;
 }
 
-/// Where the model is highest near its middle, in its frame.
+/// Highest place of the model near its middle, in its frame.
 Vec3 top_of(const TestModel& model)
 {
     Vec3 low = to_vec3(model.faces[0][0]);
@@ -72,17 +72,17 @@ class Tolerance : public testing::TestWithParam<ToleranceCase>
 protected:
     struct Run
     {
-        int frames{0}; ///< After the hand has pressed,
-        int held{0};   ///< those with a force that is not withheld,
-        int known{0};  ///< and those in which the nearest place is known.
+        int frames{0}; ///< Frames after the press.
+        int held{0};   ///< Frames with a force that is not withheld.
+        int known{0};  ///< Frames with a known nearest place.
         int tolerated{0};
-        std::uint32_t refined{0}; ///< Records, at the end,
-        std::uint32_t records{0}; ///< of all.
+        std::uint32_t refined{0}; ///< Refined records at the end.
+        std::uint32_t records{0}; ///< All records.
     };
 
     static constexpr int kPressed = 400;
 
-    /// A front of 60,000 faces is validated now and then.
+    /// Sets a longer interval for fronts of 60,000 faces.
     void SetUp() override { FrameRig::validate_every(20); }
     void TearDown() override { FrameRig::validate_every(TACTUS_VALIDATED_EVERY); }
 
@@ -105,7 +105,7 @@ protected:
         return tool;
     }
 
-    /// Down into the model by 1 % of its diagonal, and then to and fro.
+    /// Hand that descends into the model by 1 % of its diagonal, then moves to and fro.
     [[nodiscard]] static Vec3 hand_at(int frame, const Vec3& top_m)
     {
         const double diagonal_m = model_of(GetParam()).diagonal_m;
@@ -140,7 +140,7 @@ protected:
         options.force_tolerance_n = force_tolerance_n;
         FrameRig sut(model, options);
         const Vec3 top_m = top_of(model);
-        Budgets budgets; // Of a frame at 1 kHz.
+        Budgets budgets; // Budgets of a frame at 1 kHz.
         budgets.work = Budgets::work_of(500'000, 1);
         if (GetParam().is_whole) // Refined, if at all, before the tool comes near.
         {

@@ -15,12 +15,13 @@ namespace tactus::test
 namespace
 {
 
-/// What a frame's answer of a tool with a core has to agree with: every face of the source,
-/// measured by the kernels that have oracles of their own.
+/// Truth for a frame's answer of a tool with a core: every face of the source, measured by the
+/// kernels, which have their own oracles.
 struct Truth
 {
     double distance_m{std::numeric_limits<double>::infinity()};
-    double upper_m{std::numeric_limits<double>::infinity()}; ///< As the frame rounds it.
+    /// Upper bound, rounded like the frame's.
+    double upper_m{std::numeric_limits<double>::infinity()};
     std::size_t touching{0};
     std::size_t nearly_touching{0};
 };
@@ -46,7 +47,7 @@ Mat3 turned(Random& random, double most)
         .toRotationMatrix();
 }
 
-/// A walk along the surface, turning, with jumps.
+/// Random walk along the surface with rotations and jumps.
 class Walk
 {
 public:
@@ -81,15 +82,15 @@ ToolSpec tool_with(const ToolCore& core, double radius_m)
     spec.radius_m = radius_m;
     spec.core = core;
     spec.wants_contacts = true;
-    spec.passes_through = true; // So that answers are asked for everywhere.
+    spec.passes_through = true; // Answers are then requested everywhere.
     return spec;
 }
 
 struct CoreCase
 {
     const char* name;
-    ToolCore core; ///< Of a model with a diagonal of 1 m.
-    double radius; ///< Also of one.
+    ToolCore core; ///< Core for a model with a diagonal of 1 m.
+    double radius; ///< Radius for the same model.
 };
 
 std::array<CoreCase, 4> core_cases()
@@ -115,7 +116,7 @@ ToolSpec scaled_tool(const CoreCase& kind, double diagonal_m)
     return tool_with(core, kind.radius * diagonal_m);
 }
 
-/// A hand that goes through the model's surface faster than a body follows it in one step.
+/// Hand that moves through the model's surface faster than a rigid tool follows in one step.
 class Sweep
 {
 public:
@@ -142,7 +143,7 @@ private:
     int frame_{0};
 };
 
-/// So that nothing passes by answering nothing.
+/// Counts that show that the test is not empty.
 struct Seen
 {
     int exact{0};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The validators see every kind of damage: each is planted in a model that was touched for a
-/// while, told by name, and mended again.
+/// The validators detect every kind of damage: each is planted in a model after some touches,
+/// reported by name, and repaired.
 
 #include "rt_core/abtree/validate_tree.hpp"
 #include "rt_core/cache/validate_cache.hpp"
@@ -25,7 +25,7 @@ namespace tactus::test
 namespace
 {
 
-/// A model after a touch that settled: in its middle of the hierarchy, with pages left to load.
+/// Model after a settled touch: in the middle of the hierarchy, with pages left to load.
 class Validators : public testing::Test
 {
 protected:
@@ -38,7 +38,7 @@ protected:
     [[nodiscard]] Model& sut() { return rig_.model(); }
     [[nodiscard]] std::string flaw() { return text_of(find_flaw(sut())).data(); }
 
-    /// Writes a wrong value to a place that the validators read, and what they say then.
+    /// Writes a wrong value to a place that the validators read, and expects their words.
     template <typename T>
     void expect_flaw(const T& place, const T& wrong, const std::string& words)
     {
@@ -82,7 +82,7 @@ protected:
         }
         return block;
     }
-    /// A slot with a page of which a record is refined.
+    /// Slot with a page that has a refined record.
     [[nodiscard]] std::uint32_t pinned_slot()
     {
         std::uint32_t slot = 0;
@@ -101,7 +101,7 @@ protected:
         }
         return slot;
     }
-    /// An active face that some record has changed.
+    /// Active face that some record has changed.
     [[nodiscard]] const VertexForest::ActiveFace& changed_face()
     {
         std::uint32_t prim = 0;
@@ -157,7 +157,7 @@ TEST_F(Validators, a_model_that_must_be_sound_ends_the_program_with_the_flaw)
 
 TEST_F(Validators, a_rig_that_validates_ends_with_model_and_frame)
 {
-    // A program of its own: it takes its models with it when it ends.
+    // The death test is a separate process, which removes its models when it ends.
     GTEST_FLAG_SET(death_test_style, "threadsafe");
     EXPECT_EXIT(
         {
@@ -277,7 +277,7 @@ TEST_F(Validators, a_table_whose_index_has_other_pages_is_told)
     }
     const PageTable::Meta& meta = sut().pages.meta(unpinned);
     expect_flaw(meta, PageTable::Meta{}, "pages are in its slots, and its index has others");
-    // Behind the cache's back.
+    // The cache is not notified.
     const PageTable::Meta before = meta;
     sut().pages.evict(unpinned);
     EXPECT_NE(flaw().find("slots are used here, and its pool counts others"), std::string::npos)
@@ -288,7 +288,7 @@ TEST_F(Validators, a_table_whose_index_has_other_pages_is_told)
 
 TEST_F(Validators, what_is_wished_for_and_here_is_told)
 {
-    // Far away, without letting anything come.
+    // The tool is far away, without a delivery.
     const Vec3 elsewhere = to_vec3(model_.faces[0][0]);
     rig_.step_without_delivery({elsewhere}, {}, {});
     PieceWish wish;
@@ -299,7 +299,8 @@ TEST_F(Validators, what_is_wished_for_and_here_is_told)
     ASSERT_EQ(wish.key.kind, ContentKind::chunk);
     ASSERT_EQ(flaw(), "");
     sut().pages.adopt({wish.key.number}, empty_slot(), ChunkCache::kFirstFrame);
-    // With the slot goes the count of those at the transport; put back by evicting another.
+    // The slot's end also reduces the count of those at the transport; evicting another restores
+    // it.
     std::uint32_t unpinned = 0;
     while (sut().pages.meta(unpinned).chunk.is_none() ||
            sut().pages.meta(unpinned).chunk == ChunkId{wish.key.number} ||
@@ -356,7 +357,7 @@ TEST_F(Validators, records_that_contradict_the_cut_are_told)
     const std::uint32_t slot = pinned_slot();
     const auto place = static_cast<std::uint32_t>(std::countr_zero(sut().pages.meta(slot).refined));
     const VsplitRecord& record = sut().slots.pages[slot].records[place];
-    std::uint32_t split = 0; // A record that is linked but not refined.
+    std::uint32_t split = 0; // Record that is linked but not refined.
     while (sut().pages.is_refined({split}) || sut().pages.find_linked({split}) == nullptr)
     {
         ++split;

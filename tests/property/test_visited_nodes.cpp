@@ -13,9 +13,9 @@ struct GridSize
     std::uint32_t rows;
 };
 
-/// Two faces a square. The blocks of a grid with sides of powers of two are full; those of the
-/// others hold 9 to 10.6 faces, as on scanned meshes. Some counts are just above a power of two,
-/// where a left-full order is at its least even.
+/// Grids with two faces a square. The blocks of a grid with sides of powers of two are full; those
+/// of the others hold 9 to 10.6 faces, as on scanned meshes. Some counts are just above a power of
+/// two, where a left-full order is least even.
 std::vector<GridSize> grid_sizes()
 {
     return {{45, 45},   {50, 41},   {64, 32},   {64, 64},   {65, 64},   {90, 91},   {110, 110},

@@ -13,10 +13,9 @@
 #include <utility>
 #include <vector>
 
-/// The lemma of the 3DIM 2005 paper: refitting a tree of n leaves, b children a node, after k
-/// leaves at random changed visits at most k (log_b n - log_b k + 2) nodes, leaves included. The
-/// upper log_b k levels have fewer than 2 k nodes in all; below them each leaf has a way of its
-/// own.
+/// The 3DIM 2005 paper's lemma: refitting a tree of n leaves, b children a node, after k random
+/// leaves changed visits at most k (log_b n - log_b k + 2) nodes, leaves included. The upper log_b
+/// k levels have fewer than 2 k nodes in all; below them each leaf has its own path.
 namespace tactus::test
 {
 
@@ -25,8 +24,8 @@ namespace tactus::test
     return k * (levels - std::log(k) / std::log(double{kNodeChildren}) + 2.0);
 }
 
-/// The finest mesh of a tree test: a height field of columns x rows squares in two exact faces
-/// each. Prim and face id are the place in `faces`; `order` lists the places by bucket.
+/// Finest mesh of a tree test: a height field of columns x rows squares of two exact faces each.
+/// Prim and face id are the place in `faces`; `order` lists the places by bucket.
 struct FaceGrid
 {
     std::vector<ChangedFace> faces;
@@ -69,7 +68,7 @@ struct FaceGrid
     return grid;
 }
 
-/// The 8-wide tree over a whole finest mesh. Leaves are its blocks.
+/// 8-wide tree over a whole finest mesh, with blocks as leaves.
 class GridTree
 {
 public:
@@ -98,7 +97,7 @@ public:
     [[nodiscard]] bool is_complete() const { return rig_.sut->is_complete(); }
 
     /// Changes one face in each of these leaves (places in path order) so that every box above it
-    /// changes as well, refits, and puts everything back. Returns the visits of the first refit.
+    /// changes as well, refits, and restores everything. Returns the visits of the first refit.
     std::uint64_t visits_of(const std::vector<std::uint32_t>& changed)
     {
         set_errors(changed, kFarReaching);
@@ -108,7 +107,7 @@ public:
         return std::uint64_t{work.blocks} + work.nodes;
     }
 
-    /// The same number by another way: all that the parent links lead to, each once.
+    /// The same number by another way: all nodes reached by the parent links, each once.
     [[nodiscard]] std::uint64_t ancestors_of(const std::vector<std::uint32_t>& changed) const
     {
         std::unordered_set<std::uint32_t> nodes;
@@ -124,7 +123,7 @@ public:
     }
 
 private:
-    /// 2^41.5 quanta: a box that reaches out of every other.
+    /// Error of 2^41.5 quanta: a box that extends beyond every other.
     static constexpr ErrorCode kFarReaching = 200;
 
     static TreeCapacities capacities(std::uint32_t faces)
@@ -172,15 +171,15 @@ neighbouring_leaves(Random& random, std::uint32_t count, std::uint32_t leaves)
     return picked;
 }
 
-/// log_b n. Levels are whole: a leaf that changes alone or nearly so may lie deeper than the real
-/// logarithm says. From eight changed leaves on, the nodes that they share make up for it.
+/// Levels log_b n, whole for few changes: a leaf that changes almost alone may lie deeper than the
+/// real logarithm. From eight changed leaves on, shared nodes compensate for it.
 [[nodiscard]] inline double levels_over(std::uint32_t leaves, std::uint32_t changed)
 {
     const double levels = std::log(static_cast<double>(leaves)) / std::log(double{kNodeChildren});
     return changed < 8 ? std::ceil(levels) : levels;
 }
 
-/// k = 1 .. 4,096, random and clustered, in the tree over `grid`.
+/// Checks k = 1 .. 4,096, random and clustered, in the tree over `grid`.
 inline void expect_lemma(const FaceGrid& grid, int trials)
 {
     GridTree tree(grid);
@@ -199,7 +198,7 @@ inline void expect_lemma(const FaceGrid& grid, int trials)
             const auto cluster = neighbouring_leaves(random, k, tree.leaves());
             const auto clustered = static_cast<double>(tree.visits_of(cluster));
             ASSERT_EQ(clustered, static_cast<double>(tree.ancestors_of(cluster)));
-            // Two paths to the ends of the run, and between them no more nodes than blocks.
+            // A run has two paths to its ends, and between them no more nodes than blocks.
             EXPECT_LE(clustered, 2.0 * k + 2.0 * std::ceil(levels))
                 << grid.faces.size() << " faces, n " << tree.leaves() << ", k " << k;
             if (k >= 16 && tree.leaves() >= 64 * k)
