@@ -103,7 +103,7 @@ TEST(AtomicFile, replaces_what_a_link_leads_to_and_leaves_the_link)
     ASSERT_TRUE(sut.value().commit());
     EXPECT_TRUE(std::filesystem::is_symlink(link));
     EXPECT_EQ(content_of(real), "new");
-    // One that leads nowhere is replaced by a file.
+    // A dangling link is replaced by a file.
     const auto dangling = directory.path() / "dangling.bin";
     std::filesystem::create_symlink("nowhere", dangling);
     auto other = AtomicFile::create(dangling);
@@ -204,7 +204,7 @@ TEST(AtomicFile, refuses_one_too_many_and_takes_one_more_after_a_release)
     EXPECT_EQ(directory.files(), 0U);
 }
 
-/// Runs in a child process: what it does to limits and signals ends with it.
+/// Runs in a child process, so that changes of limits and signals end with it.
 template <typename Body>
 int status_of_child(Body body)
 {
@@ -224,7 +224,8 @@ TEST(AtomicFile, tells_of_a_full_disk_by_the_name_it_was_given_and_leaves_nothin
     const int status = status_of_child(
         [&]
         {
-            const rlimit limit{1000, 1000}; // Writing beyond is EFBIG, with the signal ignored.
+            // Writing more fails with EFBIG, with the signal ignored.
+            const rlimit limit{1000, 1000};
             ::setrlimit(RLIMIT_FSIZE, &limit);
             ::signal(SIGXFSZ, SIG_IGN);
             std::filesystem::current_path(directory.path());

@@ -27,7 +27,7 @@ TEST(NearestWord, is_none_where_nothing_is_near)
     constexpr std::array<std::string_view, 3> kWords{"point", "sphere", "a"};
     EXPECT_EQ(nearest_word("capsule", kWords), "");
     EXPECT_EQ(nearest_word("", kWords), "");
-    EXPECT_EQ(nearest_word("z", kWords), ""); // No letter of "a" is left.
+    EXPECT_EQ(nearest_word("z", kWords), ""); // "z" shares no letter with "a".
     EXPECT_EQ(nearest_word("point", {}), "");
 }
 

@@ -66,7 +66,7 @@ TEST(NumberForm, names_the_one_fault_and_what_may_have_been_meant)
     }
 }
 
-/// What is proposed is taken.
+/// A proposed value is accepted.
 TEST(NumberForm, means_nothing_that_it_would_refuse)
 {
     for (const char* value : {"box:2mm,1,1", "box:5,1,1,0mm", "box:700,3cm,12in", "box:1,2"})

@@ -43,11 +43,11 @@ TEST(Printable, keeps_the_utf_8_of_a_line_and_shows_what_steers_a_terminal_as_qu
     for (int code = 0; code < 256; ++code)
     {
         const char c = static_cast<char>(code);
-        const bool stays = code >= 0x20 && code < 0x7F; // Above it is a part of a character.
+        const bool stays = code >= 0x20 && code < 0x7F; // Bytes above are parts of a character.
         EXPECT_EQ(printable_line(std::string(1, c)), std::string(1, stays ? c : '?')) << code;
     }
     const std::string long_line(1'000, 'a');
-    EXPECT_EQ(printable_line("\xc2\x9b" // A terminal takes it for ESC [.
+    EXPECT_EQ(printable_line("\xc2\x9b" // Terminals interpret it as ESC [.
                              "2J\xc2\xa0\xc3\x9f\xc2"),
               "?2J\xc2\xa0\xc3\x9f?");
     EXPECT_EQ(printable_line("\x9b\x32J"), "?2J") << "ESC [ of a terminal with 8 bits";

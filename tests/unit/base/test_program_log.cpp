@@ -36,7 +36,7 @@ TEST(ProgramLog, makes_an_object_of_each_line)
               R"("text":"a \"b\\c\"?"})");
 }
 
-/// The text of a log line in JSON.
+/// Text of a log line in JSON.
 std::string text_of(const std::string& text)
 {
     const std::string line = log_text(kJson, LogLevel::info, "p", text, kThen);
@@ -52,13 +52,13 @@ TEST(ProgramLog, leaves_utf_8_as_it_is_and_shows_what_is_none)
     {
         EXPECT_EQ(text_of(whole), whole);
     }
-    EXPECT_EQ(text_of("\xC3"), "?");                // Cut.
-    EXPECT_EQ(text_of("\xE2\x82"), "??");           // Likewise.
-    EXPECT_EQ(text_of("\xC3(\xA9"), "?(?");         // Torn apart.
-    EXPECT_EQ(text_of("\xC0\xAF"), "??");           // Longer than need be.
-    EXPECT_EQ(text_of("\xE0\x80\xAF"), "???");      // Likewise.
-    EXPECT_EQ(text_of("\xED\xA0\x80"), "???");      // Half of a pair.
-    EXPECT_EQ(text_of("\xF4\x90\x80\x80"), "????"); // Beyond the last one.
+    EXPECT_EQ(text_of("\xC3"), "?");                // Truncated.
+    EXPECT_EQ(text_of("\xE2\x82"), "??");           // Truncated.
+    EXPECT_EQ(text_of("\xC3(\xA9"), "?(?");         // Interrupted.
+    EXPECT_EQ(text_of("\xC0\xAF"), "??");           // Overlong.
+    EXPECT_EQ(text_of("\xE0\x80\xAF"), "???");      // Overlong.
+    EXPECT_EQ(text_of("\xED\xA0\x80"), "???");      // Half of a surrogate pair.
+    EXPECT_EQ(text_of("\xF4\x90\x80\x80"), "????"); // Beyond the last code point.
     EXPECT_EQ(text_of("\xFF"
                       "end"),
               "?end");

@@ -12,7 +12,7 @@
 namespace tactus::bench
 {
 
-/// A bumpy sphere's file, opened and decoded.
+/// File of a bumpy sphere, opened and decoded.
 struct OpenedModel
 {
     explicit OpenedModel(std::uint32_t faces, std::uint32_t base_faces)
@@ -25,7 +25,7 @@ struct OpenedModel
 
     const test::TestModel& model;
     ModelStore store;
-    std::vector<std::string> damage; ///< None; a test model is sound.
+    std::vector<std::string> damage; ///< Empty; a test model is sound.
     DecodedModel decoded;
 };
 

@@ -38,7 +38,8 @@ TEST(ExactSplits, of_a_ball_leave_no_coarse_face_in_it_and_are_all_asked_for)
         test::ClosedCut cut(model.decoded);
         for (const RecordId split : refinement.certify_ball(center_m, radius_m).splits)
         {
-            ASSERT_EQ(cut.split_with_closure(split).size(), 1U); // Dependencies came before.
+            // The dependencies are already split.
+            ASSERT_EQ(cut.split_with_closure(split).size(), 1U);
         }
         const test::CertifiedCut faces = test::cut_of(model.decoded, cut.replay());
         for (std::size_t face = 0; face < faces.faces.size(); ++face)

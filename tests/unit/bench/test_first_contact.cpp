@@ -32,7 +32,7 @@ TEST_F(FirstContact, with_the_whole_model_takes_the_whole_file)
     EXPECT_EQ(sut.splits.p50, fields.records);
     EXPECT_EQ(sut.needed_bytes.max, sut.chunk_bytes.max);
     EXPECT_EQ(sut.missed_chunks, 0U);
-    // One hash a chunk, one an index page, the base mesh's and 32 bytes of root.
+    // The hashes are one a chunk, one an index page, the base mesh's and 32 bytes of root.
     const ModelCounts counts = model_.store.header().counts();
     EXPECT_EQ(sut.all_hashed_bytes.max - sut.all_bytes.max,
               16 * (counts.chunks() + counts.index_pages() + 1) + 32);

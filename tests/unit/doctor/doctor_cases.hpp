@@ -2,13 +2,15 @@
 // Copyright the Tactus authors.
 #pragma once
 
-/// What each check makes of a machine that is good but for what a case changes:
-///     check => changes => verdict => found => remedies => what they leave
-/// A line that is indented goes on with the one before; lists are parted by ";;", the values of a
-/// change by '%', a case for each. A change is a file's path=content, folder/, -path for what is
-/// taken away, ~interface=flags state, or one of what was measured. Of a text, "..." at an end
-/// stands for anything, "*" is any text, and a last remedy "..." any others; "!" is run. "good"
-/// among what is left: the check is good now.
+/// Results of each check on a good machine with the changes of a case:
+///
+/// check => changes => verdict => found => remedies => result
+///
+/// An indented line continues the one before; lists are separated by ";;", the values of a change
+/// by '%', one case for each. A change is a file's path=content, folder/, -path to remove it,
+/// ~interface=flags state, or a measurement. In a text, "..." at the end stands for anything, "*"
+/// is any text, and a last remedy "..." any others; "!" is run. "good" as the result: the check is
+/// good then.
 namespace tactus::doctor
 {
 

@@ -120,7 +120,8 @@ void make_good(MadeUpMachine& machine)
         machine.put(cpus + cpu + "/cpuidle/state1/latency", "2\n");
         machine.put(cpus + cpu + "/cpuidle/state1/disable", "0\n");
     }
-    machine.put("/dev/cpu_dma_latency", std::string("\x00\x94\x35\x77", 4)); // 2e9: nobody asks.
+    // The value is 2e9: no request.
+    machine.put("/dev/cpu_dma_latency", std::string("\x00\x94\x35\x77", 4));
     machine.put("/proc/irq/default_smp_affinity", "7\n");
     machine.put("/proc/irq/24/smp_affinity_list", "0-2\n");
     machine.put("/proc/irq/24/effective_affinity_list", "1\n");

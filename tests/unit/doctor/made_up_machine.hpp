@@ -11,7 +11,7 @@
 namespace tactus::doctor
 {
 
-/// A machine that has nothing but what a test gives it, in a folder that vanishes with it.
+/// Machine with only the content that a test adds, in a folder that is removed with it.
 class MadeUpMachine
 {
 public:
@@ -20,18 +20,18 @@ public:
     MadeUpMachine(const MadeUpMachine&) = delete;
     MadeUpMachine& operator=(const MadeUpMachine&) = delete;
 
-    /// A file with this content, in folders that are made for it.
+    /// Writes a file with this content, and its folders.
     void put(const std::string& path, const std::string& content) const;
     void put_folder(const std::string& path) const;
-    /// A file or folder, with all that is in it.
+    /// Removes a file, or a folder with its content.
     void take_away(const std::string& path) const;
-    /// What is in a file, line ends included.
+    /// Content of a file, including line ends.
     [[nodiscard]] std::string content_of(const std::string& path) const;
-    /// All files that there are, as paths of the machine.
+    /// All files, as paths of the machine.
     [[nodiscard]] std::vector<std::string> paths() const;
 
-    /// Runs a command as a shell would that has this machine's /proc, /sys and /etc and every
-    /// right; nothing behind "&& update-grub".
+    /// Runs a command like a shell on this machine's /proc, /sys and /etc with all rights; nothing
+    /// after "&& update-grub".
     void run(const std::string& command) const;
 
     [[nodiscard]] const SystemFiles& files() const noexcept { return files_; }
@@ -45,7 +45,8 @@ private:
     SystemFiles files_;
 };
 
-/// Makes it one on which every check is good: four processors, the last one isolated for the loop.
+/// Sets up a machine on which every check is good: four processors, the last one isolated for the
+/// loop.
 void make_good(MadeUpMachine& machine);
 
 } // namespace tactus::doctor

@@ -21,7 +21,7 @@ namespace tactus::doctor
 namespace
 {
 
-/// Checks that judge by what was tried alone.
+/// Checks that depend only on trials.
 constexpr std::array<std::string_view, 5> kWithoutFiles{"priority", "memlock", "timer",
                                                         "float-control", "dds-configuration"};
 
@@ -30,7 +30,7 @@ bool is_clean(const std::string& text)
     return !text.empty() && std::ranges::all_of(text, [](char c) { return c >= 0x20 && c < 0x7F; });
 }
 
-/// What holds for every finding on every machine.
+/// Expectations of every finding on every machine.
 void expect_sound(const std::vector<Finding>& findings)
 {
     std::set<std::string> names;
@@ -88,7 +88,7 @@ TEST(Examine, says_of_a_machine_without_files_what_is_missing)
     }
 }
 
-/// Every file of a good machine holds the same garbage.
+/// Every file of a good machine has the same garbage.
 TEST(Examine, takes_garbage_for_nothing_good)
 {
     const std::string huge(1 << 20, '9');
@@ -153,7 +153,7 @@ std::vector<std::string> split(const std::string& text, const std::string& by)
     return parts;
 }
 
-/// With the letters that \n, \t, \0, \\ and \xNN stand for.
+/// Text with the characters for \n, \t, \0, \\ and \xNN.
 std::string unescaped(const std::string& text)
 {
     std::string letters;
@@ -224,7 +224,7 @@ void set_measured(MadeUpMachine& machine, const std::string& name, const std::st
     setters.at(name)();
 }
 
-/// One change, with its value number `choice`; how many values there are.
+/// Makes one change with its value number `choice`; returns the number of values.
 std::size_t change(MadeUpMachine& machine, const std::string& text, std::size_t choice)
 {
     const std::size_t sign = text.find('=');
@@ -276,7 +276,7 @@ Finding finding_of(const MadeUpMachine& machine, const std::string& check)
         ADD_FAILURE() << "there is no check " << check;
         return {};
     }
-    if (found->verdict == Verdict::critical) // Without the others' help.
+    if (found->verdict == Verdict::critical) // This change alone.
     {
         EXPECT_EQ(count_of(findings, Verdict::good), findings.size() - 1);
     }
@@ -294,7 +294,7 @@ void expect_left(const MadeUpMachine& machine, const std::string& check, const s
     EXPECT_EQ(machine.content_of(path_of(left.substr(0, sign))), unescaped(left.substr(sign + 1)));
 }
 
-/// A good machine that is made so again after each case: making one takes many files.
+/// Good machine that is restored after each case, since creating one takes many files.
 struct GoodMachine
 {
     GoodMachine()
@@ -312,7 +312,7 @@ struct GoodMachine
         const auto next = files.lower_bound(folder + "/");
         return next != files.end() && next->first.starts_with(folder + "/");
     }
-    /// All that is at this path or in this folder, and without the folders that were made for it.
+    /// Restores this path or folder, and removes folders that were created for it.
     void restore(std::string place)
     {
         for (std::string folder = place; !folder.empty() && !has_any_in(folder);
@@ -354,7 +354,7 @@ struct GoodMachine
     std::map<std::string, std::string> files;
 };
 
-/// Of a case's parts, with value number `choice` of each change; how many values there are.
+/// Tries a case with value number `choice` of each change; returns the number of values.
 std::size_t try_case(GoodMachine& good, const std::vector<std::string>& parts, std::size_t choice)
 {
     MadeUpMachine& machine = good.machine;

@@ -25,7 +25,7 @@ std::string text_of(const std::filesystem::path& path)
     return text.str();
 }
 
-/// A frame whose values are all others, as it was recorded and replayed.
+/// Frame with all values different, recorded and replayed.
 struct Example
 {
     ExampleFrame frame;
@@ -93,7 +93,7 @@ struct Example
     }
 };
 
-/// Exports the example under this name, as often as there are frames.
+/// Exports the example under this name, repeated `frames` times.
 std::string exported(const std::string& name, const Example& example, std::uint64_t frames)
 {
     const TemporaryFolder folder;
@@ -124,7 +124,7 @@ TEST(FrameExport, knows_its_formats_by_the_ending)
     }
 }
 
-/// What of `expected` is told otherwise, by its path.
+/// Paths of `expected` with another value in `told`.
 std::vector<std::string> told_otherwise(const Json& expected, const Json& told)
 {
     std::vector<std::string> paths;
@@ -187,7 +187,7 @@ TEST(FrameExport, tells_every_value_under_its_name)
             {"change": "object_feels", "translation_world_m": null}]})"),
                              frame),
               std::vector<std::string>{});
-    // A third of a turn about (1, 1, 1), which takes y to x.
+    // The rotation is a third of a turn about (1, 1, 1), which maps y to x.
     const auto turn =
         frame.at("tools").at(0).at("goal_rotation_world").get<std::array<double, 4>>();
     const double sign = turn[3] < 0.0 ? -1.0 : 1.0;
@@ -204,7 +204,7 @@ TEST(FrameExport, tells_every_value_under_its_name)
               std::vector<std::string>{});
 }
 
-/// A device may say what is no rotation; no tool should have to read that.
+/// A device may send an invalid rotation, which no program should have to read.
 TEST(FrameExport, does_not_know_a_rotation_that_is_none)
 {
     Example example;

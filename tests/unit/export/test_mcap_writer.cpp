@@ -7,7 +7,8 @@
 #include <cstring>
 #include <map>
 
-// tests/integration/hrtc/read_exports.py reads whole files, field by field; here are the edges.
+// tests/integration/hrtc/read_exports.py reads whole files, field by field; these are the edge
+// cases.
 namespace tactus::test
 {
 namespace
@@ -19,8 +20,8 @@ constexpr int kMessageIndex = 7;
 constexpr int kChunk = 6;
 constexpr int kChunkIndex = 8;
 
-/// How many records of each kind a file has outside its chunks; asserts that it is made of nothing
-/// but whole records between two magics.
+/// Number of records of each kind outside the chunks; asserts that a file consists only of whole
+/// records between two magics.
 std::map<int, int> records_of(const Bytes& file)
 {
     std::map<int, int> counts;
@@ -42,7 +43,7 @@ TEST(McapWriter, lays_out_a_file_without_messages)
 {
     McapWriter sut("library");
     sut.finish();
-    // Header, end of data, statistics, where they are, footer.
+    // Header, end of data, statistics, their index, footer.
     EXPECT_EQ(records_of(sut.take_bytes()),
               (std::map<int, int>{{0x01, 1}, {0x0F, 1}, {0x0B, 1}, {0x0E, 1}, {0x02, 1}}));
 }
@@ -56,7 +57,7 @@ TEST(McapWriter, keeps_a_channel_that_nothing_was_sent_on)
     const auto counts = records_of(sut.take_bytes());
     EXPECT_EQ(counts.at(0x03), 1);
     EXPECT_EQ(counts.at(0x04), 1);
-    EXPECT_EQ(counts.at(kChunk), 1); // Where they are told first.
+    EXPECT_EQ(counts.at(kChunk), 1); // Their first declaration.
     EXPECT_FALSE(counts.contains(kMessageIndex));
 }
 
@@ -68,7 +69,7 @@ TEST(McapWriter, ends_a_chunk_where_it_is_full)
     Bytes file;
     for (std::uint32_t i = 0; i < 5; ++i)
     {
-        sut.add_message(channel, i, 100 - i, half); // Times that descend.
+        sut.add_message(channel, i, 100 - i, half); // Descending times.
         const Bytes more = sut.take_bytes();
         file.insert(file.end(), more.begin(), more.end());
     }

@@ -14,7 +14,7 @@ namespace tactus::test
 namespace
 {
 
-/// One value of each kind.
+/// Writes one value of each kind.
 void tell(FieldSink& sink, bool are_known)
 {
     const Eigen::Quaterniond turned(0.5, 0.5, -0.5, 0.5);

@@ -14,22 +14,23 @@
 namespace tactus::test
 {
 
-/// How far apart the wider numbers may find what meets, in local lengths, when a shape is thin.
+/// Distance that the wider numbers may leave between meeting shapes, in local lengths, if one is
+/// thin.
 inline constexpr double kTouching = 1e-17;
 
-/// Of each class of pairs; a million of all, however many the kernels take.
+/// Cases of each class of pairs; a million in all for any number of kernel cases.
 [[nodiscard]] inline int convex_cases_per_class()
 {
     return std::min(cases_per_class(), 70'000);
 }
 
-/// The hull of a scene, whose vertices it points at.
+/// Hull of a scene, which refers to the vertices.
 [[nodiscard]] inline Hull hull_of(const std::vector<Vec3>& vertices)
 {
     return Hull::create(vertices).value();
 }
 
-/// Radius and largest distance of a corner from the centre.
+/// Radius and greatest distance of a corner from the centre.
 [[nodiscard]] inline double local_length(const ConvexBody& body, const Triangle& triangle)
 {
     return body.radius +
@@ -37,7 +38,7 @@ inline constexpr double kTouching = 1e-17;
                      (triangle[2] - body.center).norm()});
 }
 
-/// What is wrong with the bounds, if the distance is `truth`; empty where they hold it.
+/// Fault of the bounds if the distance is `truth`; empty if they hold it.
 [[nodiscard]] inline std::string broken_bound(const GjkAnswer& answer, Quad truth, double length)
 {
     const auto slack = static_cast<Quad>(kTouching * length);
@@ -52,7 +53,7 @@ inline constexpr double kTouching = 1e-17;
     return "";
 }
 
-/// What the bounds are apart, in units of the law.
+/// Width of the bounds, in units of the error law.
 [[nodiscard]] inline double share_of_law(const GjkAnswer& answer, double length)
 {
     const double apart = answer.upper - answer.lower;
@@ -65,7 +66,7 @@ inline constexpr double kTouching = 1e-17;
            std::isfinite(answer.upper) && std::isfinite(answer.lower);
 }
 
-/// The eight corners of a box at the origin.
+/// Eight corners of a box at the origin.
 [[nodiscard]] inline std::vector<Vec3> corners_of(const Box& box)
 {
     std::vector<Vec3> corners;
@@ -77,7 +78,7 @@ inline constexpr double kTouching = 1e-17;
     return corners;
 }
 
-/// A ball round each point of a segment, as a body: of a sphere the segment has no length.
+/// Points within a radius of a segment, as a convex body: the segment of a sphere has no length.
 class RoundBody
 {
 public:

@@ -13,9 +13,9 @@
 namespace tactus::test
 {
 
-/// Corners on a grid of so few points that they often coincide, line up or lie in one plane; and
-/// how the grid lies in space: nothing changes when it is scaled by a power of two, its axes are
-/// sheared by whole steps, or all of it is moved by so much that differences just fit.
+/// Corners on a grid of few points, so that they often coincide or are collinear or coplanar; the
+/// grid's placement has no effect on the answers: scaled by a power of two, sheared by whole steps,
+/// or moved so far that differences just fit.
 class Grid
 {
 public:
@@ -56,7 +56,7 @@ private:
 
 inline constexpr int kClasses = 15;
 
-/// Both answers are to be common.
+/// Counts of both answers, which must be frequent.
 struct Tally
 {
     int cases{0};

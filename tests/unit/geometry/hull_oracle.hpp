@@ -10,9 +10,9 @@
 namespace tactus::test
 {
 
-/// Distance of a convex hull of few vertices and a triangle by brute force: every three vertices
-/// span a triangle that is in the hull, and those that have all others on one side make up its
-/// surface. So it is the least of those triangles' distances, and zero where a corner is inside.
+/// Distance between a convex hull of few vertices and a triangle by brute force: every three
+/// vertices span a triangle in the hull, and those with all others on one side form its surface.
+/// The result is the least distance of those triangles, and zero if a corner is inside.
 template <typename Real>
 class HullOracle
 {
@@ -40,7 +40,7 @@ public:
                     const Sides sides = sides_of(face, vertices);
                     if (sides.front && sides.back)
                     {
-                        continue; // Not of the surface.
+                        continue; // The triangle is not on the surface.
                     }
                     least = std::min(least, ShapeOracle<Real>::distance(face, triangle));
                     const Real height = height_over(face, triangle[0]);
@@ -55,7 +55,7 @@ public:
     }
 
 private:
-    /// Of a volume, in cubes of its size: 64 bits in long double, 113 in what is wider.
+    /// Noise of a volume, in cubes of its size: 64 bits in long double, 113 in wider types.
     static constexpr Real kNoise = static_cast<Real>(
         sizeof(Real) == sizeof(long double) && std::numeric_limits<Real>::digits == 64 ? 1e-18
                                                                                        : 1e-32);
@@ -63,10 +63,10 @@ private:
     {
         bool front{false};
         bool back{false};
-        bool is_needle{false}; ///< Too thin to have sides; its neighbours bound the hull.
+        bool is_needle{false}; ///< True if too thin to have sides; its neighbours bound the hull.
     };
 
-    /// On which sides of a face there are vertices; not those as near its plane as rounding makes.
+    /// Sides of a face with vertices, except those within rounding of its plane.
     static Sides sides_of(const Triangle& face, const std::vector<Vec3>& vertices)
     {
         double size = 0.0;
@@ -87,7 +87,7 @@ private:
         return sides;
     }
 
-    /// Times twice the area.
+    /// Height multiplied by twice the area.
     static Real height_over(const Triangle& face, const Vec3& point)
     {
         std::array<std::array<Real, 3>, 3> way{};

@@ -20,7 +20,7 @@ double size_of(const Triangle& triangle)
     return size > 0.0 ? size : 1.0;
 }
 
-/// Mostly as long in all directions, now and then to 1e-9 thinner in some.
+/// Extents, mostly equal in all directions, sometimes down to 1e-9 thinner in some.
 Vec3 extents(double size, Random& random)
 {
     const auto extent = [&]
@@ -41,7 +41,7 @@ Vertices prism(const Triangle& base, Random& random)
     return {base[0], base[1], base[2], base[0] + way, base[1] + way, base[2] + way};
 }
 
-/// Parallel to the axes or not.
+/// Box, parallel to the axes or rotated.
 Vertices box(const Triangle& base, Random& random)
 {
     const Vec3 half = extents(size_of(base), random);
@@ -82,7 +82,7 @@ Vertices anywhere(const Triangle& base, Random& random)
     return vertices;
 }
 
-/// Near one plane: within what 1 to 1e-16 of the size allows.
+/// Vertices near one plane: within 1 to 1e-16 of the size.
 Vertices sheet(const Triangle& base, Random& random)
 {
     const double thickness = size_of(base) * std::exp2(random.between(-54.0, 0.0));

@@ -9,15 +9,16 @@
 namespace tactus::test
 {
 
-/// The vertices of a convex hull and a triangle.
+/// Vertices of a convex hull, and a triangle.
 struct HullScene
 {
     std::vector<Vec3> vertices;
     Triangle triangle;
 };
 
-/// The second of the pair and a hull round the first: points, segments, polygons, tetrahedra,
-/// prisms, boxes, octahedra and up to twelve vertices anywhere, flat, thin and doubled ones too.
+/// The second triangle of the pair and a hull around the first: points, segments, polygons,
+/// tetrahedra, prisms, boxes, octahedra and up to twelve random vertices, including flat, thin and
+/// duplicate ones.
 [[nodiscard]] HullScene hull_scene(const TrianglePair& pair, Random& random);
 
 } // namespace tactus::test

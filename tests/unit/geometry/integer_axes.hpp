@@ -12,10 +12,10 @@
 namespace tactus::test
 {
 
-/// Whether the hull of corners on a grid and a triangle have a plane between them, by all axes that
-/// can be normal to one: exact, and complete for hulls that aren't flat. Every plane through three
-/// corners of the hull, every product of two edges and the triangle's own plane is tried; most of
-/// them belong to no side, and none of those harms. Of coordinates up to 1,000.
+/// Exact and complete test whether a plane separates a hull, which is not flat, of corners on a
+/// grid from a triangle, by all possible normals. It tries every plane through three corners of the
+/// hull, every product of two edges and the triangle's own plane; most of them belong to no side,
+/// which is harmless. For coordinates up to 1,000.
 class IntegerAxes
 {
 public:

@@ -16,11 +16,10 @@ __extension__ using Integer = __int128;
 using GridPoint = std::array<std::int64_t, 3>;
 using GridTriangle = std::array<GridPoint, 3>;
 
-/// Whether a linear system has a solution without negative numbers: exact, for shapes of corners on
-/// a grid, which share a point exactly if weights exist that add up to one on each of them and give
-/// the same point. If there is such a solution there is one on independent columns, and those are
-/// gone through, all of them. Nothing here knows of planes, sides or axes. Of coordinates up to
-/// 100.
+/// Exact test whether a linear system has a solution without negative numbers. Shapes with corners
+/// on a grid share a point if and only if each has weights that add up to one and give the same
+/// point. If there is such a solution there is one on independent columns, and all of those are
+/// tried. No planes, sides or axes are involved. For coordinates up to 100.
 class LinearSystem
 {
 public:
@@ -49,7 +48,7 @@ private:
     using Row = std::array<std::int64_t, kMaxColumns + 1>;
     using Table = std::array<Row, kMaxRows>;
 
-    /// Gauss-Jordan without fractions (Bareiss): all numbers stay minors of the system.
+    /// Gauss-Jordan without fractions (Bareiss): all numbers remain minors of the system.
     [[nodiscard]] bool has_solution_on(unsigned chosen) const
     {
         Table table = table_of(chosen);
@@ -64,7 +63,7 @@ private:
             }
             if (found == rows_)
             {
-                return false; // Dependent: fewer columns do as well.
+                return false; // Dependent: fewer columns suffice.
             }
             std::swap(table[k], table[found]);
             for (std::size_t row = 0; row < rows_; ++row)
@@ -76,7 +75,7 @@ private:
         return is_solved(table, unknowns);
     }
 
-    /// The chosen columns and the right side.
+    /// Chosen columns with the right side.
     [[nodiscard]] Table table_of(unsigned chosen) const
     {
         Table table{};
@@ -126,7 +125,7 @@ private:
     Column right_{};
 };
 
-/// Two or three corners and a triangle.
+/// True if two or three corners and a triangle share a point.
 [[nodiscard]] inline bool share_a_point(const std::vector<GridPoint>& first,
                                         const GridTriangle& second)
 {
@@ -144,7 +143,8 @@ private:
     return system.has_solution();
 }
 
-/// A box of half extents round the origin and a triangle: what a point of it lacks to the sides.
+/// True if a box around the origin and a triangle share a point; the system has the slack to each
+/// side.
 [[nodiscard]] inline bool box_shares_a_point(const GridPoint& half, const GridTriangle& triangle)
 {
     LinearSystem system(7);

@@ -9,7 +9,7 @@
 namespace tactus::test
 {
 
-/// To the bit. Any thread.
+/// Compares to the bit. Any thread.
 inline void expect_same(const ClosestPoints& sut, const ClosestPoints& own)
 {
     ASSERT_EQ(sut.on_shape, own.on_shape);

@@ -18,7 +18,7 @@ namespace
 
 using enum HullError;
 
-/// As a convex body, a shape is as far away as its own kernel says.
+/// Checks the distance of a shape as a convex body against its own kernel.
 void check(const GjkAnswer& answer, const ClosestPoints& kernel, double length, double law)
 {
     const double distance = std::max(0.0, kernel.distance);
@@ -61,7 +61,7 @@ TEST_P(ConvexShapeTest, box_and_segment_are_as_far_as_their_kernels_say)
     }
 }
 
-/// Curved bodies may run out of iterations: their bounds hold all the same, and are near.
+/// Curved bodies may run out of iterations: their bounds still hold, and are close.
 TEST_P(ConvexShapeTest, sphere_and_capsule_are_as_far_as_their_kernels_say)
 {
     Random random(96);
@@ -80,7 +80,7 @@ TEST_P(ConvexShapeTest, sphere_and_capsule_are_as_far_as_their_kernels_say)
 
         const GjkAnswer answer = gjk_distance(body.body(), pair.second, direction);
 
-        // Its centre is rounded.
+        // The centre is rounded.
         ClosestPoints kernel = closest_points(capsule, pair.second);
         kernel.distance_error += 1e-15 * largest_coordinate(pair.first);
         check(answer, kernel, length, 1e-9);

@@ -24,7 +24,7 @@ ConvexContact ask_contact(const ConvexBody& body, const Triangle& triangle)
     return contact_of(body, triangle, direction);
 }
 
-/// How often libccd was overruled, and on what.
+/// Number of overrulings of libccd, by case.
 struct Overruled
 {
     int cases{0};
@@ -54,7 +54,7 @@ std::vector<Vec3> placed(const Grid& grid, std::span<const GridPoint> points)
     return result;
 }
 
-/// Where they meet no bound may say that they don't; where they don't, the bound must say so.
+/// If the bodies meet no bound may deny it; if they do not, the bound must say so.
 void check(const ConvexContact& contact, bool expected)
 {
     ASSERT_EQ(contact.meet, expected);
@@ -111,7 +111,7 @@ TEST(ConvexContact, of_solid_hulls_is_what_all_separating_axes_say)
         GridTriangle triangle = grid.triangle();
         for (GridPoint& corner : triangle)
         {
-            corner[0] += i % 3; // Or nearly all would meet.
+            corner[0] += i % 3; // Otherwise nearly all would meet.
             corner[1] += i % 5;
         }
         const bool expected = !IntegerAxes(corners, triangle).have_plane_between();
@@ -129,7 +129,7 @@ TEST(ConvexContact, of_solid_hulls_is_what_all_separating_axes_say)
     overruled.print("solid hulls on grids");
 }
 
-/// Exact decisions of a kernel; what touches within the bounds' rounding counts as meeting.
+/// Exact decisions of a kernel; contacts within the rounding of the bounds count as meeting.
 TEST(ConvexContact, of_boxes_is_what_their_kernel_says)
 {
     Random random(102);
@@ -157,7 +157,7 @@ TEST(ConvexContact, of_boxes_is_what_their_kernel_says)
     overruled.print("boxes");
 }
 
-/// Curved bodies: what the iterations leave open libccd decides, within what they leave.
+/// Curved bodies: libccd decides cases that the iterations leave open, within their remainder.
 TEST(ConvexContact, of_capsules_is_what_their_kernel_says)
 {
     Random random(103);
@@ -202,8 +202,8 @@ TEST(ConvexContact, does_not_ask_about_what_is_beyond_the_limit)
 namespace
 {
 
-/// Two bodies in one: the first farthest points asked for are those of a small ball, all others of
-/// a large one. What asks first finds a distance; libccd, which asks later, an overlap.
+/// Two bodies in one: the first support points are those of a small sphere, all later ones of a
+/// large one. The first query finds a distance; libccd, which queries later, an overlap.
 struct Liar
 {
     std::uint32_t honest_answers;

@@ -24,7 +24,7 @@ protected:
         return kernel_trials()[std::get<0>(GetParam())];
     }
     [[nodiscard]] static const PairClass& kind() { return pair_classes()[std::get<1>(GetParam())]; }
-    /// The oracles of boxes and round shapes are slow.
+    /// Cases; the oracles of boxes and round shapes are slow.
     [[nodiscard]] static int cases()
     {
         const std::string name = kernel().name;

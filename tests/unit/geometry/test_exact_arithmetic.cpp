@@ -82,7 +82,7 @@ TEST(DoubleDouble, keeps_a_hundred_bits)
     }
 }
 
-/// Sums of products of two whole numbers, which 128 bits hold.
+/// Sums of products of two whole numbers, which fit in 128 bits.
 TEST(Expansion, is_exact_and_has_its_terms_in_order)
 {
     Random random(61);
@@ -119,7 +119,7 @@ TEST(Orientation, side_of_plane_is_exact_where_floating_point_is_not)
         const GridPoint a = point();
         const GridPoint b = point();
         const GridPoint c = point();
-        // About in the plane: a combination of corners, perhaps a step beside it.
+        // Roughly in the plane: a combination of corners, possibly a step beside it.
         const std::int64_t s = whole(random, 6);
         const std::int64_t t = whole(random, 6);
         GridPoint d{};
@@ -147,7 +147,7 @@ TEST(Orientation, sides_of_edges_are_those_of_planes_through_them)
     {
         const auto point = [&random]
         {
-            const int bits = random.one_in(2) ? 2 : 30; // Small ones touch.
+            const int bits = random.one_in(2) ? 2 : 30; // Small ones often touch.
             return GridPoint{whole(random, bits), whole(random, bits), whole(random, bits)};
         };
         const std::array<GridPoint, 5> points{point(), point(), point(), point(), point()};
@@ -166,12 +166,12 @@ TEST(Orientation, sides_of_edges_are_those_of_planes_through_them)
     EXPECT_GT(undecided, 1'000);
 }
 
-/// From none to all but a few bits: two ways that are nearly one, and a third that is nearly
-/// theirs.
+/// Cancellation from none to all but a few bits: two nearly equal vectors, and a third nearly equal
+/// to them.
 TEST(Orientation, a_volume_is_right_however_much_cancels)
 {
     Random random(65);
-    std::array<int, 3> cases{}; // Of 10, 30 and more bits lost.
+    std::array<int, 3> cases{}; // Cases with 10, 30 and more bits lost.
     for (int i = 0; i < 200'000; ++i)
     {
         const int beside = 1 + static_cast<int>(random.below(30));
@@ -187,7 +187,7 @@ TEST(Orientation, a_volume_is_right_however_much_cancels)
         GridPoint b{};
         GridPoint c{};
         GridPoint d{};
-        double terms = 1.0; // As long as the ways are wide.
+        double terms = 1.0; // Size of the terms.
         for (std::size_t k = 0; k < 3; ++k)
         {
             b[k] = a[k] + u[k];
@@ -209,7 +209,7 @@ TEST(Orientation, a_volume_is_right_however_much_cancels)
     EXPECT_GT(cases[2], 5'000);
 }
 
-/// Differences that no double holds: one coordinate of 62 bits beside small ones.
+/// Differences that no double holds: one coordinate of 62 bits with small ones.
 TEST(Orientation, side_of_plane_is_exact_when_differences_round)
 {
     Random random(63);

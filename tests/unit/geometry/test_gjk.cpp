@@ -18,7 +18,7 @@ GjkAnswer ask_gjk(const ConvexBody& body, const Triangle& triangle)
     return gjk_distance(body, triangle, direction);
 }
 
-/// By the oracle, in Quad only where long double contradicts.
+/// Fault by the oracle, in Quad only if long double contradicts.
 std::string broken_bound_of(const GjkAnswer& answer, const HullScene& scene, double length)
 {
     const auto near = HullOracle<long double>::distance(scene.vertices, scene.triangle);
@@ -46,7 +46,8 @@ double largest_coordinate_of(const HullScene& scene)
     return std::max(largest_coordinate(scene.triangle), largest_coordinate(scene.vertices));
 }
 
-/// In Quad only where long double, which thin hulls are too much for, finds more than `allowed`.
+/// Distance from the hull, in Quad only if long double, which is insufficient for thin hulls,
+/// exceeds `allowed`.
 double off_hull(const Vec3& point, const HullScene& scene, double allowed)
 {
     const Triangle all{point, point, point};
@@ -55,7 +56,8 @@ double off_hull(const Vec3& point, const HullScene& scene, double allowed)
                           : static_cast<double>(HullOracle<Quad>::distance(scene.vertices, all));
 }
 
-/// Points are on their shapes but for rounding of their own coordinates, and `gap` joins them.
+/// Checks that points are on their shapes except for rounding of their coordinates, and that `gap`
+/// joins them.
 void check_places(const GjkAnswer& answer, const HullScene& scene, double length)
 {
     const double slack = 3e-15 * length + 2.3e-16 * largest_coordinate_of(scene);
@@ -70,7 +72,7 @@ class GjkTest : public ::testing::TestWithParam<PairClass>
 {
 };
 
-/// What is asked of the whole of a class, beside what is of each case.
+/// Figures of a whole class, besides those of each case.
 struct Summary
 {
     double worst_share{0.0};
@@ -163,7 +165,7 @@ TEST(Gjk, overlap_in_more_than_a_point_is_proven)
     }
 }
 
-/// Faces so near that rounding decides on which side of one another they are.
+/// Faces so near that rounding decides on which side of each other they are.
 TEST(Gjk, what_nearly_touches_is_not_proven_to_overlap)
 {
     Random random(105);
@@ -268,7 +270,7 @@ TEST(Gjk, repeats_its_bits)
     }
 }
 
-/// The checks above see what they are to see.
+/// The checks above can fail.
 TEST(Gjk, wrong_answers_are_found)
 {
     Random random(94);
@@ -295,7 +297,7 @@ TEST(Gjk, wrong_answers_are_found)
         found_above += broken_bound_of(above, scene, length).empty() ? 0 : 1;
     }
     EXPECT_EQ(found_too_large, kCases);
-    EXPECT_GT(found_too_small, kCases / 3); // Where they are apart.
+    EXPECT_GT(found_too_small, kCases / 3); // Cases with a positive distance.
     EXPECT_EQ(found_above, kCases);
 }
 

@@ -20,7 +20,7 @@ namespace tactus::test
 namespace
 {
 
-/// By find_piercing() of one edge after the other.
+/// First piercing by find_piercing() of one edge after the other.
 std::optional<EdgePiercing> first_piercing(const Triangle& first, const Triangle& second)
 {
     for (const auto& [own, other] : {std::pair(&first, &second), {&second, &first}})

@@ -25,14 +25,14 @@ Similarity random_place(Random& random)
     return {random_rotation(random), random.in_cube(2.0), random.between(0.2, 3.0)};
 }
 
-/// A core and the vertices that it may refer to.
+/// Core with its vertices, if any.
 struct OwnedCore
 {
     std::vector<Vec3> vertices;
     ToolCore core{};
 };
 
-/// The hull of up to seven vertices, flat ones and doubled vertices among them.
+/// Hull of up to seven vertices, including flat and duplicate ones.
 void make_hull(OwnedCore& owned, double size, Random& random)
 {
     const std::uint32_t count = 1 + random.below(7);
@@ -45,7 +45,7 @@ void make_hull(OwnedCore& owned, double size, Random& random)
     owned.core = Hull::create(owned.vertices).value();
 }
 
-/// Flat ones and points of no extent among them.
+/// Solid core, including flat ones and single points.
 ToolCore random_solid(double size, Random& random)
 {
     switch (random.below(3))
@@ -73,7 +73,7 @@ OwnedCore random_core(Random& random)
     return owned;
 }
 
-/// Points of the core in its own frame, its corners among them.
+/// Points of the core in its own frame, including its corners.
 std::vector<Vec3> points_of(const ToolCore& core, Random& random)
 {
     std::vector<Vec3> points;
@@ -111,7 +111,7 @@ Vec3 placed(const Similarity& place, const Vec3& point)
     return place.translation_m + place.scale * (place.rotation * point);
 }
 
-/// The distance by the oracle, of a core placed by its own arithmetic.
+/// Distance by the oracle, of a core placed by separate arithmetic.
 long double true_distance(const ToolCore& core, const Similarity& place, const Triangle& triangle)
 {
     if (const auto* segment = std::get_if<Segment>(&core))
@@ -167,7 +167,7 @@ TEST(PlacedCore, measures_as_the_oracle_does_and_bounds_from_below)
         const ClosestPoints closest = sut.closest(triangle);
         const CoreBounds bounds = sut.bounds(triangle);
 
-        // The oracle of a box turns the triangle in double, as good as to 1e-15 of its place.
+        // The oracle of a box rotates the triangle in double, accurate to 1e-15 of its place.
         const double slack = closest.distance_error + 4e-14;
         ASSERT_NEAR(closest.distance, truth, slack) << "core " << core.index();
         ASSERT_LE(bounds.lower, truth + 2e-14);
@@ -229,7 +229,7 @@ TEST(PlacedCore, bounds_triangles_that_share_corners_and_proves_planes_between)
             ASSERT_TRUE(!bounds.meet || closest.distance <= slack);
             if (bounds.lower <= limit && !sut.is_convex_body())
             {
-                // As much as both together tell.
+                // The result equals both together.
                 const CoreBounds own = sut.bounds(triangle);
                 ASSERT_NEAR(bounds.lower, own.lower, 1e-13);
                 ASSERT_NEAR(bounds.upper, own.upper, 1e-13);

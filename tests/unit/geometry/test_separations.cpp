@@ -16,7 +16,7 @@ namespace
 
 constexpr std::array<std::uint8_t, 3> kCorners{3, 7, 15};
 
-/// Corners in some rows of a block; those that are not used are no numbers.
+/// Corners in some rows of a block; unused ones are NaN.
 struct CornerBlock
 {
     std::array<CornerRow, 3> rows{};
@@ -49,7 +49,7 @@ struct CornerBlock
     }
 };
 
-/// A hull that turned, near a block of corners.
+/// Rotated hull near a block of corners.
 class SeparationsTest : public ::testing::Test
 {
 protected:
@@ -83,7 +83,7 @@ protected:
         }
         core_.see(block_.rows, seen_);
     }
-    /// Three corners by themselves, so far from the hull.
+    /// Three separate corners, at `away` from the hull.
     void make_far(Random& random, const Vec3& away)
     {
         make(random, 0.0);
@@ -104,7 +104,7 @@ protected:
         return {any(), any(), any()};
     }
 
-    std::vector<Vec3> vertices_; ///< In the tool's frame.
+    std::vector<Vec3> vertices_; ///< Vertices in the tool frame.
     std::vector<Vec3> placed_;
     std::optional<Hull> hull_;
     PlacedCore core_;
@@ -187,7 +187,7 @@ TEST_F(SeparationsTest, the_direction_that_was_added_first_makes_room)
     sut.add(-away);
     EXPECT_LT(sut.bound(kCorners), 0.0);
     EXPECT_LT(see(sut), 0.0);
-    sut.add(away); // In the place of the second.
+    sut.add(away); // Replaces the second one.
     EXPECT_GT(see(sut), 7.0);
 }
 

@@ -21,13 +21,13 @@ namespace
 
 constexpr int kSide = 6;
 
-/// How two sheets of triangles lie over one another.
+/// Arrangement of two sheets of triangles above each other.
 struct Sheets
 {
     const char* name;
-    double height; ///< Of the bumps, in edges.
-    double apart;  ///< Of the sheets.
-    double narrow; ///< Edges across, in edges along.
+    double height; ///< Height of the bumps, in edges.
+    double apart;  ///< Distance of the sheets.
+    double narrow; ///< Ratio of edges across to edges along.
     double scale;
 };
 
@@ -42,7 +42,7 @@ constexpr std::array kSheets{
     Sheets{"huge", 0.5, 1.2, 1.0, 0x1p100},
 };
 
-/// A bumpy sheet; its inner corners are those of six faces.
+/// Bumpy sheet; its inner corners belong to six faces.
 std::vector<Triangle> sheet(Random& random, const Sheets& sheets, const Vec3& at, double spread)
 {
     std::vector<Vec3> corners;
@@ -91,7 +91,7 @@ TEST(SharedFeatures, of_any_pairs_in_any_order_are_those_that_measuring_finds)
                 {
                     if (!meet(first, second))
                     {
-                        // The nearest come first, as in a query, or in any order.
+                        // The order is by distance, as in a query, or random.
                         const double distance = closest_points(first, second, false).distance;
                         pairs.push_back({round % 3 == 0 ? random.between(0.0, 1.0) : distance,
                                          {&first, &second}});
@@ -110,7 +110,7 @@ TEST(SharedFeatures, of_any_pairs_in_any_order_are_those_that_measuring_finds)
                 shared += points.insert({own.on_shape.x(), own.on_triangle.x()}).second ? 0 : 1;
             }
         }
-        EXPECT_GT(shared, 500) << sheets.name; // Else nothing was asked.
+        EXPECT_GT(shared, 500) << sheets.name; // Shows that the test is not empty.
     }
 }
 

@@ -24,7 +24,7 @@ void expect_finite(const char* shape, const ClosestPoints& answer)
     ASSERT_TRUE(std::isfinite(answer.distance) && std::isfinite(answer.distance_error));
 }
 
-/// Anything: zeros, numbers of any size up to `most`, and numbers that others are made of.
+/// Random numbers: zeros, any size up to `most`, and multiples of earlier ones.
 class AnyNumbers
 {
 public:

@@ -16,11 +16,11 @@
 #include <utility>
 #include <vector>
 
-/// What programs say to command lines, without starting them.
+/// Reactions of programs to command lines, without starting them.
 namespace tactus::test
 {
 
-/// What reads a program's command line as its main() does, and returns the exit code.
+/// Parser of a program's command line like its main(); returns the exit code.
 using Parse = std::function<int(int argc, char** argv)>;
 
 inline std::string replaced(std::string text, const std::string& part, const std::string& by)
@@ -32,8 +32,8 @@ inline std::string replaced(std::string text, const std::string& part, const std
     return text;
 }
 
-/// Words with blanks between: '' is an empty one, and \s, \n and \e are what one can't hold as it
-/// is.
+/// Words separated by blanks: '' is an empty one; \s, \n and \e stand for characters that a word
+/// cannot contain.
 inline std::vector<std::string> words_of(const std::string& line)
 {
     std::istringstream stream(line);
@@ -50,7 +50,7 @@ inline std::vector<std::string> words_of(const std::string& line)
     return words;
 }
 
-/// Checks that the program leaves with this code. The first word is its name.
+/// Expects that the program exits with this code. The first word is its name.
 inline void expect_left(const Parse& parse, std::vector<std::string> words, int code)
 {
     std::vector<char*> arguments;
@@ -61,7 +61,7 @@ inline void expect_left(const Parse& parse, std::vector<std::string> words, int 
     EXPECT_EQ(parse(static_cast<int>(arguments.size()), arguments.data()), code);
 }
 
-/// What it says on stderr before it does so.
+/// Output on stderr before the exit.
 inline std::string refusal_of(const Parse& parse, const std::vector<std::string>& words,
                               int code = kExitUsage)
 {
@@ -70,7 +70,7 @@ inline std::string refusal_of(const Parse& parse, const std::vector<std::string>
     return testing::internal::GetCapturedStderr();
 }
 
-/// What it says on stdout before it leaves with success.
+/// Output on stdout before a successful exit.
 inline std::string shown_by(const Parse& parse, const std::string& line)
 {
     testing::internal::CaptureStdout();
@@ -78,8 +78,8 @@ inline std::string shown_by(const Parse& parse, const std::string& line)
     return testing::internal::GetCapturedStdout();
 }
 
-/// Checks each line of a table: CODE | COMMAND | what is said on stderr | VALUES. Each of the
-/// values takes the place of {} in both. Returns how many commands those were.
+/// Checks each line of a table: CODE | COMMAND | text on stderr | VALUES. Each value replaces {} in
+/// both. Returns the number of commands.
 inline std::size_t expect_refusals(const Parse& parse, const std::string& table)
 {
     std::size_t commands = 0;

@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <fstream>
 
-/// What spm_build says of sizes and places that are hardly meant, and of memory.
+/// Notes of spm_build about unlikely sizes and places, and about memory.
 
 namespace tactus::spm_build
 {

@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-/// How spm_build turns, sizes and moves what it read.
+/// Rotation, size and displacement by spm_build.
 
 namespace tactus::spm_build
 {
@@ -17,7 +17,7 @@ namespace
 
 using Point = std::array<double, 3>;
 
-/// The corner (0.1, 0.2, 0.3) of a model in the world, by hand.
+/// Corner (0.1, 0.2, 0.3) of a model in the world, computed separately.
 Point corner_of(const Pose& pose)
 {
     const auto [x, y, z, w] = pose.rotation;
@@ -87,7 +87,7 @@ TEST(BuildPlacing, moves_a_scenes_middle_to_the_origin_and_says_by_how_much)
                                      {"right", 1, {kUpright, {104.0, 7.0, 5.0}, 3.0}, {}}};
     std::vector<std::string> notes;
     ASSERT_FALSE(place_objects({.is_centered = true}, kBoxes, objects, notes));
-    // The boxes reach from 99 to 107, 4 to 10 and 0 to 8.
+    // The boxes extend from 99 to 107, 4 to 10 and 0 to 8.
     expect_near(objects[0].pose.translation_m, {-3.0, 0.0, -3.0});
     expect_near(objects[1].pose.translation_m, {1.0, 0.0, 1.0});
     EXPECT_EQ(notes, std::vector<std::string>{"moved by -103, -7, -4 m to the origin"});

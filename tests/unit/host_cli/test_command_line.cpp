@@ -83,7 +83,7 @@ struct Form
     }
 };
 
-/// The line on stderr that wrong usage gets.
+/// Line on stderr after wrong usage.
 std::string refusal_of(const Words& words)
 {
     Form form;
@@ -92,7 +92,7 @@ std::string refusal_of(const Words& words)
     return testing::internal::GetCapturedStderr();
 }
 
-/// What goes to stdout before the program is to leave with success.
+/// Output on stdout before a successful exit.
 std::string shown_by(const Words& words)
 {
     Form form;

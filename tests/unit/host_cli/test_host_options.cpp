@@ -25,7 +25,7 @@ int code_of(const std::variant<Options, int>& parsed)
     return code == nullptr ? kExitDone : *code;
 }
 
-/// As the main() of the program that the first word names.
+/// Parses like the main() of the program named by the first word.
 int parse_host_options(int argc, char** argv)
 {
     const std::string_view name = argv[0];

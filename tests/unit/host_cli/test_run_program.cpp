@@ -16,7 +16,7 @@ namespace tactus
 namespace
 {
 
-/// What the program said on stderr; checks the code that it left with.
+/// Output on stderr; checks the exit code.
 std::string said_by(const std::string& hint, const std::function<int()>& body, int code)
 {
     testing::internal::CaptureStderr();

@@ -17,7 +17,7 @@ namespace tactus
 namespace
 {
 
-/// What a process of its own returns, or the signal that ended it, below zero.
+/// Exit code of a separate process, or the negative number of the signal that ended it.
 template <typename Work>
 int code_of(const Work& work)
 {
@@ -31,7 +31,7 @@ int code_of(const Work& work)
     return WIFSIGNALED(status) ? -WTERMSIG(status) : WEXITSTATUS(status);
 }
 
-/// 1 when the signal asked the program to end.
+/// Exit code; 1 if the signal requested the end.
 int code_after(int signal)
 {
     return code_of(

@@ -23,7 +23,7 @@ namespace
 
 using Visit = std::function<bool(const CertifiedCut&, const std::string&)>;
 
-/// What the oracle's own rounding may add: a millionth of the least bound there is.
+/// Possible rounding of the oracle: a millionth of the least bound.
 constexpr double kTolerance_diag = 1e-13;
 
 bool visit_rounds(const EncodedModel& model, std::uint32_t count, const Visit& visit)
@@ -51,7 +51,7 @@ bool visit_rounds(const EncodedModel& model, std::uint32_t count, const Visit& v
     return true;
 }
 
-/// Records in a random order, or those nearest to one of them first.
+/// Records in a random order, or by distance from one of them.
 std::vector<RecordId> any_order(const DecodedModel& model, bool is_local, std::mt19937_64& random)
 {
     std::vector<RecordId> order(model.header().counts().records);

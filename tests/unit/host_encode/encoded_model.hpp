@@ -18,8 +18,8 @@
 namespace tactus
 {
 
-/// A mesh, what it was simplified to, the file written from that, and the file read back; throws in
-/// words when that is refused.
+/// Mesh with its simplification, the file written from that, and the file read back; throws the
+/// text of a refusal.
 struct EncodedModel : test::MadeModel
 {
     explicit EncodedModel(test::MadeModel made);
@@ -31,18 +31,18 @@ struct EncodedModel : test::MadeModel
 [[nodiscard]] std::unique_ptr<EncodedModel>
 encode_source(std::string name, const TriangleMesh& mesh, std::uint32_t base_faces);
 
-/// The golden model, and shapes through the real simplifier: closed, with a border, with sharp
-/// edges. Made once in a process.
+/// Golden model, and shapes through the real simplifier: closed, with a border, with sharp edges.
+/// Made once a process.
 [[nodiscard]] const std::vector<std::unique_ptr<EncodedModel>>& sample_models();
 
-/// A mesh of a test that runs once for each: generated, or a well-known one's.
+/// Mesh of a parameterised test: generated or well known.
 struct SampleMesh
 {
     const char* name;
     std::optional<TriangleMesh> (*make)();
     std::uint32_t base_faces;
 
-    /// Null without a mesh.
+    /// Encoded model; null without a mesh.
     [[nodiscard]] std::unique_ptr<EncodedModel> encode() const;
 };
 
@@ -53,11 +53,11 @@ inline std::ostream& operator<<(std::ostream& out, const SampleMesh& mesh)
 
 /// Smooth, of genus 1, open, sharp, thin and with needles.
 [[nodiscard]] std::vector<SampleMesh> generated_meshes();
-/// The well-known ones; the smaller are all but igea, the largest by far.
+/// Well-known meshes; the smaller ones are all except igea, by far the largest.
 [[nodiscard]] std::vector<SampleMesh> known_meshes();
 [[nodiscard]] std::vector<SampleMesh> smaller_known_meshes();
 
-/// Names the cases of a test over meshes.
+/// Name of a case in a test over meshes.
 [[nodiscard]] inline std::string mesh_name(const testing::TestParamInfo<SampleMesh>& mesh)
 {
     return mesh.param.name;

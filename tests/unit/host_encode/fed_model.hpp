@@ -13,18 +13,18 @@
 namespace tactus::test
 {
 
-/// The controller's model, with base mesh and a choice of chunks put in by hand and nothing else.
+/// Model with base mesh and selected chunks only, loaded directly.
 class FedModel
 {
 public:
     /// Parses and links the chunks. The store must outlive it.
     FedModel(const ModelStore& store, std::span<const ChunkId> chunks);
 
-    /// Splits every record that is linked.
+    /// Splits every linked record.
     void split_linked();
 
     [[nodiscard]] std::uint32_t linked_records() const;
-    /// Whether the face is active in this state and no record splits it further.
+    /// True if the face is active in this state and no record splits it further.
     [[nodiscard]] bool is_exact(FaceId face, FaceState state) const;
 
 private:

@@ -15,7 +15,7 @@ namespace tactus
 {
 
 using Point = std::array<double, 3>;
-/// A face as the positions of its corners, the least first: independent of ids.
+/// Face by the positions of its corners, the least first: independent of ids.
 using PlainFace = std::array<Point, 3>;
 
 [[nodiscard]] inline Vec3 to_vec(const Point& p)
@@ -25,14 +25,14 @@ using PlainFace = std::array<Point, 3>;
 
 [[nodiscard]] std::vector<PlainFace> faces_of(const TriangleMesh& mesh);
 
-/// The faces of the source on its grid, in the source's frame.
+/// Faces of the source on its grid, in the source's frame.
 [[nodiscard]] std::vector<PlainFace> source_faces(const EncodedModel& model);
 
-/// The largest distance of points of the source, corners and others, to the mesh, by brute force.
+/// Greatest distance of points of the source, corners and others, to the mesh, by brute force.
 [[nodiscard]] long double sampled_distance(const EncodedModel& model, const TriangleMesh& mesh,
                                            int samples, test::Random& random);
 
-/// Whether some point of a fine raster on the face lies in the zone.
+/// True if some point of a fine raster on the face is in the zone.
 [[nodiscard]] bool reaches_into(const Zone& zone, const PlainFace& face);
 
 } // namespace tactus

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// How tight the certificate is, and that the figures which say so can't be had by cheating.
+/// Tightness of the certificate, and proof that its figures cannot be falsified.
 
 #include "host_tools/encode/numbering.hpp"
 #include "tests/shared/certificate_figures.hpp"
@@ -22,7 +22,7 @@ namespace tactus::test
 namespace
 {
 
-/// On the worst mesh; docs/benchmarks/encoder.json has what is measured.
+/// Ratios of the worst mesh; docs/benchmarks/encoder.json has the measurements.
 constexpr double kSixthRatio = 1.5;
 constexpr double kTwoThirdsRatio = 3.5;
 constexpr std::size_t kPoints = 200'000;
@@ -108,7 +108,7 @@ TEST(CertificateFigures, bounds_a_fifth_too_small_show_in_the_largest)
     }
 }
 
-/// Faces with their bounds, each turned to its least corner, sorted.
+/// Sorted faces with their bounds, each rotated to its least corner.
 std::vector<std::pair<Face, double>> sorted_faces(const CertifiedCut& cut)
 {
     std::vector<std::pair<Face, double>> sorted;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The bounds that a file has, against its source: in every cut each point of the source is within
-/// the bound of some face. A million points over all meshes, in cuts of every level.
+/// Bounds of a file against its source: in every cut each point of the source is within the bound
+/// of some face. A million points over all meshes, in cuts of every level.
 
 #include "tests/unit/host_encode/certified_cuts.hpp"
 #include "tests/unit/host_encode/encoded_model.hpp"
@@ -16,7 +16,7 @@ namespace tactus::test
 namespace
 {
 
-constexpr std::uint32_t kCuts = 8; ///< Of each kind.
+constexpr std::uint32_t kCuts = 8; ///< Cuts of each kind.
 constexpr std::size_t kCutPoints = 11'000;
 
 class CertifiedCuts : public testing::TestWithParam<SampleMesh>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The bounds of a file of 1.1 M faces, and of the largest well-known mesh with ten times as many
+/// Bounds of a file of 1.1 M faces, and of the largest well-known mesh with ten times as many
 /// points as in every run.
 
 #include "tests/shared/certificate_figures.hpp"

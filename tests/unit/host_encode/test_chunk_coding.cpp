@@ -57,7 +57,7 @@ std::int32_t arbitrary_number(std::int32_t most)
     return *rc::gen::element(0, 1, -1, most, -most, number, number / 1'000, number / 1'000'000);
 }
 
-/// Any record that a chunk can tell, edges of the ranges included.
+/// Random record that a chunk can code, including the limits of the ranges.
 CodedRecord arbitrary_record(RecordId id, const ModelCounts& counts)
 {
     CodedRecord record;
@@ -155,7 +155,7 @@ TEST(ChunkCoding, the_chunk_of_another_number_is_refused)
     EXPECT_EQ(parse(some_chunk({1}), {2}, *page).error(), SpmRefusal::wrong_checksum);
 }
 
-/// Writes what it is told but for one bit, and goes on as if it had been told that.
+/// Encoder that inverts one bit, and continues as if that were the input.
 class BendingEncoder
 {
 public:
@@ -213,7 +213,7 @@ TEST(ChunkCoding, a_bent_bit_of_a_record_is_read_as_bent_or_refused)
         ASSERT_TRUE(grammar.is_sound()) << "bit " << bent;
         for (std::size_t place = 0; place < written.size(); ++place)
         {
-            // What a smaller fan or another kind of anchor leaves unsaid.
+            // Fields that a smaller fan or another kind of anchor does not store.
             const std::size_t named = written[place].fan_size() - 1;
             std::fill(written[place].others.begin() + static_cast<std::ptrdiff_t>(named),
                       written[place].others.end(), Owner{});
@@ -230,7 +230,8 @@ RC_GTEST_PROP(RangeCoder, gives_back_bits_of_any_probability, (std::uint32_t see
 {
     std::mt19937 random(seed);
     constexpr std::uint32_t kBits = 3'000;
-    const bool is_carrying = seed % 2 == 0; // Long runs of unlikely bits push carries far back.
+    // Long runs of unlikely bits propagate carries far back.
+    const bool is_carrying = seed % 2 == 0;
     std::vector<Probability> start;
     std::vector<std::uint32_t> bits;
     for (std::uint32_t i = 0; i < kBits; ++i)

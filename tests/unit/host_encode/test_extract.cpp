@@ -31,7 +31,8 @@ std::unique_ptr<EncodedModel> encode(const std::string& name, const TriangleMesh
     return encode_source(name, mesh, 60);
 }
 
-/// Smooth, sharp, open, of genus 1, with needles and poles, of two components, far from the origin.
+/// Models: smooth, sharp, open, of genus 1, with needles and poles, of two components, far from the
+/// origin.
 const std::vector<const EncodedModel*>& models()
 {
     static const std::vector<std::unique_ptr<EncodedModel>> own = []
@@ -74,7 +75,8 @@ const std::vector<const EncodedModel*>& models()
     return all;
 }
 
-/// Round a corner of the source, so that it never misses, from a few faces to a third of it.
+/// Zone around a corner of the source, so that it always contains a part, from a few faces to a
+/// third of it.
 Zone random_zone(const EncodedModel& model, Random& random)
 {
     const std::vector<PlainFace> source = source_faces(model);
@@ -89,8 +91,8 @@ Zone random_zone(const EncodedModel& model, Random& random)
                    center + Vec3::Constant(size) + random.in_cube(0.5 * size)};
 }
 
-/// Every source face with a point in the zone is in the mesh, as often as in the source; returns
-/// how many those are.
+/// Expects every source face with a point in the zone in the mesh, as often as in the source;
+/// returns their number.
 std::uint32_t expect_exact_in(const Zone& zone, const EncodedModel& model, const TriangleMesh& mesh)
 {
     const std::vector<PlainFace> faces = faces_of(mesh);
@@ -114,7 +116,7 @@ std::uint32_t expect_exact_in(const Zone& zone, const EncodedModel& model, const
     return inside;
 }
 
-/// Different demands and what they combine to.
+/// Random combination of demands.
 ExtractRequest random_request(const EncodedModel& model, Random& random)
 {
     ExtractRequest request;
@@ -158,7 +160,7 @@ TEST(Extract, the_mesh_is_manifold_at_every_cut)
     Random random(1);
     for (const EncodedModel* model : models())
     {
-        // A loose triangle on its way into another hangs on one of its edges.
+        // A loose triangle that moves into another shares one of its edges.
         if (model->name != "soup")
         {
             expect_manifold_cuts(*model, 40, random);
@@ -208,7 +210,7 @@ TEST(Extract, every_source_face_in_the_zone_is_there_exactly)
         }
         if (model->fields.base_faces < model->fields.source_faces / 4)
         {
-            EXPECT_GT(coarse_ones, 0U); // It is not fine everywhere.
+            EXPECT_GT(coarse_ones, 0U); // Not everything is fine.
         }
     }
 }
@@ -227,7 +229,7 @@ TEST(Extract, no_point_of_the_source_is_farther_than_the_error_asked_for)
             EXPECT_LE(sut.error_max_m, error_m);
             EXPECT_LE(sampled_distance(*model, sut.mesh, 250, random),
                       static_cast<long double>(sut.error_max_m + 1e-12));
-            EXPECT_LE(sut.mesh.faces.size(), faces); // More error, fewer faces.
+            EXPECT_LE(sut.mesh.faces.size(), faces); // A larger error gives fewer faces.
             faces = sut.mesh.faces.size();
         }
     }
@@ -320,7 +322,7 @@ TEST(Extract, the_faces_beside_a_zone_fill_up_what_is_left)
         expect_exact_in(zone, *model, sut);
         EXPECT_LE(sut.faces.size(), wanted);
         EXPECT_GE(sut.faces.size() + 1, wanted);
-        // Too few: the zone gets what it needs, and nothing else does.
+        // Too few faces: the zone gets its needs, and nothing else does.
         EXPECT_EQ(faces_of(extract(*model->decoded, {1, {}, zone}).mesh), faces_of(least));
     }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// Which record changed a face last: its finest corner (I10). And what errors faces have.
+/// I10: the record that changed a face last is its finest corner. Also the errors of faces.
 
 #include "host_tools/encode/face_history.hpp"
 #include "host_tools/encode/replay.hpp"
@@ -57,7 +57,7 @@ TEST(FaceHistory, only_faces_of_the_source_have_error_zero)
         const QuantisedMesh& mesh = model->prepared.mesh;
         const Numbering numbering = number_model(mesh, model->simplification);
         const FaceHistory sut = trace_faces(mesh, model->simplification, numbering);
-        // The collapses, played on corners: a face is original while it has its own corners.
+        // Collapses replayed on corners: a face is original while it has its own corners.
         std::set<std::uint32_t> changed;
         for (const Collapse& collapse : model->simplification.collapses)
         {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// I11: influence boxes miss no chunk that a ball needs.
+/// I11: influence boxes miss no chunk that a sphere needs.
 
 #include "host_tools/encode/influence.hpp"
 #include "host_tools/encode/replay.hpp"
@@ -29,7 +29,7 @@ double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b)
     return (p - a - t * (b - a)).norm();
 }
 
-/// Least of three segment distances and, where the foot lies inside, the plane's.
+/// Least of three segment distances and, if the foot is inside, the plane's.
 double distance_to_triangle(const Vec3& p, const Triangle& t)
 {
     double least = std::min({distance_to_segment(p, t[0], t[1]), distance_to_segment(p, t[1], t[2]),
@@ -43,7 +43,7 @@ double distance_to_triangle(const Vec3& p, const Triangle& t)
     return is_inside ? std::min(least, std::abs(normal.dot(p - t[0])) / normal.norm()) : least;
 }
 
-/// A face that one record splits: its corners before the split, and its bound.
+/// Face that one record splits: its corners before the split, and its bound.
 struct SplitFace
 {
     Triangle corners;
@@ -75,8 +75,8 @@ std::vector<std::vector<SplitFace>> find_split_faces(const DecodedModel& model)
     return all;
 }
 
-/// The records a ball needs: those that split a face state within reach of it, and all that these
-/// depend on. More than any single cut can ask for.
+/// Records that a sphere needs: those that split a face state in its reach, and all dependencies.
+/// More than any single cut can request.
 std::set<std::uint32_t> find_needed(const DecodedModel& model,
                                     const std::vector<std::vector<SplitFace>>& split_faces,
                                     const Vec3& centre_m, double radius_m)
@@ -113,7 +113,7 @@ std::set<std::uint32_t> find_needed(const DecodedModel& model,
     return needed;
 }
 
-/// Every chunk's box in metres, as a reader finds it in the index.
+/// Every chunk's box in metres, as read from the index.
 std::vector<Eigen::AlignedBox3d> read_chunk_boxes(const ModelStore& store)
 {
     std::vector<Eigen::AlignedBox3d> boxes;
@@ -180,7 +180,7 @@ TEST(Influence, boxes_miss_no_chunk_that_a_ball_needs)
             }
         }
         EXPECT_GT(needed_chunks, 0U) << model->name;
-        // Boxes that hold everything would miss nothing either.
+        // Boxes that contain everything would miss nothing either.
         if (boxes.size() > 16)
         {
             EXPECT_GT(spared_chunks, 0U) << model->name;

@@ -24,7 +24,7 @@ std::int64_t centroid_sum(const QuantisedMesh& mesh, std::uint32_t face, std::si
     return sum;
 }
 
-/// Sorts where the code under test selects: the same cells, by another way.
+/// Checks by sorting, where the code under test selects the same cells.
 void check_cell(const QuantisedMesh& mesh, const std::vector<std::uint32_t>& buckets,
                 std::vector<std::uint32_t> faces, std::uint32_t first_rank)
 {

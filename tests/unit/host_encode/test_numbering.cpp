@@ -13,7 +13,7 @@ namespace tactus
 namespace
 {
 
-/// Written down apart from the code under test: tiers end at 64, 320, 1600, 8000, ...
+/// Tier, written separately from the code under test: tiers end at 64, 320, 1600, 8000, ...
 std::uint32_t tier_of(std::uint32_t record)
 {
     std::uint32_t tier = 0;
@@ -24,7 +24,7 @@ std::uint32_t tier_of(std::uint32_t record)
     return tier;
 }
 
-/// Bit by bit, all 24 bits of each coordinate, highest first.
+/// Comparison bit by bit, all 24 bits of each coordinate, highest first.
 bool is_before_in_morton_order(const std::array<std::int32_t, 3>& a,
                                const std::array<std::int32_t, 3>& b)
 {

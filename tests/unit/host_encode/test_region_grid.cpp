@@ -18,7 +18,7 @@ bool is_marked(const RegionGrid& grid, std::size_t region)
     return (static_cast<unsigned>(grid.occupied[region / 8]) >> (region % 8) & 1U) != 0;
 }
 
-/// Whether the box of any face reaches into the cell; by trying every face.
+/// True if the box of any face reaches into the cell, by trying every face.
 bool is_touched(const RegionGrid& grid, const QuantisedMesh& mesh,
                 const std::array<std::uint32_t, 3>& cell)
 {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// Regions at full resolution (I11): with the chunks that the two-level index names for a zone, and
-/// none besides, the controller's linker and forest bring back every source face that the zone
-/// touches.
+/// I11: with exactly the chunks that the two-level index names for a zone, the controller's linker
+/// and forest restore every source face that the zone touches.
 
 #include "host_tools/encode/replay.hpp"
 #include "tests/shared/frame_rig.hpp"
@@ -31,7 +30,7 @@ namespace
 
 constexpr int kZones = 40;
 
-/// A face as full refinement leaves it.
+/// Face after full refinement.
 struct SourceFace
 {
     FaceId id;
@@ -64,8 +63,7 @@ std::vector<SourceFace> source_faces(const DecodedModel& model)
     return faces;
 }
 
-/// What is left of a polygon on the side of an axis-aligned plane where sign x coordinate is at
-/// most sign x limit.
+/// Part of a polygon on the side of an axis-aligned plane with sign x coordinate <= sign x limit.
 std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, Eigen::Index axis, double limit,
                           double sign)
 {
@@ -88,7 +86,7 @@ std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, Eigen::Index axis, d
     return left;
 }
 
-/// Not host_tools/encode's decision: brute force in extended precision, or cutting.
+/// Separate decision: brute force in extended precision, or clipping.
 bool is_touched(const Zone& zone, const Face& face)
 {
     if (const auto* ball = std::get_if<BallZone>(&zone))
@@ -105,8 +103,8 @@ bool is_touched(const Zone& zone, const Face& face)
     return !polygon.empty();
 }
 
-/// A corner of the source, the middle of an edge, a corner of the model's box or of one of the
-/// header's regions, or a place beside a corner of the source.
+/// Corner of the source, midpoint of an edge, corner of the model's box or of one of the header's
+/// regions, or a place beside a corner of the source.
 Vec3 random_center(const ModelHeader& header, const std::vector<SourceFace>& faces, Random& random)
 {
     const Face& face = faces[random.below(static_cast<std::uint32_t>(faces.size()))].corners_m;
@@ -133,7 +131,7 @@ Vec3 random_center(const ModelHeader& header, const std::vector<SourceFace>& fac
     }
 }
 
-/// From less than a face to the whole model; a box may be a slab, a rod or a point.
+/// Zone from less than a face to the whole model; a box may be a slab, a rod or a point.
 Zone random_zone(const ModelHeader& header, const std::vector<SourceFace>& faces, Random& random)
 {
     const Vec3 center_m = random_center(header, faces, random);
@@ -162,7 +160,7 @@ std::string name_of(const Zone& zone)
     return text.str();
 }
 
-/// A model, its index and the faces that it must give back.
+/// Model with its index and the faces that it must restore.
 struct Subject
 {
     explicit Subject(std::unique_ptr<EncodedModel> encoded)
@@ -178,7 +176,7 @@ struct Subject
         return touched;
     }
 
-    /// How many of the faces aren't there when all that links of these chunks is split.
+    /// Number of wanted faces missing after all linked records of these chunks are split.
     [[nodiscard]] std::size_t missing(const std::vector<SourceFace>& wanted,
                                       std::span<const ChunkId> chunks) const
     {

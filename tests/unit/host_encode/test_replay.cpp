@@ -18,7 +18,7 @@ namespace
 
 using Point = std::array<double, 3>;
 
-/// Faces as corner positions, each turned to begin with its least corner: independent of ids.
+/// Faces by corner positions, each rotated to its least corner: independent of ids.
 std::multiset<std::array<Point, 3>> faces_by_position(const TriangleMesh& mesh)
 {
     std::multiset<std::array<Point, 3>> faces;
@@ -48,7 +48,7 @@ TriangleMesh source_of(const PreparedMesh& prepared)
     return mesh;
 }
 
-/// Directed edges are unique, so no two faces lie on the same side of an edge.
+/// True if directed edges are unique, so that no two faces are on the same side of an edge.
 bool is_manifold(const TriangleMesh& mesh)
 {
     std::set<std::pair<std::uint32_t, std::uint32_t>> edges;

@@ -24,7 +24,7 @@ std::string content_of(const std::filesystem::path& path)
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// What a reader says of a file; empty when it finds nothing wrong.
+/// Fault found by a reader; empty if there is none.
 std::string read_back(const std::filesystem::path& path)
 {
     const auto store = ModelStore::open(path);

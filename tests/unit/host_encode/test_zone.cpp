@@ -22,7 +22,7 @@ LongPoint to_long(const Vec3& v)
     return test::DistanceOracle::difference(v, Vec3::Zero());
 }
 
-/// Whether anything is left of the triangle when all that lies outside the box is cut off.
+/// True if a part of the triangle remains after clipping to the box.
 bool oracle_touches(const BoxZone& box, const Triangle& triangle)
 {
     std::vector<LongPoint> polygon{to_long(triangle[0]), to_long(triangle[1]),
@@ -66,7 +66,7 @@ bool oracle_touches(const BallZone& ball, const Triangle& triangle)
            static_cast<long double>(ball.radius_m);
 }
 
-/// Needles and specks among them.
+/// Random triangle, including needles and tiny ones.
 Triangle random_triangle(Random& random)
 {
     const Vec3 center = random.in_cube(2.0);
@@ -80,8 +80,8 @@ Triangle random_triangle(Random& random)
     return triangle;
 }
 
-/// Compares where a slightly larger and a slightly smaller zone agree, so that rounding can't
-/// matter.
+/// Compares cases in which a slightly larger and a slightly smaller zone agree, so that rounding
+/// has no effect.
 template <typename OneZone, typename Make>
 void expect_oracles_answers(std::uint64_t own, const Make& make)
 {

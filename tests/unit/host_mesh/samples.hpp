@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-/// The same mesh in each format, written here and not by the library.
+/// The same mesh in each format, written here independently of the library.
 namespace tactus::test
 {
 
@@ -141,7 +141,7 @@ struct Sample
     std::string bytes;
 };
 
-/// Every format, with the extension as the name's end.
+/// Every format, with the extension at the end of the name.
 inline std::vector<Sample> in_all_formats(const TriangleMesh& mesh)
 {
     return {{"ascii.ply", as_ascii_ply(mesh)},
@@ -154,7 +154,7 @@ inline std::vector<Sample> in_all_formats(const TriangleMesh& mesh)
             {"solid.stl", as_binary_stl(mesh, "solid x")}};
 }
 
-/// The positions of every face's corners, so that STL compares with indexed formats.
+/// Positions of every face's corners, so that STL compares with indexed formats.
 inline std::vector<std::array<std::array<double, 3>, 3>> corners_of(const TriangleMesh& mesh)
 {
     std::vector<std::array<std::array<double, 3>, 3>> corners;

@@ -31,7 +31,7 @@ inline Result<MeshFile, Refusal> read_bytes(const std::string& name, std::string
     return read_mesh_file(directory.write(name, bytes));
 }
 
-/// The error's text; fails when there is none or when it is not one line.
+/// Text of the error; fails if there is none or it is not one line.
 inline std::string refusal(const Result<MeshFile, Refusal>& result)
 {
     if (result)
@@ -43,14 +43,14 @@ inline std::string refusal(const Result<MeshFile, Refusal>& result)
     return result.error().text;
 }
 
-/// A tetrahedron whose apex needs every digit of a double.
+/// Tetrahedron whose apex needs every digit of a double.
 inline TriangleMesh tetrahedron()
 {
     return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.1234567890123456, 0.25, 1}},
             {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
 }
 
-/// Independent of the library; each vertex has a face.
+/// Manifold test independent of the library; each vertex must have a face.
 inline bool is_manifold_with_borders(const std::vector<Face>& faces, std::size_t vertices)
 {
     std::set<std::uint32_t> used;
@@ -67,7 +67,7 @@ inline bool is_manifold_with_borders(const QuantisedMesh& mesh)
     return is_manifold_with_borders(mesh.faces, mesh.positions.size());
 }
 
-/// Edges without a face on the other side.
+/// Number of edges with a face on one side only.
 template <typename Faces>
 inline std::size_t border_edges(const Faces& faces)
 {
@@ -103,7 +103,7 @@ inline std::int64_t euler_characteristic(const Faces& faces, std::size_t vertice
            static_cast<std::int64_t>(faces.size());
 }
 
-/// Positive when a closed mesh's faces are counter-clockwise from outside.
+/// Signed volume; positive if a closed mesh's faces are counter-clockwise from outside.
 inline double signed_volume(const TriangleMesh& mesh)
 {
     double six_volumes = 0.0;

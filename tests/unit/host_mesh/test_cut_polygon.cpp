@@ -12,8 +12,8 @@
 #include <numeric>
 #include <random>
 
-/// The oracle is the shoelace formula: triangles that all turn as the polygon does, and whose areas
-/// add up to the polygon's, cover it once.
+/// The oracle is the shoelace formula: triangles with the polygon's orientation whose areas add up
+/// to the polygon's cover it once.
 namespace tactus::test
 {
 
@@ -42,7 +42,7 @@ Polygon begun_at(Polygon polygon, std::size_t first)
     return polygon;
 }
 
-/// A point of each kind of plane: the last is across no axis.
+/// Points in each kind of plane; the last is perpendicular to no axis.
 std::vector<Point> in_space(const Polygon& polygon, std::size_t plane)
 {
     std::vector<Point> points;
@@ -57,7 +57,7 @@ std::vector<Point> in_space(const Polygon& polygon, std::size_t plane)
     return points;
 }
 
-/// What is wrong with a cut of the polygon; empty when nothing is.
+/// Fault of a cut of the polygon; empty if there is none.
 std::string fault_of(const Polygon& polygon, std::size_t plane)
 {
     const auto sut = detail::cut_polygon(in_space(polygon, plane));
@@ -70,7 +70,7 @@ std::string fault_of(const Polygon& polygon, std::size_t plane)
         return "has another number of triangles";
     }
     double covered = 0.0;
-    std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges; // Cancel where triangles meet.
+    std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges; // Edges cancel between triangles.
     for (const auto& [a, b, c] : *sut)
     {
         const double area = shoelace({polygon[a], polygon[b], polygon[c]});
@@ -138,7 +138,7 @@ Polygon spiral(int turns)
     return polygon;
 }
 
-/// A triangle with three corners more on each side.
+/// Triangle with three additional corners on each side.
 Polygon with_straight_corners()
 {
     const Polygon corners{{0, 0}, {0.7, 0.1}, {0.3, 0.9}};
@@ -280,7 +280,7 @@ TEST(CutPolygon, refuses_what_crosses_itself_or_has_no_area)
         detail::cut_polygon(std::vector<Point>{{0, 0, 0}, {HUGE_VAL, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
 }
 
-/// Corners at random distances round a middle: star-shaped, with deep notches.
+/// Corners at random distances around a middle: star-shaped, with deep notches.
 TEST(CutPolygon, covers_random_polygons)
 {
     for (std::uint32_t seed = 1; seed <= 300; ++seed)
@@ -300,7 +300,7 @@ TEST(CutPolygon, covers_random_polygons)
     }
 }
 
-/// A C bracket of thickness 1 in every format that has polygons.
+/// C bracket of thickness 1 in every format that has polygons.
 TEST(PolygonSink, gives_concave_solids_their_surface_in_every_format)
 {
     const Polygon c{{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 2}, {3, 2}, {3, 3}, {0, 3}};
@@ -343,7 +343,7 @@ TEST(PolygonSink, gives_concave_solids_their_surface_in_every_format)
             faces += "\n";
             stl += "endloop\nendfacet\n";
         }
-        std::string obj = obj_faces; // Before the vertices, which OBJ allows.
+        std::string obj = obj_faces; // Faces before vertices, which OBJ permits.
         for (const Point& p : points)
         {
             obj += fmt::format("v {} {} {}\n", p[0], p[1], p[2]);

@@ -17,7 +17,7 @@
 #include <vector>
 #endif
 
-/// Our triangles of random simple polygons, which CGAL makes, by CGAL's exact predicates.
+/// Triangles of random simple polygons made by CGAL, checked by CGAL's exact predicates.
 namespace tactus::test
 {
 

@@ -13,8 +13,8 @@
 #include <thread>
 #include <vector>
 
-/// The formats as programs and public data sets write them: one cube in every spelling, and files
-/// that are something else.
+/// Formats as programs and public data sets write them: one cube in every variant, and files of
+/// other kinds.
 namespace tactus::test
 {
 
@@ -23,7 +23,7 @@ namespace
 
 using namespace std::string_literals;
 
-/// A line for each vertex of a cube of edge 2, with `tail` behind its numbers.
+/// One line for each vertex of a cube of edge 2, with `tail` after its numbers.
 std::string cube_lines(const std::string& head, const std::string& tail = "", double scale = 1.0)
 {
     std::string text;
@@ -38,7 +38,7 @@ std::string cube_lines(const std::string& head, const std::string& tail = "", do
 constexpr std::array<std::array<int, 4>, 6> kQuads{
     {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}};
 
-/// A line for each face: `form` has four places for its corners, which count from `first`.
+/// One line for each face: `form` has four places for its corners, which count from `first`.
 std::string quad_lines(const std::string& form, int first = 0)
 {
     std::string text;
@@ -61,7 +61,7 @@ std::string with_line_ends(const std::string& text, const std::string& end)
 
 struct Dialect
 {
-    std::string name; ///< With the extension.
+    std::string name; ///< Name with extension.
     std::string bytes;
     std::size_t notes{0};
 };
@@ -205,7 +205,8 @@ std::vector<Dialect> ply_dialects()
     };
 }
 
-/// The first byte of the data is a line feed, which is no part of the header where lines end in CR.
+/// Binary PLY whose data begin with a line feed, which does not belong to the header if lines end
+/// in CR.
 std::string binary_ply(const std::string& line_end)
 {
     std::string bytes =

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-/// What only one of the formats has.
+/// Features of single formats.
 namespace tactus::test
 {
 
@@ -33,7 +33,7 @@ TEST(ReadObj, reads_negative_and_later_indices)
 {
     EXPECT_EQ(faces_of("a.obj", kObjSquare + "f -4 -3 -2\n"), (std::vector<Face>{{0, 1, 2}}));
     EXPECT_EQ(faces_of("a.obj", "f 1 2 3\n" + kObjSquare), (std::vector<Face>{{0, 1, 2}}));
-    // Counted from the vertices so far, not from all of the file.
+    // Negative numbers count from the vertices so far, not from the whole file.
     EXPECT_EQ(faces_of("a.obj", kObjSquare + "f -4 -3 -2\nv 9 9 9\n"),
               (std::vector<Face>{{0, 1, 2}}));
 }
@@ -187,7 +187,7 @@ TEST(ReadPly, cuts_polygons_into_triangles_and_drops_lines)
               std::vector<std::string>{"1 polygon with fewer than 3 corners dropped"});
 }
 
-/// Each in one line, which has these words.
+/// Each refusal is one line with these words.
 TEST(ReadText, refuses_what_is_broken)
 {
     const std::string off = "3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";

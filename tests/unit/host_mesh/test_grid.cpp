@@ -22,7 +22,7 @@ namespace
 
 using Height = std::function<double(double, double)>;
 
-/// A ground of columns x rows squares between two corners.
+/// Ground of columns x rows squares between two corners.
 TriangleMesh make_ground(unsigned columns, unsigned rows, std::array<double, 2> low,
                          std::array<double, 2> high, const Height& height)
 {
@@ -61,7 +61,7 @@ unsigned bits_chosen(const TriangleMesh& mesh)
     return on_its_grid(mesh, {.adds_bits = true}).position_bits;
 }
 
-/// Root mean square of how far heights are from their places, and of the heights themselves.
+/// Root mean square of the heights' errors, and of the heights.
 std::array<double, 2> height_error(const TriangleMesh& mesh, const PreparedMesh& sut)
 {
     double off = 0.0;
@@ -85,7 +85,7 @@ TriangleMesh make_dunes()
                        { return std::sin(0.00315 * x) * std::cos(0.00255 * y); });
 }
 
-/// Printed with that many digits and read again.
+/// Number printed with `digits` digits and read again.
 double printed(double value, int digits)
 {
     std::array<char, 40> text{};
@@ -101,7 +101,7 @@ TEST(Grid, takes_more_bits_for_relief_that_it_would_drown)
     const PreparedMesh usual = on_its_grid(dunes, {});
     EXPECT_EQ(usual.position_bits, 16U);
     const auto [usual_off, relief] = height_error(dunes, usual);
-    EXPECT_GT(usual_off, relief / 8); // A few steps of height are left.
+    EXPECT_GT(usual_off, relief / 8); // A few steps of height remain.
     const PreparedMesh sut = on_its_grid(dunes, {.adds_bits = true});
     const auto [off, same] = height_error(dunes, sut);
     EXPECT_LT(off, same / 20);
@@ -116,7 +116,7 @@ TEST(Grid, takes_more_bits_for_relief_that_it_would_drown)
 
 TEST(Grid, takes_more_bits_for_a_texture_the_larger_the_plate_it_lies_on)
 {
-    // Each eighth of a wave is a vertex, of which every second one has a height of whole decimals.
+    // Each eighth of a wave is a vertex; every second one has a height in whole decimals.
     const Height texture = [](double x, double y)
     { return 20e-6 * std::sin(1e3 * std::numbers::pi * x) * std::cos(1e3 * std::numbers::pi * y); };
     unsigned before = 16;
@@ -138,7 +138,7 @@ TEST(Grid, takes_more_bits_for_a_texture_the_larger_the_plate_it_lies_on)
 
 TEST(Grid, takes_more_bits_for_edges_of_a_few_steps)
 {
-    // A board of 0.3 m with strips of copper, 35 um high.
+    // Board of 0.3 m with strips of copper, 35 um high.
     TriangleMesh board;
     const auto add_box = [&](std::array<double, 3> low, std::array<double, 3> high)
     {
@@ -191,7 +191,7 @@ TEST(Grid, takes_no_bits_for_what_has_no_relief)
             six_decimals.positions[v][axis] = std::round(x * 1e6) / 1e6;
         }
     }
-    // The source's own rounding makes slopes that are not meant.
+    // The source's rounding makes unintended slopes.
     EXPECT_EQ(bits_chosen(floats), 16U);
     EXPECT_EQ(bits_chosen(six_digits), 16U);
     EXPECT_EQ(bits_chosen(six_decimals), 16U);
@@ -223,7 +223,7 @@ TEST(Grid, is_as_fine_as_its_neighbours_want_it)
 TEST(Grid, parts_no_vertex_from_the_edge_it_lies_on)
 {
     // Fine squares to the left of x = 0, coarse ones to the right: three in four vertices of that
-    // line lie in the middle of a coarse edge.
+    // line are in the interior of a coarse edge.
     const Height slanted = [](double x, double y) { return 0.21 * x + 0.13 * y; };
     TriangleMesh mesh = make_ground(32, 32, {-0.25, -0.125}, {0, 0.125}, slanted);
     const TriangleMesh coarse = make_ground(8, 8, {0, -0.125}, {0.25, 0.125}, slanted);
@@ -233,7 +233,7 @@ TEST(Grid, parts_no_vertex_from_the_edge_it_lies_on)
     {
         mesh.faces.push_back({a + first, b + first, c + first});
     }
-    // Sides along the line that no face has the other way.
+    // Sides along the line without an opposite face.
     const auto open_sides = [](const PreparedMesh& sut, double x_m)
     {
         std::set<std::array<std::uint32_t, 2>> sides;
@@ -268,7 +268,7 @@ TEST(Grid, parts_no_vertex_from_the_edge_it_lies_on)
         sut.notes.end());
 }
 
-/// Two grounds with the same border, of which one side is moved along y.
+/// Two grounds with the same border, one of them moved along y.
 TriangleMesh make_seam(double off)
 {
     const Height slanted = [](double x, double y) { return 0.21 * x + 0.13 * y; };
@@ -405,7 +405,8 @@ TEST(Grid, rounds_equal_positions_of_two_tiles_alike)
         ASSERT_EQ(first.quantum_m, second.quantum_m);
         EXPECT_EQ(border(left, first).size(), 41U);
         EXPECT_EQ(border(left, first), border(right, second));
-        // Nothing lies before the origin or beyond the bits, and nothing moved by more than told.
+        // No coordinate is negative or beyond the bits, and no displacement exceeds the reported
+        // one.
         for (const PreparedMesh* sut : {&first, &second})
         {
             for (const auto& at : sut->mesh.positions)
@@ -420,7 +421,7 @@ TEST(Grid, rounds_equal_positions_of_two_tiles_alike)
     }
 }
 
-/// From a place between two of the mesh's steps a mesh as long as all steps takes one more.
+/// A mesh as long as all steps that begins between two of them needs one more.
 TEST(Grid, has_room_for_every_coordinate_wherever_its_place_is)
 {
     const double step_m = 0x1p-20;

@@ -14,7 +14,7 @@ namespace tactus::test
 namespace
 {
 
-/// Some positions in general place; only the indices matter here.
+/// Mesh with generic positions; only the indices matter.
 TriangleMesh mesh_of(std::uint32_t vertices, std::vector<Face> faces)
 {
     TriangleMesh mesh;
@@ -96,7 +96,7 @@ TEST(Manifold, parts_two_cones_that_share_an_apex)
 
 TEST(Manifold, cuts_a_moebius_strip_once)
 {
-    std::vector<Face> faces; // Five quads; the last one joins turned over.
+    std::vector<Face> faces; // Five quads; the last one is joined with opposite orientation.
     for (std::uint32_t i = 0; i < 5; ++i)
     {
         const std::uint32_t a = 2 * i;
@@ -160,7 +160,7 @@ TEST(Manifold, parts_a_two_sided_sheet_into_two_whole_sheets)
 
 TEST(Manifold, joins_a_fin_to_neither_side)
 {
-    // A closed tetrahedron with a loose face standing on one edge.
+    // Closed tetrahedron with a loose face on one edge.
     auto mesh = tetrahedron();
     mesh.positions.push_back({-1, -1, -1});
     mesh.faces.push_back({0, 1, 4});
@@ -174,7 +174,7 @@ TEST(Manifold, joins_a_fin_to_neither_side)
 TEST(Manifold, splits_two_cubes_that_share_an_edge_into_closed_pieces)
 {
     auto mesh = tetrahedron();
-    // A second tetrahedron on the edge (0, 1).
+    // Second tetrahedron on the edge (0, 1).
     mesh.positions.push_back({0, -1, 0});
     mesh.positions.push_back({0.1, -0.3, -1});
     join(mesh.faces, {{0, 5, 1}, {0, 4, 5}, {1, 5, 4}, {0, 1, 4}});
@@ -184,18 +184,18 @@ TEST(Manifold, splits_two_cubes_that_share_an_edge_into_closed_pieces)
     EXPECT_EQ(sut.mesh.positions.size(), 8U);
 }
 
-/// Faces over so few vertices that most of what can go wrong does.
+/// Random faces over so few vertices that most faults occur.
 rc::Gen<std::vector<Face>> arbitrary_soup(std::uint32_t vertices)
 {
     return rc::gen::container<std::vector<Face>>(
         rc::gen::container<Face>(rc::gen::inRange<std::uint32_t>(0, vertices)));
 }
 
-/// What the result must be whatever came in: manifold, and the same faces in the same places.
+/// Checks the result for any input: manifold, with the same faces in the same places.
 void check_soup(const std::vector<Face>& faces, std::uint32_t vertices)
 {
     const auto mesh = mesh_of(vertices, faces);
-    std::vector<Face> expected; // The clean-up, the slow way.
+    std::vector<Face> expected; // Expected clean-up, the slow way.
     for (const Face& f : faces)
     {
         const Face second{f[1], f[2], f[0]};
@@ -260,7 +260,7 @@ RC_GTEST_PROP(Manifold, holds_on_random_soups_over_more_vertices, ())
     check_soup(*rc::gen::resize(300, arbitrary_soup(20)), 20);
 }
 
-/// Nothing is cut that was whole: a manifold mesh with faces in any order and rotation stays.
+/// A manifold mesh with faces in any order and rotation stays unchanged.
 RC_GTEST_PROP(Manifold, does_not_touch_manifold_meshes, ())
 {
     const auto segments = *rc::gen::inRange<std::uint32_t>(4, 40);

@@ -93,7 +93,7 @@ TEST(PrepareMesh, puts_a_sound_mesh_on_the_grid_without_a_note)
 
 TEST(PrepareMesh, uses_the_full_grid_when_the_extent_is_the_largest_that_fits)
 {
-    // 65535 quanta of 2^-20 m exactly, then a little more.
+    // The extent is exactly 65535 quanta of 2^-20 m, then slightly more.
     const double extent = 65535.0 * std::ldexp(1.0, -20);
     const TriangleMesh exact{{{0, 0, 0}, {extent, 0, 0}, {0, extent / 2, 0}}, {{0, 1, 2}}};
     EXPECT_EQ(prepared(exact).quantum_m, std::ldexp(1.0, -20));
@@ -124,7 +124,7 @@ TEST(PrepareMesh, keeps_the_shape_far_from_the_origin)
     {
         for (std::size_t axis = 0; axis < 3; ++axis)
         {
-            // At 1e7 m a double steps by 1.9e-9 m; the quantum is 2^-19 m, 1.9e-6.
+            // A double at 1e7 m has steps of 1.9e-9 m; the quantum is 2^-19 m, 1.9e-6.
             ASSERT_NEAR(far.mesh.positions[v][axis], near.mesh.positions[v][axis], 1);
         }
     }

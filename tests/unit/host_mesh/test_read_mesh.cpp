@@ -70,8 +70,8 @@ TEST(ReadMesh, keeps_the_order_of_vertices_of_indexed_formats)
     }
 }
 
-/// The oracle is the format: with a cut file there is an error, or nothing is missing, or a note
-/// says that something may be. OBJ cut at a line end is a complete shorter file.
+/// The oracle is the format: a truncated file gives an error, or nothing is missing, or a note
+/// reports the possibility. OBJ truncated at a line end is a complete shorter file.
 TEST(ReadMesh, never_takes_a_cut_file_for_a_smaller_mesh)
 {
     const auto mesh = tetrahedron();

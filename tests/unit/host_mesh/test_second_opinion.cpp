@@ -12,8 +12,8 @@
 #include <cstdlib>
 #include <ostream>
 
-/// Our readers against Assimp's, in Assimp's single precision, and against known facts of meshes
-/// that are well known.
+/// Our readers against Assimp's, in its single precision, and against known facts of well-known
+/// meshes.
 
 namespace tactus::test
 {
@@ -44,7 +44,7 @@ FloatCorners read_by_assimp(const std::filesystem::path& path)
     return corners;
 }
 
-/// Assimp's own number parser is off by a few units in the last place.
+/// Assimp's number parser has errors of a few units in the last place.
 void expect_same_corners(const std::filesystem::path& path)
 {
     const auto sut = read_mesh(path);
@@ -88,7 +88,7 @@ struct KnownMesh
     std::string name;
     std::size_t vertices;
     std::size_t faces;
-    bool in_assimp; ///< Assimp doesn't know triangle strips.
+    bool in_assimp; ///< Assimp does not read triangle strips.
 
     friend std::ostream& operator<<(std::ostream& out, const KnownMesh& mesh)
     {

@@ -115,7 +115,7 @@ TEST(Shapes, a_peg_has_room_of_a_fifth_of_a_millimetre_in_its_socket)
     expect_volume(made(make_shape(Shape::socket, 50'000)), kPi * 0.03 * 0.03 * 0.05 - hole, 0.001);
     expect_volume(made(make_shape(Shape::plate, 50'000)), 0.1 * 0.1 * 0.01, 1e-9);
 
-    // What the peg has farthest from the axis, and the walls of the hole nearest to it.
+    // Greatest radius of the peg, and least radius of the hole's walls.
     double thickest = 0.0;
     for (const auto& p : made(make_shape(Shape::peg, 20'000)).positions)
     {
@@ -141,8 +141,8 @@ TEST(Shapes, a_peg_has_room_of_a_fifth_of_a_millimetre_in_its_socket)
 TEST(Shapes, gear_has_the_volume_of_its_outline_at_every_size)
 {
     // Eight teeth of four triangles to the axis: 2 x area = sum of r r' sin(angle), times
-    // thickness; the bore is a polygon with the outline's angles and so has nearly its circle's
-    // area.
+    // thickness; the bore is a polygon with the outline's angles, so its area is nearly its
+    // circle's.
     constexpr double kPitch = std::numbers::pi / 4.0;
     const double outline =
         8.0 * 0.5 *

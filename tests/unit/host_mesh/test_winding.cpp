@@ -8,15 +8,15 @@
 #include <cmath>
 #include <random>
 
-/// Which way the faces of closed pieces look once they are a model. The oracle is the winding
-/// number of points that are far from every surface, by solid angles.
+/// Orientation of closed pieces in a model. The oracle is the winding number of points far from
+/// every surface, by solid angles.
 namespace tactus::test
 {
 
 namespace
 {
 
-/// A box of eight vertices, seen from outside counter-clockwise, or from inside.
+/// Box of eight vertices, counter-clockwise from outside, or from inside.
 TriangleMesh box(const Point& low, const Point& high, bool is_turned = false)
 {
     TriangleMesh mesh;
@@ -40,8 +40,8 @@ TriangleMesh cube(double half, const Point& middle, bool is_turned = false)
                {middle[0] + half, middle[1] + half, middle[2] + half}, is_turned);
 }
 
-/// A U of 6 by 6 by 4 cm with a wall of 2 cm, open towards +y: a ray along x from between its arms
-/// goes through one of them.
+/// U of 6 by 6 by 4 cm with a wall of 2 cm, open towards +y: a ray along x from between its arms
+/// crosses one of them.
 TriangleMesh bracket()
 {
     constexpr std::array<std::array<double, 2>, 8> kOutline{
@@ -94,7 +94,7 @@ TriangleMesh turned(TriangleMesh mesh)
     return mesh;
 }
 
-/// In metres, of what the model holds.
+/// Model content in metres.
 TriangleMesh mesh_of(const PreparedMesh& prepared)
 {
     TriangleMesh mesh;
@@ -110,7 +110,7 @@ TriangleMesh mesh_of(const PreparedMesh& prepared)
     return mesh;
 }
 
-/// How often the surface winds round the point: the sum of solid angles over 4 pi.
+/// Winding number of the surface about the point: the sum of solid angles over 4 pi.
 int winding_number(const TriangleMesh& mesh, const Point& p)
 {
     const auto dot = [](const Point& a, const Point& b)
@@ -278,8 +278,8 @@ TEST(TurnClosedPieces, knows_thin_tiny_and_distant_bodies)
     }
 }
 
-/// Spheres in spheres and beside each other, with any winding: a point's side depends on how many
-/// spheres are round it, and not on how they were wound.
+/// Spheres in spheres and beside each other, with any orientation: a point's side depends on the
+/// number of spheres around it, not on their orientation.
 TEST(TurnClosedPieces, sorts_out_bubbles_in_bubbles)
 {
     const auto sphere = make_shape(Shape::sphere, 200);

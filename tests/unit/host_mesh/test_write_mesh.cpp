@@ -16,7 +16,7 @@ namespace tactus::test
 namespace
 {
 
-/// Bit for bit; for a PLY of so many bytes a vertex.
+/// Checks a round trip bit for bit; optionally the bytes a vertex of a PLY.
 void expect_round_trip(const TriangleMesh& mesh, const std::string& name,
                        std::uintmax_t bytes_per_vertex = 0)
 {
@@ -123,7 +123,7 @@ TEST(WriteMesh, an_stl_is_refused_where_floats_would_join_vertices_or_overflow)
     EXPECT_NE(joined.error().text.find("a.stl: STL's 32-bit coordinates"), std::string::npos);
     EXPECT_FALSE(write_mesh(directory.path() / "b.stl",
                             {{{0, 0, 0}, {1e39, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}));
-    // Two vertices that are in one place anyway don't matter.
+    // Two vertices in one place have no effect.
     EXPECT_TRUE(write_mesh(directory.path() / "c.stl",
                            {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 1, 0}}, {{0, 1, 2}}}));
     EXPECT_EQ(directory.files(), 1U);

@@ -16,7 +16,7 @@
 namespace tactus::test
 {
 
-/// The bytes of values, one behind the other.
+/// Bytes of consecutive values.
 template <typename T>
 std::string raw(std::initializer_list<T> values)
 {
@@ -25,7 +25,7 @@ std::string raw(std::initializer_list<T> values)
     return bytes;
 }
 
-/// A tetrahedron, faces outward: 48 bytes of positions, then 24 of indices.
+/// Tetrahedron, faces outward: 48 bytes of positions, then 24 of indices.
 inline std::string tetrahedron_bytes()
 {
     return raw<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 0.125F, 0.25F, 1}) +
@@ -50,7 +50,7 @@ inline nlohmann::json tetrahedron_scene()
         "buffers": [{"uri": "a.bin", "byteLength": 72}]})");
 }
 
-/// A GLB of two chunks, padded as the standard wants.
+/// GLB of two chunks, padded as the standard requires.
 inline std::string glb(std::string json, std::string binary)
 {
     json.append((4 - json.size() % 4) % 4, ' ');
@@ -61,7 +61,7 @@ inline std::string glb(std::string json, std::string binary)
     return "glTF" + u32(2) + u32(12 + chunks.size()) + chunks;
 }
 
-/// A scene file, with a.bin beside it, in a folder of its own.
+/// Scene file with a.bin, in a separate folder.
 class SceneFiles
 {
 public:
@@ -77,8 +77,7 @@ public:
     }
     [[nodiscard]] const TemporaryFolder& folder() const noexcept { return folder_; }
 
-    /// Why the scene or one of its meshes is refused, behind the file's name; empty when neither
-    /// is.
+    /// Refusal of the scene or one of its meshes after the file's name; empty if there is none.
     [[nodiscard]] std::string refusal(const std::string& text) const
     {
         auto scene = open(text);
@@ -111,7 +110,7 @@ private:
     TemporaryFolder folder_{"scene"};
 };
 
-/// The mesh of the first object.
+/// Mesh of the first object.
 inline TriangleMesh first_mesh(Result<Scene, Refusal> scene)
 {
     if (!scene)

@@ -16,7 +16,7 @@ namespace
 
 constexpr double kStep_m = 0x1p-10;
 
-/// Of vertices alone; in steps of a grid whose place it is given.
+/// Mesh without faces; vertices in steps of a grid at `place_m`.
 TriangleMesh vertices_at(const std::vector<Vec3>& steps, const Vec3& place_m)
 {
     TriangleMesh mesh;
@@ -47,7 +47,7 @@ TEST(CommonPlaces, vertices_beside_the_middle_of_a_step_get_the_first_ones_place
     EXPECT_EQ(sut.settle(first, here, kEverywhere), 0.0);
     EXPECT_EQ(first.positions, unmoved.positions);
 
-    const Vec3 there(3.0, 0.7, -20.1); // The same grid, as another object has it.
+    const Vec3 there(3.0, 0.7, -20.1); // The same grid for another object.
     TriangleMesh second = vertices_at(
         {{9.1, 0.45, -3.2}, {4.45, -7.0, 0.501}, {4.45, -7.0, 0.45}, {4.6, -6.7, 0.51}}, there);
     const double moved_m = sut.settle(second, there, kEverywhere);

@@ -10,7 +10,7 @@
 #include <map>
 #include <sstream>
 
-/// What becomes of extensions: the table of the docs, notes, and those that are read.
+/// Handling of extensions: the table of the docs, notes, and supported ones.
 
 namespace tactus::test
 {
@@ -21,8 +21,7 @@ namespace
 using detail::ExtensionUse;
 using nlohmann::json;
 
-/// The names in the table of docs/scene-files.md, as the source has them, and its second column's
-/// first word.
+/// Names in the table of docs/scene-files.md, with the first word of its second column.
 std::map<std::string, std::string> documented_extensions()
 {
     std::ifstream file(TACTUS_SOURCE_DIR "/docs/scene-files.md");
@@ -102,7 +101,7 @@ TEST(GltfExtensions, that_nothing_knows_are_named_wherever_they_stand)
     json scene = tetrahedron_scene();
     scene["extensionsUsed"] = {"ACME_part"};
     EXPECT_EQ(notes_of(scene), std::vector<std::string>{"extension 'ACME_part'" + what});
-    scene.erase("extensionsUsed"); // Many forget it.
+    scene.erase("extensionsUsed"); // Many exporters omit it.
     scene["meshes"][0]["primitives"][0]["extensions"]["ACME_part"] = json::object();
     EXPECT_EQ(notes_of(scene),
               std::vector<std::string>{"extension 'ACME_part' (meshes[0])" + what});
@@ -113,7 +112,7 @@ TEST(GltfExtensions, that_nothing_knows_are_named_wherever_they_stand)
                                         "extension 'ACME_part' (nodes[0] and 1 more)" + what}));
 }
 
-/// The tetrahedron's node with three instances, and accessors of these.
+/// The tetrahedron's node with three instances, and their accessors.
 json instanced_scene()
 {
     json scene = tetrahedron_scene();

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "tests/unit/host_scene/scene_files.hpp"
 
-/// Meshes of glTF files: where their bytes lie and how they are coded.
+/// Meshes of glTF files: location and coding of their bytes.
 
 namespace tactus::test
 {
@@ -15,14 +15,14 @@ using nlohmann::json;
 const TriangleMesh kTetrahedron{{{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {0.125, 0.25, 1}},
                                 {{0, 1, 2}, {0, 2, 3}, {2, 1, 3}, {1, 0, 3}}};
 
-/// Vertices are numbered as faces come to them.
+/// Vertices are numbered in the order of the faces.
 void expect_tetrahedron(const TriangleMesh& mesh)
 {
     EXPECT_EQ(mesh.positions, kTetrahedron.positions);
     EXPECT_EQ(mesh.faces, kTetrahedron.faces);
 }
 
-/// Positions of `count` loose corners, as the accessor `positions` codes them in `binary`.
+/// Positions of `count` separate corners, as the accessor `positions` codes them in `binary`.
 std::vector<std::array<double, 3>> positions_of(const std::string& binary, json positions,
                                                 const std::vector<std::string>& required = {})
 {

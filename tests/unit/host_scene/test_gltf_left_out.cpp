@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <fstream>
 
-/// Parts of no use: they are left out by name, and the rest of the scene is read.
+/// Useless parts are skipped by name, and the rest of the scene is read.
 
 namespace tactus::test
 {
@@ -15,7 +15,7 @@ namespace
 
 using nlohmann::json;
 
-/// The tetrahedron, whose mesh has one primitive more.
+/// Tetrahedron scene whose mesh has an additional primitive.
 json with_primitive(const json& primitive)
 {
     json scene = tetrahedron_scene();
@@ -64,7 +64,7 @@ FoundObjects found_in(const json& scene)
     return objects;
 }
 
-/// The node "thing" and a second one.
+/// Scene with the node "thing" and a second one.
 json with_node(json node)
 {
     json scene = tetrahedron_scene();
@@ -123,7 +123,7 @@ TEST(GltfLeftOut, is_a_mesh_of_which_nothing_has_a_surface)
     EXPECT_EQ(read_mesh_of(scene).left_out, "no primitives");
     scene["meshes"][0].erase("primitives");
     EXPECT_EQ(read_mesh_of(scene).left_out, "no primitives");
-    // An axis as a triangle of two corners, and a dot of three equal ones.
+    // An axis as a triangle of two corners, and a point of three equal ones.
     scene = tetrahedron_scene();
     scene["accessors"][1]["count"] = 3;
     scene["accessors"][1]["sparse"] = {{"count", 3},
@@ -149,7 +149,7 @@ TEST(GltfLeftOut, are_nodes_that_are_scaled_to_a_point_or_a_line)
         EXPECT_EQ(objects.notes,
                   Names{"node 'gone' (nodes[1]) left out: scaled to a point or a line"});
     }
-    // By a parent, and with turns between that leave no zero.
+    // Scaled by a parent, with intermediate rotations that leave no zero.
     json scene = with_node({{"name", "gone"}, {"rotation", {0.48, 0.36, 0.0, 0.8}}});
     scene["nodes"].push_back({{"children", {1}}, {"scale", {0, 0, 2}}});
     scene["scenes"][0]["nodes"] = {0, 2};
@@ -166,7 +166,7 @@ TEST(GltfLeftOut, are_hidden_nodes_and_all_below_them_unless_they_are_to_be_touc
     EXPECT_EQ(found_in(scene).notes,
               Names{"node 'gone' (nodes[1]) left out: hidden by KHR_node_visibility; "
                     "extras.tactus.touch = true keeps it"});
-    scene["nodes"][1]["extensions"]["KHR_node_visibility"]["visible"] = true; // In vain.
+    scene["nodes"][1]["extensions"]["KHR_node_visibility"]["visible"] = true; // This has no effect.
     EXPECT_EQ(found_in(scene).names, Names{"thing"});
     scene["nodes"][1]["extras"]["tactus"]["touch"] = true;
     EXPECT_EQ(found_in(scene).names, (Names{"thing", "gone"}));

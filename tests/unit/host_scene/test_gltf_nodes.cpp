@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-/// Which nodes are objects, what they are called and where they stand.
+/// Nodes that are objects, with their names and poses.
 
 namespace tactus::test
 {
@@ -18,7 +18,7 @@ namespace
 using Eigen::Vector3d;
 using nlohmann::json;
 
-/// Where a point of an object's mesh is in the world.
+/// Place of a point of an object's mesh in the world.
 Vector3d placed(const Pose& pose, const Vector3d& point)
 {
     const auto& [x, y, z, w] = pose.rotation;
@@ -50,7 +50,7 @@ std::vector<std::string> names_of(const json& scene)
 
 TEST(GltfNodes, multiply_the_transforms_of_their_parents)
 {
-    // Each node's own transform is applied to a point by itself, from the leaf to the root.
+    // Each node's transform is applied to a point separately, from the leaf to the root.
     Random random(1);
     for (int round = 0; round < 50; ++round)
     {

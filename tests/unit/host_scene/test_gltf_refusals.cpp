@@ -7,7 +7,7 @@
 #include <numeric>
 #include <utility>
 
-/// Files that are refused, each with one line that names the file and what in it is wrong.
+/// Refused files, each with one line that names the file and the fault.
 
 namespace tactus::test
 {
@@ -17,11 +17,11 @@ namespace
 
 using nlohmann::json;
 
-/// A change of tetrahedron_scene(), and what the refusal of it says behind the file's name.
+/// Change of tetrahedron_scene(), with the refusal after the file's name.
 struct Case
 {
     std::string expected;
-    std::string changes; ///< Values by their paths, as in JSON; null takes one out.
+    std::string changes; ///< Values by path, as in JSON; null removes one.
 };
 
 std::string list(std::size_t count, const std::string& value)
@@ -34,7 +34,7 @@ std::string list(std::size_t count, const std::string& value)
     return text + "]";
 }
 
-/// A path, or what of the one node or primitive it is, or of our extras.
+/// Pointer for a path, also relative to the only node or primitive or our extras.
 json::json_pointer pointer_to(const std::string& path)
 {
     for (const auto& [begin, place] :

@@ -19,9 +19,8 @@
 #include <string>
 #include <vector>
 
-/// The samples of Debian's package assimp-testmodels, good and broken: what is read must be what
-/// Assimp reads, triangle by triangle in the world, and what is broken is refused, also where
-/// Assimp takes it.
+/// Samples of Debian's package assimp-testmodels, valid and broken: valid ones must equal Assimp's
+/// result, triangle by triangle in the world; broken ones are refused, even if Assimp accepts them.
 
 namespace tactus::test
 {
@@ -37,7 +36,7 @@ std::filesystem::path sample(const std::string& name)
     return std::filesystem::path("/usr/share/assimp/models/glTF2") / name;
 }
 
-/// The file's JSON, read by nobody's rules but its own.
+/// The file's JSON, without further interpretation.
 nlohmann::json json_of(const std::filesystem::path& path)
 {
     std::ifstream file(path, std::ios::binary);
@@ -49,7 +48,7 @@ nlohmann::json json_of(const std::filesystem::path& path)
     return nlohmann::json::parse(text);
 }
 
-/// The nodes with a mesh, depth first, as Assimp orders its nodes.
+/// Nodes with a mesh, depth first, in Assimp's order.
 std::vector<std::size_t> mesh_nodes(const nlohmann::json& document)
 {
     std::vector<std::size_t> found;
@@ -125,8 +124,8 @@ std::vector<Triangle> triangles_of(Scene& scene, const SceneObject& object)
     return triangles;
 }
 
-/// Of the two in the best of three turns: a face may begin at any corner, but not go round the
-/// other way.
+/// Least difference over three rotations: a face may begin at any corner, but must keep its
+/// orientation.
 double difference(const Triangle& ours, const Triangle& theirs)
 {
     double least = HUGE_VAL;
@@ -146,7 +145,7 @@ struct Sample
 {
     std::string name;
     std::string file;
-    std::string refusal; ///< Empty: it is read. Otherwise part of the message.
+    std::string refusal; ///< Part of the refusal; empty if the file is read.
 
     friend std::ostream& operator<<(std::ostream& out, const Sample& value)
     {

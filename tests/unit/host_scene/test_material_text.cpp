@@ -51,7 +51,7 @@ TEST(MaterialText, has_a_name_for_each_value)
 
 TEST(MaterialText, refuses_other_keys_values_and_ranges)
 {
-    // Apart by bars.
+    // Values are separated by bars.
     std::istringstream wrong(
         "|stiffness|stiffness=|=5|stiffness=5,|,stiffness=5|stiffness=0|stiffness=3001|"
         "stiffness=nan|stiffness=inf|stiffness=5,stiffness=5|stiff=500|Stiffness=500|"

@@ -3,7 +3,7 @@
 #include "host_tools/scene/placed_models.hpp"
 #include "tests/unit/host_scene/scene_files.hpp"
 
-/// Scene files whose objects name their models: as they are written, and as they are read.
+/// Scene files whose objects name their models, written and read.
 
 namespace tactus::test
 {

@@ -13,7 +13,7 @@ namespace tactus::test
 namespace
 {
 
-/// A square of 10 x 10 with its least corner at (0, 0, 0) and sides of `size`.
+/// Square of 10 x 10 with its least corner at (0, 0, 0) and sides of `size`.
 TriangleMesh make_tile(double size)
 {
     TriangleMesh mesh;
@@ -48,7 +48,7 @@ TEST(SharedGrids, tiles_that_have_a_border_in_common_meet)
     sut.add(0, at(1.0, 0.0, 0.0), tile);
     sut.add(1, at(7.0, 0.0, 0.0), tile);
     sut.add(2, at(1.2, 0.0, 0.0), tile);
-    sut.add(3, at(1.4, 0.02, 0.0), tile); // Set off by a square; nine corners are common.
+    sut.add(3, at(1.4, 0.02, 0.0), tile); // Displaced by a square; nine corners are common.
     EXPECT_EQ(sut.first_of_each(), (Groups{0, 1, 0, 0}));
 }
 
@@ -62,8 +62,7 @@ TEST(SharedGrids, one_common_corner_is_no_meeting)
 
 TEST(SharedGrids, tiles_round_a_cross_all_meet)
 {
-    // Of two faces each, so that two beside each other have two corners in common, and all of them
-    // one.
+    // Tiles of two faces each: neighbours share two corners, and all share one.
     SharedGrids sut(4);
     const TriangleMesh tile{{{0, 0, 0}, {0.2, 0, 0}, {0.2, 0.2, 0}, {0, 0.2, 0}},
                             {{0, 1, 2}, {0, 2, 3}}};
@@ -97,14 +96,15 @@ TEST(SharedGrids, some_common_corners_are_left_where_there_are_more_than_it_keep
         sut.add(model, at(static_cast<double>(model), 0, 0), tile);
         expected.push_back(model);
     }
-    sut.add(1, at(0, 0, 0), tile); // In the place of the first one, of which a tenth is left.
+    sut.add(1, at(0, 0, 0), tile); // In the place of the first one, with a tenth left.
     EXPECT_EQ(sut.first_of_each(), expected);
 }
 
 TEST(SharedGrids, objects_that_are_turned_or_scaled_apart_have_no_grid_in_common)
 {
     Pose turned = at(0.2, 0.0, 0.0);
-    turned.rotation = {std::sin(0.05), 0.0, 0.0, std::cos(0.05)}; // About the border's normal.
+    // Rotated about the border's normal.
+    turned.rotation = {std::sin(0.05), 0.0, 0.0, std::cos(0.05)};
     Pose scaled = at(0.2, 0.0, 0.0);
     scaled.scale = 0.5;
     for (const Pose& pose : {turned, scaled})
@@ -114,7 +114,7 @@ TEST(SharedGrids, objects_that_are_turned_or_scaled_apart_have_no_grid_in_common
         sut.add(1, pose, make_tile(0.2 / pose.scale));
         EXPECT_EQ(sut.first_of_each(), (Groups{0, 1}));
     }
-    // The same rotation written with the other sign is the same.
+    // The same rotation with the opposite sign is equal.
     Pose opposite = turned;
     opposite.rotation = {-turned.rotation[0], 0.0, 0.0, -turned.rotation[3]};
     Pose beside = turned;
@@ -128,7 +128,7 @@ TEST(SharedGrids, objects_that_are_turned_or_scaled_apart_have_no_grid_in_common
 TEST(SharedGrids, the_worlds_origin_is_where_the_pose_takes_it_to_zero)
 {
     Pose pose = at(0.3, -2.0, 5.0);
-    pose.rotation = {0.0, 0.0, std::sqrt(0.5), std::sqrt(0.5)}; // A quarter turn about z.
+    pose.rotation = {0.0, 0.0, std::sqrt(0.5), std::sqrt(0.5)}; // Quarter turn about z.
     pose.scale = 2.0;
     const auto [x, y, z] = world_origin_in(pose);
     // 2 x (-y, x, z) + (0.3, -2, 5) is the origin.

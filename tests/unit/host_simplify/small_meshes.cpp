@@ -30,7 +30,7 @@ std::array<std::int32_t, 3> on_grid(double x, double y, double z)
     return {place(x), place(y), place(z)};
 }
 
-/// A generated mesh of this radius.
+/// Generated mesh of this radius, on the grid.
 QuantisedMesh on_grid(const TriangleMesh& mesh, double radius_m)
 {
     QuantisedMesh result;
@@ -42,7 +42,7 @@ QuantisedMesh on_grid(const TriangleMesh& mesh, double radius_m)
     return result;
 }
 
-/// Removes all faces of some vertices that are far enough apart for the holes not to touch.
+/// Removes all faces of some vertices that are far enough apart for separate holes.
 QuantisedMesh cut_holes(const QuantisedMesh& mesh)
 {
     std::vector<char> on_rim(mesh.positions.size(), 0);
@@ -85,7 +85,7 @@ QuantisedMesh cut_holes(const QuantisedMesh& mesh)
 
 QuantisedMesh squeeze(QuantisedMesh mesh)
 {
-    // To 1/4096 of its size: most vertices share a place, many faces lose their area.
+    // Shrinks to 1/4096 of its size: most vertices coincide, many faces lose their area.
     for (auto& position : mesh.positions)
     {
         for (auto& value : position)
@@ -197,7 +197,7 @@ QuantisedMesh make_perforated(unsigned holes)
             }
             add(at(x, y, 1), at(x + 1, y, 1), at(x + 1, y + 1, 1), at(x, y + 1, 1));
             add(at(x, y, 0), at(x, y + 1, 0), at(x + 1, y + 1, 0), at(x + 1, y, 0));
-            if (!is_solid(x, y - 1)) // Below the first row numbers begin again at the top.
+            if (!is_solid(x, y - 1)) // Numbers below the first row wrap around.
             {
                 add(at(x, y, 0), at(x + 1, y, 0), at(x + 1, y, 1), at(x, y, 1));
             }

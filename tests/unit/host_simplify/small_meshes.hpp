@@ -15,31 +15,31 @@
 namespace tactus::test
 {
 
-/// Closed; 20 n^2 faces, 180 at least; radial noise as a share of the radius.
+/// Closed sphere with 20 n^2 faces, at least 180; radial noise as a share of the radius.
 [[nodiscard]] QuantisedMesh make_sphere(std::uint32_t faces, double noise);
 
 /// Closed, with two poles of valence `sectors`; (rings - 1) x sectors x 2 faces.
 [[nodiscard]] QuantisedMesh make_needle_sphere(std::uint32_t rings, std::uint32_t sectors);
 
-/// Open; a height field over columns x rows squares.
+/// Open height field over columns x rows squares.
 [[nodiscard]] QuantisedMesh make_grid(unsigned columns, unsigned rows,
                                       const std::function<double(double, double)>& height);
 
-/// Open; the same with a face of every third square of every third row missing.
+/// The same without a face of every third square of every third row.
 [[nodiscard]] QuantisedMesh make_scan(unsigned columns, unsigned rows,
                                       const std::function<double(double, double)>& height);
 
-/// Closed, genus holes^2: a flat sheet with that many square holes through it.
+/// Closed flat sheet of genus holes^2, with that many square holes.
 [[nodiscard]] QuantisedMesh make_perforated(unsigned holes);
 
-/// Closed, genus 1.
+/// Closed torus of genus 1.
 [[nodiscard]] QuantisedMesh make_torus(std::uint32_t faces);
 
-/// Open; an apex of valence `sectors` over `rings` rings.
+/// Open cone: an apex of valence `sectors` over `rings` rings.
 [[nodiscard]] QuantisedMesh make_cone(unsigned rings, unsigned sectors);
 
-/// Components that can't shrink, anywhere: loose triangles, and as many tetrahedra as pairs of
-/// faces back to back.
+/// Components at random places that cannot shrink: separate triangles, and tetrahedra, as many as
+/// pairs of opposite faces.
 [[nodiscard]] QuantisedMesh make_crumbs(std::uint32_t triangles, std::uint32_t solids);
 
 /// Both meshes, the second moved along x.
@@ -52,7 +52,7 @@ struct NamedMesh
     QuantisedMesh mesh;
 };
 
-/// One of each kind, small: closed, open, with holes, high valence, coincident vertices, faces
+/// One small mesh of each kind: closed, open, with holes, high valence, coincident vertices, faces
 /// without area, several components.
 [[nodiscard]] const std::vector<NamedMesh>& all_small_meshes();
 
@@ -60,7 +60,7 @@ struct NamedMesh
 [[nodiscard]] std::vector<Face> faces_of(const QuantisedMesh& mesh,
                                          std::span<const std::array<std::uint32_t, 3>> faces);
 
-/// For meshes that must be accepted: throws the refusal.
+/// Simplification of a mesh that must be accepted: throws the refusal.
 [[nodiscard]] Simplification simplified(const QuantisedMesh& mesh, std::uint32_t base_faces = 40,
                                         unsigned threads = 1);
 

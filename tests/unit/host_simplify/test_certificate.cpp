@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-// Soundness and tightness of the bounds, checked by brute force against sampled original points.
+// Soundness and tightness of the bounds, by brute force against sampled original points.
 #include "tests/shared/certified_cut.hpp"
 #include "tests/shared/surface_points.hpp"
 #include "tests/shared/test_model.hpp"
@@ -17,10 +17,10 @@ namespace tactus::test
 namespace
 {
 
-/// What the oracle's own rounding may add, in quanta.
+/// Possible rounding of the oracle, in quanta.
 constexpr double kOracleTolerance = 1e-9;
 
-/// In quanta, with all bounds multiplied.
+/// Cut in quanta, with scaled bounds.
 CertifiedCut cut_of(const QuantisedMesh& mesh, const ForestReplay& replay, double factor = 1.0)
 {
     PreparedMesh prepared;
@@ -34,7 +34,7 @@ bool covers(const CertifiedCut& cut, const std::vector<Vec3>& points)
     return !find_violation(cut, points, kOracleTolerance).has_value();
 }
 
-/// Of the whole source.
+/// Points of the whole source.
 std::vector<Vec3> points_of(const QuantisedMesh& mesh, std::size_t count)
 {
     const std::vector<Face> faces = faces_of(mesh, mesh.faces);
@@ -108,12 +108,12 @@ TEST(Certificate, bounds_the_base_nearly_as_tightly_as_samples_allow)
     const QuantisedMesh mesh = make_sphere(5'120, 0.02);
     const Simplification forest = simplified(mesh, 5120 / 6);
     CertifiedCut cut = cut_of(mesh, ForestReplay(forest, mesh.faces.size()));
-    // Some sampled point is farther than the largest bound / 1.4 from every face.
+    // Some sampled point is farther than the greatest bound / 1.4 from every face.
     std::ranges::fill(cut.bounds_m, std::ranges::max(cut.bounds_m) / 1.4);
     EXPECT_FALSE(covers(cut, points_of(mesh, 3 * mesh.faces.size())));
 }
 
-/// A scanned mesh with holes; only where TACTUS_MESHES names the folder that holds it.
+/// Scanned mesh with holes, only if TACTUS_MESHES names the folder that has it.
 TEST(Certificate, of_a_scan_is_sound_and_tight_and_few_rounds_make_it)
 {
     const auto scan = read_known(kKnownMeshes[3]);

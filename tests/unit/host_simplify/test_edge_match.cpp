@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-// What simplify() refuses in a mesh, and how it names it.
+// Refusals of meshes by simplify(), and their wording.
 #include "host_tools/simplify/edge_match.hpp"
 #include "tests/unit/host_simplify/small_meshes.hpp"
 
@@ -14,7 +14,7 @@ namespace tactus::test
 namespace
 {
 
-/// Five points; no faces yet.
+/// Five points without faces.
 QuantisedMesh five_points()
 {
     return {{{0, 0, 0}, {9, 0, 0}, {0, 9, 0}, {0, 0, 9}, {9, 9, 9}}, {}};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The vertex forest that a simplification describes, replayed from the collapses alone: I1 undoing
-/// them gives the mesh, I3 cuts are manifold and stars keep their cap, I10 the finest corner.
+/// I1 undoing the collapses gives the mesh, I3 cuts are manifold and stars keep their limit, I10
+/// the finest corner: the vertex forest of a simplification, replayed from the collapses alone.
 
 #include "tests/shared/forest_replay.hpp"
 #include "tests/unit/host_simplify/small_meshes.hpp"
@@ -78,7 +78,7 @@ TEST(Forest, every_closed_cut_is_a_manifold_with_borders)
         {
             ForestReplay sut(forest, mesh.faces.size());
             sut.split_randomly(forest.collapses.size() * run / 12, random);
-            // A crumb on its way into another component hangs on one of its edges.
+            // A crumb that moves into another component shares one of its edges.
             const std::string fault = manifold_fault(sut.active_corners());
             ASSERT_TRUE(fault.empty() || (run > 0 && name.starts_with("crumb"))) << fault;
         }
@@ -144,12 +144,12 @@ TEST(Forest, a_star_in_the_mesh_before_its_collapse_is_a_counter_clockwise_fan)
         std::vector<char> present(mesh.faces.size(), 1);
         for (const Collapse& c : forest.collapses)
         {
-            // Round v every face's third corner is the next face's second; A starts and B ends at
+            // Around v every face's third corner is the next face's second; A starts and B ends at
             // u.
             std::vector<Corners> round;
             for (std::uint32_t i = 0; i < c.fan_size + 2; ++i)
             {
-                // A, then the fan, then B.
+                // The order is A, the fan, B.
                 const std::uint32_t place = i == 0 ? 0 : (i == c.fan_size + 1 ? 1 : i + 1);
                 if (c.star[place] != kNoStarFace)
                 {

@@ -22,11 +22,11 @@ namespace
 
 using Place = std::array<std::int32_t, 3>;
 
-/// The faces as places, and how often each edge is there each way, by places.
+/// Faces by places, and the balance of each edge's directions.
 struct Geometry
 {
     std::vector<std::array<Place, 3>> faces;
-    std::map<std::array<Place, 2>, int> surplus; ///< How many more go one way than the other.
+    std::map<std::array<Place, 2>, int> surplus; ///< Excess of one direction over the other.
 
     explicit Geometry(const QuantisedMesh& mesh)
     {
@@ -51,7 +51,7 @@ struct Geometry
     }
 };
 
-/// The genus of a closed mesh by Euler's formula.
+/// Genus of a closed mesh by Euler's formula.
 long genus_of(const QuantisedMesh& mesh)
 {
     std::set<std::array<std::uint32_t, 2>> edges;
@@ -66,7 +66,7 @@ long genus_of(const QuantisedMesh& mesh)
     return 1 - (std::ssize(mesh.positions) - std::ssize(edges) + std::ssize(mesh.faces)) / 2;
 }
 
-/// Rounds of simplifying and cutting until no ring is found; how many were cut.
+/// Simplifies and cuts until no ring is found; returns the number of cuts.
 std::size_t cut_all(QuantisedMesh& mesh, std::uint32_t base_faces)
 {
     std::size_t handles = 0;
@@ -86,7 +86,8 @@ std::size_t cut_all(QuantisedMesh& mesh, std::uint32_t base_faces)
         const std::size_t before = mesh.positions.size();
         const std::size_t copies = cut_open(mesh, edges);
         EXPECT_EQ(mesh.positions.size(), before + copies);
-        // A copy for each vertex, and another where the ring touches the border of a cut before it.
+        // One copy for each vertex, and another where the ring touches the border of an earlier
+        // cut.
         EXPECT_GE(copies, edges.size());
         EXPECT_TRUE(copies == edges.size() || handles > rings.size());
     }
@@ -98,9 +99,9 @@ TEST(HandleCuts, a_sheet_with_many_holes_comes_down_to_a_small_base)
 {
     const QuantisedMesh sheet = make_perforated(6);
     ASSERT_EQ(genus_of(sheet), 36);
-    EXPECT_GE(simplified(sheet, 4).base_faces.size(), 4U * 36 + 2); // As the format has it.
+    EXPECT_GE(simplified(sheet, 4).base_faces.size(), 4U * 36 + 2); // Limit of the format.
     QuantisedMesh sut = sheet;
-    EXPECT_EQ(cut_all(sut, 4), 36U); // Each cut takes one handle away.
+    EXPECT_EQ(cut_all(sut, 4), 36U); // Each cut removes one handle.
     EXPECT_LE(simplified(sut, 4).base_faces.size(), 4U);
 }
 

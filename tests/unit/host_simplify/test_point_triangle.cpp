@@ -30,7 +30,7 @@ void expect_oracle(const std::array<Vec3, 3>& t, const PointColumns& points)
     }
 }
 
-/// Arguments would be drawn in an order of the compiler's choice.
+/// Draws in a fixed order, since that of arguments is the compiler's choice.
 Vec3 any_vector(auto& draw, std::mt19937& random)
 {
     const double x = draw(random);
@@ -104,7 +104,7 @@ TEST(DistanceTriangle, every_instruction_set_gives_the_same_bits)
         std::array<std::vector<double>, 3> at;
         for (auto& axis : at)
         {
-            axis.resize(67); // No multiple of any number of lanes.
+            axis.resize(67); // Not a multiple of any number of lanes.
             std::ranges::generate(axis, [&] { return draw(random); });
         }
         std::vector<double> expected(67);

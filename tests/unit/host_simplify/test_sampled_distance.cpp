@@ -18,7 +18,7 @@ namespace
 
 constexpr std::uint32_t kSamples = 20'000;
 
-/// A square of 1,000 quanta in 200 faces at a height, and a base made by hand of other vertices.
+/// Square of 1,000 quanta in 200 faces at a height, and a handmade base with other vertices.
 QuantisedMesh plate_over(std::vector<std::array<std::int32_t, 3>> base_positions)
 {
     QuantisedMesh mesh = make_grid(10, 10, [](double, double) { return 0.0; });
@@ -30,7 +30,7 @@ QuantisedMesh plate_over(std::vector<std::array<std::int32_t, 3>> base_positions
     return mesh;
 }
 
-/// The plate's least and largest corner.
+/// Least and largest corner of the plate.
 std::array<std::array<std::int32_t, 3>, 2> bounds_of(const QuantisedMesh& mesh)
 {
     std::array<std::array<std::int32_t, 3>, 2> bounds{mesh.positions[0], mesh.positions[0]};

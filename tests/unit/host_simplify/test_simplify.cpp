@@ -42,7 +42,7 @@ TEST(Simplify, reaches_the_base_size_and_not_much_less)
         SCOPED_TRACE(name);
         const Simplification sut = simplified(mesh, 60);
         EXPECT_LE(sut.base_faces.size(), 60U);
-        EXPECT_GE(sut.base_faces.size(), 57U); // A tetrahedron vanishes whole.
+        EXPECT_GE(sut.base_faces.size(), 57U); // A tetrahedron vanishes entirely.
         EXPECT_EQ(sut.base_corners.size(), sut.base_faces.size());
         EXPECT_EQ(sut.base_error.size(), sut.base_faces.size());
     }
@@ -73,7 +73,7 @@ TEST(Simplify, brings_an_open_component_down_to_one_face)
 TEST(Simplify, keeps_the_genus)
 {
     const Simplification sut = simplified(make_torus(720), 1);
-    // No torus has fewer than 14 faces; the degree and star caps may end it earlier.
+    // No torus has fewer than 14 faces; the degree and star limits may stop it earlier.
     EXPECT_GE(sut.base_faces.size(), 14U);
     EXPECT_LE(sut.base_faces.size(), 30U);
 }
@@ -83,14 +83,14 @@ TEST(Simplify, closes_holes_that_have_shrunk_to_three_edges)
     const auto hill = [](double x, double y) { return 0.1 * x * y; };
     const QuantisedMesh scan = make_scan(90, 90, hill);
     ASSERT_EQ(scan.faces.size(), 2U * 90 * 90 - 900);
-    // A hole that stays has three edges at least, and so as many faces round it.
+    // A remaining hole has at least three edges, and as many faces around it.
     EXPECT_LE(simplified(scan, 100).base_faces.size(), 100U);
     EXPECT_EQ(simplified(scan, 1).base_faces.size(), 1U);
 }
 
 TEST(Simplify, keeps_a_large_hole_open_while_small_ones_close)
 {
-    // A window of 10 x 10 squares in the middle of 30 x 30.
+    // Window of 10 x 10 squares in the middle of 30 x 30.
     const auto is_in_window = [](std::uint32_t v)
     { return v % 31 >= 10 && v % 31 <= 20 && v / 31 >= 10 && v / 31 <= 20; };
     QuantisedMesh scan = make_scan(30, 30, [](double, double) { return 0.0; });
@@ -131,7 +131,7 @@ TEST(Simplify, lets_components_vanish_where_they_can_not_shrink)
 
 TEST(Simplify, lets_a_component_vanish_into_the_nearest)
 {
-    // A crumb over a plate goes while the plate is still fine, so the plate keeps its corners.
+    // A crumb over a plate vanishes while the plate is still fine, so the plate keeps its corners.
     const auto flat = [](double, double) { return 0.0; };
     const QuantisedMesh plate = make_grid(8, 8, flat);
     QuantisedMesh crumb{{{0, 0, 0}, {40, 0, 0}, {0, 40, 0}}, {{0, 1, 2}}};

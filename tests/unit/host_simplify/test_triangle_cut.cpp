@@ -124,7 +124,7 @@ TEST(TriangleCut, leaves_what_the_half_plane_does_not_cross)
     const Vec3 middle = kFrame.origin + kFrame.side_x / 2;
     const Vec3 beside = kFrame.origin + 2 * kFrame.side_x;
     EXPECT_TRUE(cut(part, kFrame, {beside, kFrame.side_y, kFrame.side_x}, points).empty());
-    // The plane crosses, but the half that would do so lies on the other side of its start.
+    // The plane crosses, but its half that would do so is on the other side of its start.
     const Vec3 below = middle - kFrame.side_y;
     EXPECT_TRUE(cut(part, kFrame, {below, -kFrame.side_y, kFrame.side_x}, points).empty());
     EXPECT_EQ(points.size(), 3U);

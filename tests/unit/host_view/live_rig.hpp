@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <string>
 
-/// Controllers as DDS would tell of them.
+/// Controllers as DDS reports them.
 namespace tactus::view::test
 {
 
@@ -19,7 +19,7 @@ inline dds::WatchedController told(std::uint8_t id, const std::string& name)
     controller.name = name;
     controller.telemetry.tool_count = 1;
     controller.telemetry.tools[0].force_n = {0.0, 3.0, 4.0};
-    controller.telemetry.pair_count = 1; // Nothing is known of it: infinite.
+    controller.telemetry.pair_count = 1; // Its distance is unknown: infinite.
     controller.telemetry.pairs[0].upper_m = kInfinity;
     return controller;
 }

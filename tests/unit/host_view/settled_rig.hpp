@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
-/// A frame at work and what a viewer would have of it.
+/// Frame at work and its data for a viewer.
 namespace tactus::view::test
 {
 
-/// The pages of a model that are here, by their chunks.
+/// Resident pages of a model, by chunk.
 inline std::vector<FrontPage> pages_of(const Model& model)
 {
     std::vector<FrontPage> pages;
@@ -31,7 +31,7 @@ inline std::vector<FrontPage> pages_of(const Model& model)
     return pages;
 }
 
-/// A tool that touches a corner of the first small model, with all that it needs.
+/// Rig with a tool that touches a corner of the first small model, fully loaded.
 inline std::unique_ptr<tactus::test::FrameRig> settled_rig()
 {
     const tactus::test::TestModel& model = tactus::test::small_model(0);
@@ -43,7 +43,7 @@ inline std::unique_ptr<tactus::test::FrameRig> settled_rig()
     return rig;
 }
 
-/// The model as a viewer has it from its file.
+/// Model of a viewer, from its file.
 struct Shelved
 {
     explicit Shelved(const tactus::test::TestModel& model = tactus::test::small_model(0))

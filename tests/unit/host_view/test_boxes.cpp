@@ -31,7 +31,7 @@ std::vector<Box> read_boxes(const std::string& bytes)
     return boxes;
 }
 
-/// Those of a tree at work, down to a level.
+/// Boxes of a tree at work, down to a level.
 void collect(const AbTree& tree, TreeRef ref, const Aabb& box, std::uint32_t level,
              std::vector<Box>& boxes)
 {

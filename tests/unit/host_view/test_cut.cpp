@@ -25,7 +25,7 @@ namespace
 using Corner = std::array<float, 3>;
 using Triangle3 = std::array<Corner, 3>;
 
-/// What the page reads.
+/// Decoded cut, as the page reads it.
 struct ReadCut
 {
     std::vector<Triangle3> faces;
@@ -58,7 +58,7 @@ ReadCut read(const std::string& bytes)
     return cut;
 }
 
-/// The same from whichever corner it begins.
+/// The same face from its least corner.
 Triangle3 from_least_corner(Triangle3 face)
 {
     std::rotate(face.begin(), std::ranges::min_element(face), face.end());
@@ -93,14 +93,15 @@ std::vector<FrontPage> pages_of(const std::set<std::uint32_t>& records)
     return pages;
 }
 
-/// Splits whatever face has a larger bound, with what that depends on, until there is none.
+/// Splits all faces with a larger bound, with dependencies, until there is none.
 std::set<std::uint32_t> records_for(const DecodedModel& model, double error_m)
 {
     constexpr std::uint32_t base = 0xFFFF'FFFFU;
     const double quantum_m = static_cast<double>(model.header().quantum_m());
     const auto made_by = [](FaceState state)
     { return state.is_base() ? base : state.record().value; };
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> next; // By face and its maker.
+    // Next record by face and its creator.
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> next;
     for (std::uint32_t id = 0; id < model.header().counts().records; ++id)
     {
         const VsplitRecord& record = model.record({id});
@@ -185,7 +186,7 @@ TEST(Cut, is_face_for_face_what_spm_inspect_extracts)
     }
 }
 
-/// From the page table of a frame at work to the faces of its forest.
+/// Conversion of a frame's page table to the faces of its forest.
 TEST(Cut, is_face_for_face_what_the_controller_has)
 {
     const Opened opened(tactus::test::small_model(0));
@@ -242,7 +243,7 @@ TEST(Cut, refuses_records_that_the_model_does_not_have_or_that_lack_what_they_de
     EXPECT_FALSE(decode_cut(*shelved.known, pages_of({last})).has_value());
 }
 
-/// Every fourth page is missing: as much as can be split without it, and not one record less.
+/// Every fourth page is missing: all records that can be split without it are split.
 TEST(Cut, of_a_part_of_the_pages_is_all_that_can_be_split_with_them)
 {
     const tactus::test::TestModel& model = tactus::test::small_model(0);
@@ -261,8 +262,7 @@ TEST(Cut, of_a_part_of_the_pages_is_all_that_can_be_split_with_them)
     EXPECT_FALSE(cut_bytes(opened.decoded, told).has_value());
     const test::Shelved shelved(model);
     EXPECT_FALSE(decode_cut(*shelved.known, told).has_value());
-    const auto decoded =
-        decode_cut(*shelved.known, told, false); // Without the pages that are missing.
+    const auto decoded = decode_cut(*shelved.known, told, false); // Without the missing pages.
     ASSERT_TRUE(decoded.has_value()) << decoded.error().text;
     const std::vector<FrontPage> part = splittable_part(decoded.value(), told);
     const auto shown = cut_bytes(decoded.value(), part);

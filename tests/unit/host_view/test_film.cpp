@@ -23,17 +23,17 @@ namespace
 
 constexpr std::uint32_t kFrames = 160;
 
-/// What the rig itself had in a frame.
+/// Rig state in a frame.
 struct Had
 {
     Vec3 proxy_m;
-    std::vector<double> lower_m; ///< By pair.
+    std::vector<double> lower_m; ///< Bounds by pair.
     std::vector<FrontPage> pages;
     std::vector<FrontRegion> regions;
     std::uint32_t active_faces{0};
 };
 
-/// A hand goes to a corner of the model and away, from frame `aside_from` on a little beside it.
+/// The hand moves to a corner of the model and away, slightly beside it from frame `aside_from` on.
 std::vector<Had> record(const std::filesystem::path& path, std::uint32_t frames,
                         std::uint32_t aside_from = kFrames)
 {
@@ -90,7 +90,7 @@ TEST(Film, has_of_each_frame_what_the_frame_had_and_its_faces_without_a_model_fi
     ASSERT_EQ(sut->at(0).objects.size(), 1U);
     EXPECT_EQ(sut->at(0).objects[0].name, "cup-2");
     std::size_t cuts = 0;
-    for (const std::uint32_t frame : {159U, 0U, 80U, 81U, 79U, 40U, 120U}) // In any order.
+    for (const std::uint32_t frame : {159U, 0U, 80U, 81U, 79U, 40U, 120U}) // Random order.
     {
         SCOPED_TRACE(frame);
         const LiveController shown = sut->at(frame);
@@ -153,7 +153,7 @@ TEST(Films, tell_where_two_recordings_first_differ_and_how)
     EXPECT_EQ(sut.differences().back().what, "the length");
     EXPECT_EQ(sut.frames(), kFrames);
     ASSERT_EQ(sut.at(155).controllers.size(), 2U);
-    EXPECT_EQ(sut.at(155).controllers[1].told.telemetry.frame, 150U); // Stays at its last.
+    EXPECT_EQ(sut.at(155).controllers[1].told.telemetry.frame, 150U); // The last frame stays.
     EXPECT_NE(sut.front(id_text(sut.films()[1]->id()), 149), nullptr);
     EXPECT_EQ(sut.front("another", 0), nullptr);
 }

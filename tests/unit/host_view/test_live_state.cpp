@@ -27,7 +27,7 @@ TEST(LiveState, keeps_the_fronts_of_a_minute_and_no_more)
     {
         sut.publish({told(1, "one")}, {front(1, serial)});
         const std::uint64_t news = sut.newest()->serial;
-        sut.publish({told(1, "one")}, {front(1, serial)}); // No news.
+        sut.publish({told(1, "one")}, {front(1, serial)}); // No change.
         EXPECT_EQ(sut.newest()->serial, news);
     }
     EXPECT_EQ(sut.front(id, 1), nullptr);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// A viewer takes a model's pieces from hosts that it doesn't know: what they forge is never shown.
+/// A viewer takes a model's pieces from unknown servers: forged data are never shown.
 
 #include "host_tools/spm_view/model_fetcher.hpp"
 #include "tests/unit/transport/dds_rig.hpp"
@@ -67,7 +67,7 @@ protected:
             });
     }
 
-    /// What a request of the browser would get, while everybody goes on.
+    /// Result of a browser's request, while all participants run.
     std::optional<Refusal> bring(ContentKey key)
     {
         const auto model = shelf_->find(hash_);
@@ -143,7 +143,7 @@ TEST_F(ModelFetcherTest, asks_a_host_no_more_whose_header_or_base_mesh_is_forged
 {
     for (const ContentKind kind : {ContentKind::header, ContentKind::base})
     {
-        sut_.reset(); // Both: a new one must hear nothing of the host before.
+        sut_.reset(); // Both end: a new one must not have heard of the server.
         stranger_.reset();
         shelf_ = std::move(ModelShelf::open({})).value();
         sut_ = std::move(ModelFetcher::create(*viewer_, *shelf_, lines_.log())).value();

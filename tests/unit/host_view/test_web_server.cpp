@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The server over real sockets, spoken to byte by byte: a client library would mend what is sent.
+/// Server over real sockets, addressed byte by byte: a client library would correct the requests.
 
 #include "host_tools/spm_view/web_server.hpp"
 #include "tests/shared/test_model.hpp"
@@ -153,7 +153,7 @@ TEST_F(WebServerTest, gives_up_a_request_that_comes_byte_by_byte)
     Connection connection(sut_->port());
     connection.send("GET /");
     std::size_t bytes = 0;
-    for (; bytes < 8'000 && !connection.is_closed(); ++bytes) // A longer one is refused.
+    for (; bytes < 8'000 && !connection.is_closed(); ++bytes) // Longer requests are refused.
     {
         connection.send("a");
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -206,13 +206,13 @@ TEST_F(WebServerTest, lets_four_viewers_watch_and_goes_on_answering)
     {
         EXPECT_NE(viewer->read("\"one\"").find("data: {"), std::string::npos);
     }
-    viewers.pop_back(); // Its thread is free once that is noticed.
+    viewers.pop_back(); // Its thread is free after that is detected.
     std::string again;
     while (again.find("data: {") == std::string::npos)
     {
         Connection next(sut_->port());
         next.send(request);
-        again = next.read("data: {"); // Or to the end of a refusal.
+        again = next.read("data: {"); // Reads to the end of a refusal otherwise.
     }
     is_over.store(true);
     hears.join();
@@ -238,7 +238,7 @@ TEST_F(WebServerTest, sends_the_faces_of_a_front)
     EXPECT_EQ(status(controller, "-9", hash_text(hash)), 400);
     EXPECT_EQ(status(controller, "9x", hash_text(hash)), 400);
     ++seen.serial;
-    seen.front.models[0].pages = {{{0xFFFFU}, 1}}; // A chunk that the model hasn't.
+    seen.front.models[0].pages = {{{0xFFFFU}, 1}}; // Chunk that the model does not have.
     live_.publish({test::told(1, "one")}, {seen});
     EXPECT_EQ(status(controller, "10", hash_text(hash)), 409);
 }
@@ -281,7 +281,7 @@ TEST_F(WebServerTest, sends_the_boxes_of_what_is_wished_for)
     seen.front.models.back().wished = {{0}};
     const std::string one = boxes(); // The same cut: by that alone they would be the old ones.
     EXPECT_EQ(status_of(one), 200);
-    EXPECT_EQ(one.size(), none.size() + 6 * sizeof(float) + 1); // And 28 for 4 in the head.
+    EXPECT_EQ(one.size(), none.size() + 6 * sizeof(float) + 1); // 28 for 4 in the head.
     seen.front.models.back().wished = {{0xFFFFU}};
     EXPECT_EQ(status_of(boxes()), 409);
 }

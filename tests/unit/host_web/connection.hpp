@@ -19,7 +19,7 @@
 namespace tactus::test
 {
 
-/// To a server of this machine, spoken to byte by byte.
+/// Connection to a server of this machine, byte by byte.
 class Connection
 {
 public:
@@ -38,10 +38,10 @@ public:
 
     void send(const std::string& text) const
     {
-        // The other side may have had enough already.
+        // The peer may have closed already.
         static_cast<void>(::send(socket_, text.data(), text.size(), MSG_NOSIGNAL));
     }
-    /// Whether the other side has closed it; what has come before is lost.
+    /// True if the peer has closed; earlier data are dropped.
     [[nodiscard]] bool is_closed() const
     {
         char bytes[4096];
@@ -53,7 +53,7 @@ public:
         return count == 0 || (count < 0 && errno != EAGAIN && errno != EWOULDBLOCK);
     }
     void end_sending() const { ::shutdown(socket_, SHUT_WR); }
-    /// Until the other side closes, or `until` has come.
+    /// Reads until the peer closes or sends `until`.
     std::string read(const std::string& until = "")
     {
         std::string all;
@@ -74,9 +74,9 @@ private:
     int socket_;
 };
 
-/// So many connections are made that say nothing. Then `ask` returns the status of a request, which
-/// is answered while some of them are still there: it has not waited for the patience of all. A
-/// machine that stops for longer than that patience gets another try.
+/// Opens silent connections; `ask` then returns the status of a request, which is answered while
+/// some of them still exist: it has not waited for all timeouts. A machine that stops for longer
+/// than the timeout gets another try.
 template <typename Ask>
 void expect_answer_among_silent(std::uint16_t port, std::size_t count, const Ask& ask)
 {

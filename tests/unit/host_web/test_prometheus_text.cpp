@@ -45,7 +45,7 @@ TEST(PrometheusText, tells_of_controllers)
     controller.telemetry.tool_count = 2;
     controller.telemetry.tools[0].force_n = {1.0, 2.0, 2.0};
     controller.telemetry.tools[1].in_contact = true;
-    controller.telemetry.tools[2].force_n = {100.0, 0.0, 0.0}; // There is no such tool.
+    controller.telemetry.tools[2].force_n = {100.0, 0.0, 0.0}; // This tool does not exist.
     PrometheusText sut;
     tell_controllers(sut, {&controller});
     const std::string labels = "{controller=\"hand-1\",id=\"abababababababababababababababab\"} ";
@@ -60,7 +60,7 @@ TEST(PrometheusText, tells_of_controllers)
     }
 }
 
-/// Prometheus refuses a text that tells of a name twice.
+/// Prometheus refuses a text that describes a name twice.
 TEST(PrometheusText, tells_of_each_name_once)
 {
     PrometheusText sut;

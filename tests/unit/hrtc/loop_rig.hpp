@@ -19,25 +19,25 @@
 #include <utility>
 #include <vector>
 
-/// The haptic loop on a simulated device whose hand presses on a model, in virtual time.
+/// Haptic loop on a simulated device whose hand presses on a model, in virtual time.
 namespace tactus::hrtc::test
 {
 
 /// FrameSetup::pose_age_max_ns.
 inline constexpr Duration kPoseAge = milliseconds(100);
-/// Deep enough for 1.7 N; without a force the hand sinks to where the spring makes 6 of 8 N.
+/// Depth for 1.7 N; without a force the hand sinks until the spring makes 6 of 8 N.
 inline constexpr double kPress_m = 0.012;
-/// Of the model's diagonal: where the hand starts above its place.
+/// Start height of the hand, relative to the model's diagonal.
 inline constexpr double kStartHeight = 0.05;
-/// From here on the hand is at rest in the surface and the whole force goes out.
+/// Frame from which the hand rests in the surface with the full force.
 inline constexpr std::uint64_t kSettled = 1'000;
-/// Of the pressed force, from frame to frame, when nobody interferes.
+/// Change of the pressed force between frames without disturbance.
 inline constexpr double kOwnStep_n = 0.02;
 inline constexpr double kRounding_n = 1e-9;
-/// Steps of the way back, and what the frame's own force moves meanwhile.
+/// Change while the force returns, with that of the frame's own force.
 inline constexpr double kBackStep_n = 2.0 * 8.0 * kPeriod_s / kRiseTime_s + kOwnStep_n;
 
-/// Comes down on a place of the surface along its normal, presses and stays.
+/// Hand that descends on a place of the surface along its normal, presses and stays.
 class PressingHand final : public HandMotion
 {
 public:
@@ -62,7 +62,7 @@ private:
     double press_m_;
 };
 
-/// A device as it is, but for what a test does in its readings; keeps what was written.
+/// Device whose readings a test can change; keeps the written forces.
 class TamperedDevice final : public HapticDevice
 {
 public:
@@ -99,7 +99,7 @@ public:
 
     [[nodiscard]] Vec3 felt_n() const noexcept { return simulated_.felt_force_world_n(); }
 
-    std::vector<Vec3> written_n; ///< One a frame; the last is the zero at the end.
+    std::vector<Vec3> written_n; ///< Forces, one for each frame; the last is the zero at the end.
     std::vector<Vec3> written_nm;
     std::function<void()> before_release = [] {};
 
@@ -115,28 +115,28 @@ class LoopRig;
 struct LoopRigOptions
 {
     TamperedDevice::Tamper tamper = [](std::uint64_t, DeviceSample&) {};
-    /// What others do while a frame's device is read.
+    /// Called while a frame's device is read.
     std::function<void(LoopRig& rig, std::uint64_t frame)> meanwhile;
     std::vector<DeviceFault> faults;
     std::vector<LateWake> late_wakes;
-    std::optional<Duration> watchdog; ///< The device's own.
+    std::optional<Duration> watchdog; ///< Watchdog of the device.
     bool static_model{false};
-    bool has_door{false};                   ///< Objects stand where door() says.
-    double object_speed_m_per_s{kInfinity}; ///< Believed of them.
-    /// The same of the last stage of the force; none: no less than the door.
+    bool has_door{false};                   ///< True if objects have the poses of door().
+    double object_speed_m_per_s{kInfinity}; ///< Object speed limit.
+    /// Object speed limit of the last force stage; empty: that of the door.
     std::optional<double> change_speed_m_per_s;
     DeviceLimits device{kDeskClass};
-    double press_m{kPress_m}; ///< Below zero: the hand comes to rest above the surface.
+    double press_m{kPress_m}; ///< Depth; negative: the hand rests above the surface.
     std::uint64_t frames{2'000};
     double speed_max_m_per_s{10.0};
     double stiffness_n_per_m{500.0};
     ToolCore core{PointCore{}};
-    double angular_stiffness_nm_per_rad{0.0}; ///< As ToolSpec has it.
-    const Clock* clock{nullptr}; ///< Another one than the virtual, with a timer of its own.
+    double angular_stiffness_nm_per_rad{0.0}; ///< See ToolSpec.
+    const Clock* clock{nullptr}; ///< Another clock than the virtual one, with its own timer.
     PeriodicTimer* timer{nullptr};
-    std::optional<std::size_t> front_slots; ///< Shows so many at most.
-    bool is_coarse{false};                  ///< Nothing comes but the base mesh.
-    /// An object of a second model, so far beyond the place where the hand starts.
+    std::optional<std::size_t> front_slots; ///< Slots of the viewer copy.
+    bool is_coarse{false};                  ///< True if only the base mesh is loaded.
+    /// Distance of an object of a second model beyond the hand's start.
     std::optional<double> neighbour_m;
 };
 
@@ -189,7 +189,7 @@ public:
     void run() { loop_->run(); }
 
     [[nodiscard]] PoseDoor& door() { return *door_; }
-    /// Where the object stands at first.
+    /// Initial pose of the object.
     [[nodiscard]] ObjectPose placed() const
     {
         ObjectPose pose;
@@ -210,7 +210,7 @@ public:
     [[nodiscard]] const Vec3& written_n(std::uint64_t frame) { return device().written_n[frame]; }
     [[nodiscard]] const Vec3& written_nm(std::uint64_t frame) { return device().written_nm[frame]; }
 
-    /// What the loop noted, in order; the log is empty afterwards.
+    /// Events of the loop, in order; the log is empty afterwards.
     [[nodiscard]] std::vector<SafetyEvent> events()
     {
         std::vector<SafetyEvent> events;
@@ -218,7 +218,7 @@ public:
         return events;
     }
 
-    /// Whether a cause was noted.
+    /// True if an event has the cause.
     [[nodiscard]] static bool has(const std::vector<SafetyEvent>& events, ForceOff cause)
     {
         return std::ranges::any_of(events, [cause](const SafetyEvent& event)
@@ -231,7 +231,7 @@ public:
         return statistics_.tools.front().conditioned[static_cast<std::size_t>(bit)];
     }
 
-    /// The largest step of the force between these frames.
+    /// Greatest change of the force between these frames.
     [[nodiscard]] double largest_step_n(std::uint64_t from, std::uint64_t to)
     {
         return largest_step(device().written_n, from, to);
@@ -267,7 +267,7 @@ private:
         models.resize(objects(options));
         return models;
     }
-    /// Of a model's vertices in x, the least and the most.
+    /// Least and greatest x of a model's vertices.
     static std::pair<double, double> span_x(const tactus::test::TestModel& model)
     {
         double least = kInfinity;
@@ -301,7 +301,7 @@ private:
         return rig;
     }
 
-    /// Above the face that is farthest out in x.
+    /// Places the hand above the face that is farthest out in x.
     void make_device()
     {
         const auto middle = [](const tactus::test::Face& face)

@@ -35,7 +35,7 @@
 #include <utility>
 #include <vector>
 
-/// Whole sessions, each in a process of its own, in which an assertion fails on one of the threads.
+/// Complete sessions, each in its own process, in which an assertion fails on one of the threads.
 namespace tactus::hrtc::test
 {
 
@@ -43,27 +43,27 @@ namespace
 {
 
 constexpr int kExitCode = 2;
-constexpr std::uint64_t kFailAt = 200; ///< The reading in which the bug happens.
+constexpr std::uint64_t kFailAt = 200; ///< Reading in which the bug occurs.
 constexpr std::uint64_t kFadeWrites = 51;
 constexpr std::uint64_t kFadeFailsAt = 7;
-/// The test would wait for ever for a brake that never comes; this only ends it as a failure.
+/// Time limit, which only ends a test that would wait endlessly for a missing brake.
 constexpr std::chrono::milliseconds kHopeless{120'000};
 constexpr bool kThereIsNoBug = false;
 constexpr bool kThereIsNoSecondBug = false;
 
-/// Where the bug is.
+/// Place of the bug.
 enum class Bug : std::uint8_t
 {
     none,
     haptic,
-    haptic_and_fade, ///< And another one while the forces fade.
-    frame,           ///< The haptic thread's, of what the frame is given.
+    haptic_and_fade, ///< A second bug occurs while the forces fade.
+    frame,           ///< On the haptic thread, by the frame's input.
     main,
     supervisor,
     other,
 };
 
-/// What the device tells the test through a pipe.
+/// Message from the device to the test through a pipe.
 struct Event
 {
     enum class Kind : std::uint8_t
@@ -76,8 +76,8 @@ struct Event
     bool is_haptic_thread{false};
     bool is_braked{false};
     std::uint64_t writes_since_bug{0};
-    int stderr_bytes{0};        ///< Waiting for a reader now.
-    int stderr_bytes_at_bug{0}; ///< And when the bug happened.
+    int stderr_bytes{0};        ///< Bytes waiting for a reader now.
+    int stderr_bytes_at_bug{0}; ///< Bytes waiting when the bug occurred.
 };
 
 int bytes_in(int pipe)
@@ -86,7 +86,7 @@ int bytes_in(int pipe)
     return ioctl(pipe, FIONREAD, &bytes) == 0 ? bytes : -1;
 }
 
-/// Until not one byte more has room.
+/// Fills the pipe to the last byte.
 void fill(int pipe)
 {
     const int flags = fcntl(pipe, F_GETFL);
@@ -105,14 +105,14 @@ struct Plan
 {
     Bug bug{Bug::none};
     bool stderr_is_full{false};
-    bool main_hangs{false}; ///< It never comes to end the process.
+    bool main_hangs{false}; ///< True if the main thread never ends the process.
     std::string record_path{};
-    std::string folder{};    ///< Where it runs; empty: in one that goes afterwards.
-    std::string recording{}; ///< Not empty: its device gives the hand of this one.
+    std::string folder{};    ///< Folder of the run; empty: a temporary one.
+    std::string recording{}; ///< Recording whose hand the device replays, unless empty.
 };
 
-/// Kernels of which one fails as soon as a proxy has come to a surface, so by what a frame is given
-/// and nothing else.
+/// Kernels of which one fails as soon as a proxy has reached a surface, depending only on the
+/// frame's input.
 const Kernels& failing_kernels()
 {
     static const Kernels failing = []
@@ -131,7 +131,7 @@ const Kernels& failing_kernels()
     return failing;
 }
 
-/// In the child process: makes the bug happen, and tells of brakes and releases.
+/// Device of the child process: triggers the bug, and reports brakes and releases.
 class FailingDevice final : public WrappedDevice
 {
 public:
@@ -222,8 +222,8 @@ private:
         }
     }
 
-    /// Not in the frame in which the bug begins: the supervisor may have braked in it already, and
-    /// does so once a silence.
+    /// Waits for a later frame: the supervisor may have braked already in that of the bug, and does
+    /// so once a silence.
     void wait_for_supervisor() const noexcept
     {
         while (!supervisor_failed_.load())
@@ -261,10 +261,10 @@ private:
     std::atomic<bool> has_bug_{false};
     std::atomic<bool> supervisor_failed_{false};
     int stderr_bytes_at_bug_{0};
-    std::thread other_; ///< Last: it uses the others.
+    std::thread other_; ///< Last member, since it uses the others.
 };
 
-/// The child's main thread. Returns when the bug didn't end it.
+/// Main thread of the child. Returns if the bug did not end it.
 void run_session(const Plan& plan, const std::string& model, int events)
 {
     std::signal(SIGUSR1, [](int) { TACTUS_ASSERT(kThereIsNoBug); });
@@ -326,14 +326,14 @@ private:
     std::array<int, 2> ends_{};
 };
 
-/// How the child process ended, and what it did before.
+/// End of the child process, with its earlier output.
 struct Ended
 {
     int code{-1};
-    std::string text; ///< From stderr, without what filled it.
+    std::string text; ///< Output on stderr, without the filling.
     std::vector<Event> events;
 
-    /// The brake on that thread after the bug; none when there was none.
+    /// Brake on that thread after the bug; null if there was none.
     [[nodiscard]] const Event* brake(bool on_haptic_thread) const
     {
         const auto found =
@@ -348,7 +348,7 @@ struct Ended
     }
 };
 
-/// Reads until the brake comes that the test waits for, or all are read.
+/// Reads until the expected brake, or to the end.
 void read_events(int pipe, Ended& ended, std::optional<bool> until_brake_on_haptic_thread)
 {
     pollfd in{pipe, POLLIN, 0};
@@ -373,7 +373,7 @@ std::string read_to_end(int pipe)
     return text;
 }
 
-/// Nobody reads the child's stderr before the brake that its bug leads to.
+/// Runs the child; its stderr is not read before the brake that its bug causes.
 Ended run_in_child(Plan plan)
 {
     const tactus::test::TemporaryFolder own("failed-run");
@@ -395,7 +395,7 @@ Ended run_in_child(Plan plan)
                 plan.bug == Bug::haptic || plan.bug == Bug::haptic_and_fade);
     ended.text = read_to_end(errors.reader());
     ended.text.erase(0, ended.text.find_first_not_of('.'));
-    while (ended.text.starts_with("touch: ")) // What a slow machine has the time to tell before.
+    while (ended.text.starts_with("touch: ")) // A slow machine may print this first.
     {
         ended.text.erase(0, ended.text.find('\n') + 1);
     }
@@ -434,7 +434,7 @@ TEST(AssertionBrake, on_the_haptic_thread_the_forces_fade_before_anything_is_pri
 TEST(AssertionBrake, the_recording_is_kept_up_to_the_frame_that_failed)
 {
     const std::string path = testing::TempDir() + "failed_run.tactusrec";
-    std::filesystem::remove(path); // That of an earlier run of this test.
+    std::filesystem::remove(path); // The file may be that of an earlier run.
     const Ended ended = run_in_child({.bug = Bug::haptic, .record_path = path});
     EXPECT_EQ(ended.code, kExitCode);
     const auto recording = Recording::read(path);

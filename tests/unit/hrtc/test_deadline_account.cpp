@@ -23,7 +23,7 @@ namespace
 
 constexpr std::uint64_t kWork = 1'000;
 
-/// A cycle in which nothing went wrong: one period, one sleep, 20 us of work.
+/// Cycle without faults: one period, one sleep, 20 us of work.
 CycleMeasures clean_cycle()
 {
     CycleMeasures measures{};
@@ -55,7 +55,7 @@ TEST(DeadlineAccount, has_nothing_to_tell_of_clean_cycles)
     EXPECT_EQ(sut.response().max(), microseconds(25));
 }
 
-/// Each of what the loop must not do, in time and late: our own fault, and not the machine's.
+/// Each forbidden action of the loop, in time and late, is an overrun and not the machine's delay.
 TEST(DeadlineAccount, blames_the_loop_for_each_thing_that_it_must_not_do)
 {
     const std::vector<std::pair<CycleFlag, void (*)(CycleMeasures&)>> kCauses{
@@ -70,7 +70,7 @@ TEST(DeadlineAccount, blames_the_loop_for_each_thing_that_it_must_not_do)
         for (CycleMeasures measures : {clean_cycle(), missed_cycle()})
         {
             cause(measures);
-            measures.cycle.wake_lateness = milliseconds(5); // Whatever the machine did besides.
+            measures.cycle.wake_lateness = milliseconds(5); // Any delay of the machine.
             DeadlineAccount sut(kPeriod);
             sut.add(7, measures, kWork, false);
             EXPECT_EQ(sut.own_faults, 1U);
@@ -91,7 +91,7 @@ TEST(DeadlineAccount, counts_a_system_call_in_the_cycle_that_made_it)
 {
     DeadlineAccount sut(kPeriod);
     CycleMeasures measures = clean_cycle();
-    measures.calls.in_frame = 3; // Counted since the loop began.
+    measures.calls.in_frame = 3; // Calls since the loop began.
     sut.add(0, measures, kWork, false);
     sut.add(1, measures, kWork, false);
     EXPECT_EQ(sut.own_faults, 1U);
@@ -109,7 +109,7 @@ TEST(DeadlineAccount, a_miss_without_an_own_fault_is_the_machines)
     EXPECT_EQ(sut.own_faults + sut.stopped, 0U);
 }
 
-/// More than 300 us, and more than 0.3 of a period that is shorter than a millisecond.
+/// The limits are 300 us, and 0.3 of a period below a millisecond.
 TEST(DeadlineAccount, tells_how_the_machine_was_late)
 {
     for (const auto& [period, limit] :
@@ -133,7 +133,7 @@ TEST(DeadlineAccount, tells_how_the_machine_was_late)
     }
 }
 
-/// Whose thread then was away from its processor, as by a sleep of its own, and late.
+/// The thread was then off its processor, as in a sleep of its own, and late.
 TEST(DeadlineAccount, a_process_that_was_stopped_is_no_fault_of_the_loop_or_the_machine)
 {
     for (CycleMeasures measures : {clean_cycle(), missed_cycle()})
@@ -145,7 +145,7 @@ TEST(DeadlineAccount, a_process_that_was_stopped_is_no_fault_of_the_loop_or_the_
         EXPECT_EQ(sut.own_faults + sut.machine_late, 0U);
         EXPECT_EQ(sut.stopped, sut.missed);
         EXPECT_EQ(sut.cycles_with(CycleFlag::stopped), 1U);
-        measures.allocations = 1; // What else it does is its own all the same.
+        measures.allocations = 1; // Other faults still count as its own.
         sut.add(1, measures, kWork, false);
         EXPECT_EQ(sut.own_faults, 1U);
     }
@@ -167,7 +167,7 @@ TEST(DeadlineAccount, a_late_end_takes_the_deadlines_that_it_cost_on_itself_and_
         EXPECT_EQ(sut.own_faults, 1U);
         EXPECT_EQ(sut.machine_late, periods <= 3 ? 0U : 1U);
         next.cycle.periods = 3;
-        sut.add(2, next, kWork, false); // But not those of a later one.
+        sut.add(2, next, kWork, false); // Faults of a later cycle do not count.
         EXPECT_EQ(sut.missed, periods <= 3 ? 2U : 3U);
     }
 }
@@ -193,7 +193,7 @@ TEST(DeadlineAccount, blames_the_loop_for_more_processor_time_than_its_share)
     EXPECT_EQ(sut.cycles_with(CycleFlag::over_cpu), 1U);
 }
 
-/// What it does beside the frame makes it late, or nothing of that is to be seen.
+/// Work beside the frame makes the cycle late, or none is visible.
 TEST(DeadlineAccount, counts_the_work_beside_the_frame_where_the_deadline_was_missed)
 {
     for (const CycleMeasures& cycle : {clean_cycle(), missed_cycle()})
@@ -207,8 +207,8 @@ TEST(DeadlineAccount, counts_the_work_beside_the_frame_where_the_deadline_was_mi
     }
 }
 
-/// Before it and after it: by as much work at half of the limit, or a part of the work in as small
-/// a part of the time, down to a quarter. Less work shows nothing.
+/// Evidence before and after: as much work at half of the limit, or a fraction of the work in as
+/// small a fraction of the time, down to a quarter. Less work is no evidence.
 TEST(DeadlineAccount, blames_the_machine_where_the_run_shows_the_same_work_to_need_half_at_most)
 {
     const auto taking = [](std::int64_t time_us)
@@ -239,7 +239,7 @@ TEST(DeadlineAccount, blames_the_machine_where_the_run_shows_the_same_work_to_ne
     }
 }
 
-/// Two that took too long, one of them late, and one that is guilty without.
+/// Two cycles that took too long, one of them late, and one that is guilty otherwise.
 DeadlineAccount account_with_suspects()
 {
     DeadlineAccount account(kPeriod);
@@ -261,7 +261,7 @@ TEST(DeadlineAccount, blames_the_repeated_that_were_over_each_time_and_no_others
     {
         DeadlineAccount sut = account_with_suspects();
         ASSERT_EQ(sut.suspects(), (std::vector<std::uint64_t>{4, 5}));
-        EXPECT_EQ(sut.own_faults, 2U); // The run shows the work of the first.
+        EXPECT_EQ(sut.own_faults, 2U); // The run contains the work of the first.
         sut.settle(over);
         const bool is_late_one_over = !over.empty() && over.back() == 5;
         EXPECT_EQ(sut.own_faults, 1 + over.size());
@@ -281,7 +281,7 @@ TEST(DeadlineAccount, leaves_the_frame_what_devices_do_not_take)
     for (std::uint64_t frame = 0; frame < 3; ++frame)
     {
         CycleMeasures measures = clean_cycle();
-        measures.outside = microseconds(frame == 1 ? 5'000 : 1'000); // One stall is no habit.
+        measures.outside = microseconds(frame == 1 ? 5'000 : 1'000); // One stall is not a habit.
         sut.add(frame, measures, kWork, false);
     }
     EXPECT_LE(sut.repetition_limit(), microseconds(-200));
@@ -300,7 +300,7 @@ TEST(DeadlineAccount, holds_suspects_for_guilty_that_it_has_no_room_to_keep)
     EXPECT_EQ(sut.own_faults, 3U);
 }
 
-/// A cycle as it may be, mostly near one of the limits.
+/// Random cycle, mostly near one of the limits.
 struct RandomCycle
 {
     CycleMeasures measures{};
@@ -340,7 +340,7 @@ struct Blame
     bool operator==(const Blame&) const = default;
 };
 
-/// A cycle, or up to four like it, that did as much work within 400 us.
+/// True for a cycle, or up to four like it, that did as much work within 400 us.
 bool shows(const RandomCycle& cycle, std::uint64_t work)
 {
     const Duration time = cycle.measures.cpu + cycle.measures.beside_cpu;
@@ -349,8 +349,8 @@ bool shows(const RandomCycle& cycle, std::uint64_t work)
         { return cycle.work * times >= work && time.ns * times <= microseconds(400).ns; });
 }
 
-/// The rules of docs/deadline-test.md, said of a whole run at once. `over`: of those that were
-/// repeated; none when the run itself is asked.
+/// Rules of docs/deadline-test.md for a whole run. `over`: repeated cycles that exceeded again;
+/// empty: the run itself decides.
 Blame blame_of(const std::vector<RandomCycle>& run,
                const std::optional<std::set<std::uint64_t>>& over)
 {

@@ -17,7 +17,7 @@ constexpr std::uint64_t kCycles = 10'000;
 constexpr DeadlineSetting kSetting{80, milliseconds(1)};
 constexpr SelfCheck kSound{20, 20, 0, true};
 
-/// A run of kCycles of which so many deadlines were missed.
+/// Run of kCycles with these numbers of missed deadlines.
 DeadlinePhase phase_with(std::uint64_t own, std::uint64_t machine, std::uint64_t stopped)
 {
     DeadlinePhase phase;
@@ -85,7 +85,7 @@ TEST(DeadlineReport, has_the_last_run_in_front_and_the_first_one_apart)
     EXPECT_FALSE(make_deadline_report(kSound, std::span(phases).first(1)).contains("alone"));
     for (const char* key : {"wake", "cpu", "response"})
     {
-        ASSERT_EQ(both["histograms_us"][key].size(), 1U) << key; // All the same value.
+        ASSERT_EQ(both["histograms_us"][key].size(), 1U) << key; // All have the same value.
         EXPECT_EQ(both["histograms_us"][key][0][1], kCycles);
     }
     EXPECT_GE(both["histograms_us"]["cpu"][0][0].get<double>(), 30.0);

@@ -32,7 +32,7 @@ std::string hex(const udp::Tag& tag)
     return text;
 }
 
-/// Of Python's hashlib.blake2b(text, digest_size=16, key=bytes(range(32))).
+/// Tags by Python's hashlib.blake2b(text, digest_size=16, key=bytes(range(32))).
 TEST(DeviceKey, makes_keyed_tags_as_others_do)
 {
     const tactus::test::TemporaryFolder folder("device_key");

@@ -16,7 +16,7 @@ namespace tactus::hrtc
 namespace
 {
 
-/// Tells what it was asked with, and goes 1 mm along x each time.
+/// Hand that keeps its last sense, and moves 1 mm along x each time.
 struct StraightHand final : public HandMotion
 {
     HandSense* sensed;
@@ -35,7 +35,7 @@ struct StraightHand final : public HandMotion
     }
 };
 
-/// An object that stood at (0, 0, 1), and the hand that follows it at up to 0.1 m a step.
+/// Object initially at (0, 0, 1), and the hand that follows it by up to 0.1 m a step.
 struct Rig
 {
     alignas(64) std::array<std::byte, 4096> memory{};
@@ -62,7 +62,7 @@ struct Rig
     void move(const Similarity& place) { tell(SceneChangeKind::object_moves, place); }
 };
 
-/// A quarter turn about z.
+/// Quarter turn about z.
 Mat3 quarter()
 {
     Mat3 rotation;
@@ -86,14 +86,14 @@ TEST(FollowingHand, goes_turns_and_grows_with_the_object)
 {
     Rig rig;
     Similarity place = rig.start;
-    place.translation_m = {0.0, 0.05, 1.0}; // By less than a step.
+    place.translation_m = {0.0, 0.05, 1.0}; // Less than a step.
     place.rotation = quarter();
     place.scale = 2.0;
     rig.move(place);
     HandSense sense;
     sense.device_world_m = {0.0, 2.05, 1.0};
     sense.force_world_n = {0.0, 3.0, 0.0};
-    // What was at (x, 0, 0), one below the object, is now two below it and turned to y.
+    // The point (x, 0, 0), one below the object, is now two below it and rotated to y.
     EXPECT_NEAR((rig.hand->next_world_m(sense) - Vec3(0.0, 0.05 + 2.002, -1.0)).norm(), 0.0, 1e-12);
     EXPECT_NEAR((rig.sensed.device_world_m - Vec3(1.0, 0.0, 1.0)).norm(), 0.0, 1e-12);
     EXPECT_NEAR((rig.sensed.force_world_n - Vec3(3.0, 0.0, 0.0)).norm(), 0.0, 1e-12);

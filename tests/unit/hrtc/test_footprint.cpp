@@ -18,7 +18,7 @@ namespace
 {
 
 constexpr double kPerSquareMetre = 1e6;
-constexpr double kWay_m = 1e-4; ///< Of a hand, beyond the radius.
+constexpr double kWay_m = 1e-4; ///< Motion of a hand, beyond the radius.
 
 ToolSpec tool_of(const ToolCore& core, double radius_m)
 {

@@ -16,7 +16,7 @@ namespace
 
 constexpr std::uint64_t kFrames = 30;
 
-/// A tool that comes down on a small model.
+/// Recording of a tool that descends on a small model.
 const Recording& recorded_run()
 {
     static const Recording kRecording = []
@@ -66,7 +66,7 @@ TEST(FrameRepeater, refuses_a_frame_that_is_not_in_the_recording)
     EXPECT_EQ(over.error(), "frame 30 is not in the recording of 30 frames");
 }
 
-/// What goes another way than the run did proves nothing of the run.
+/// A replay that differs from the run proves nothing about it.
 TEST(FrameRepeater, refuses_a_recording_that_comes_out_otherwise)
 {
     const std::vector<std::byte> bytes =

@@ -19,7 +19,7 @@ namespace tactus::hrtc::test
 namespace
 {
 
-/// Pages of a frame that has ended.
+/// Pages of a completed frame.
 std::vector<std::pair<std::uint32_t, std::uint64_t>> pages_of(Frame& frame)
 {
     std::vector<std::pair<std::uint32_t, std::uint64_t>> pages;
@@ -42,9 +42,9 @@ LoopRigOptions options_of(std::optional<std::size_t> slots, std::uint64_t frames
     return options;
 }
 
-/// All that there are.
+/// The greatest number.
 constexpr std::size_t kSlots = kMaxFrontPages;
-/// The last one is the first of a hundred.
+/// The last frame is the first of a hundred.
 constexpr std::uint64_t kFrames = 9 * FrontTap::kFrames + 1;
 
 TEST(FrontTap, copies_the_pages_of_one_frame_in_a_hundred_with_what_is_split)
@@ -54,7 +54,7 @@ TEST(FrontTap, copies_the_pages_of_one_frame_in_a_hundred_with_what_is_split)
     {
         if (frame == kFrames - 2)
         {
-            running.front().give_back(); // What the first frame left; the last makes the next.
+            running.front().give_back(); // State of the first frame; the last one makes the next.
         }
     };
     LoopRig rig(options);
@@ -112,7 +112,7 @@ TEST(FrontTap, starts_from_what_is_there_when_it_is_made)
     rig.loop().run();
     PagePool& pages = rig.frame().pools().cache.pages;
     std::vector<ShownPage> there(pages.metas.begin(), pages.metas.end());
-    pages.update_copy(there); // Of what has changed nothing is left.
+    pages.update_copy(there); // No change is left.
     FrontTap sut(pages);
     sut.show({0, {}, rig.frame(), FrameOutput{}, {}, Budgets{}}, rig.statistics());
     EXPECT_EQ(sut.take()->slots, there);
@@ -131,7 +131,7 @@ TEST(FrontTap, counts_slots_for_which_it_has_no_room)
 TEST(FrontTap, copies_where_chunks_are_looked_for)
 {
     LoopRigOptions options = options_of(kSlots, 1);
-    options.is_coarse = true; // Of a model that is here as a whole nothing is looked for.
+    options.is_coarse = true; // No pages of a fully resident model are searched.
     LoopRig rig(options);
     const FrontTap& sut = rig.front();
     rig.loop().run();

@@ -18,7 +18,7 @@ namespace tactus::hrtc
 namespace
 {
 
-/// Writes its letter to a pipe.
+/// Guard that writes its letter to a pipe.
 class Told final : public DeviceGuard
 {
 public:
@@ -48,7 +48,7 @@ protected:
         };
         return Guardian::start(make, 80, true);
     }
-    /// A process with a guardian does so, and ends; returns the letters of the guards.
+    /// Letters of the guards after a process with a guardian ends by `end`.
     template <typename End>
     std::string told_after(const End& end)
     {
@@ -63,7 +63,7 @@ protected:
         EXPECT_EQ(::waitpid(process, nullptr, 0), process);
         return read_all();
     }
-    /// To the end of all who have the pipe.
+    /// Reads until all processes have closed the pipe.
     std::string read_all()
     {
         ::close(pipe_[1]);
@@ -101,7 +101,7 @@ TEST_F(GuardianTest, lets_a_crash_end_the_process_as_it_would_have)
     {
         ::signal(SIGSEGV, SIG_DFL); // A sanitizer's handler would end the process otherwise.
         const auto guardian = start();
-        ::kill(::getpid(), SIGSEGV); // From outside: what was done is not done again.
+        ::kill(::getpid(), SIGSEGV); // From outside, so that the signal is not repeated.
         ::_exit(0);
     }
     int status = 0;

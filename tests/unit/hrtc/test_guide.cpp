@@ -46,7 +46,7 @@ TEST(Guide, pulls_to_a_point_a_line_and_to_the_front_of_a_plane)
     EXPECT_EQ(force_at(plane, Vec3(3.0, 2.0, 0.1)).force_n, Vec3(0.0, 0.0, 0.0));
     EXPECT_EQ(force_at(plane, Vec3(3.0, 2.0, 0.2)).force_n, Vec3(0.0, 0.0, 0.0));
     EXPECT_LT((force_at(plane, Vec3(3.0, 2.0, 0.09)).force_n - Vec3(0.0, 0.0, 2.0)).norm(), 1e-12);
-    Guide soft = guide_of("point:0,0,0"); // 100 N/m, 1 N at most.
+    Guide soft = guide_of("point:0,0,0"); // 100 N/m, at most 1 N.
     EXPECT_NEAR(force_at(soft, Vec3(0.0, 0.005, 0.0)).force_n.y(), -0.5, 1e-12);
     EXPECT_NEAR(force_at(soft, Vec3(0.0, 0.0, -9.0)).force_n.z(), 1.0, 1e-12);
 }
@@ -65,7 +65,7 @@ TEST(Guide, holds_a_gripper_so_far_open_and_leaves_the_hand_free)
         EXPECT_EQ(own.force_n, Vec3(0.0, 0.0, 0.0));
         return own.gripper_n;
     };
-    EXPECT_EQ(grip_n({}), 0.0); // It has said nothing yet.
+    EXPECT_EQ(grip_n({}), 0.0); // No command so far.
     EXPECT_NEAR(grip_n(0.03), -2.0, 1e-12);
     EXPECT_NEAR(grip_n(0.01), 2.0, 1e-12);
     EXPECT_EQ(grip_n(0.5), -3.0);
@@ -84,8 +84,8 @@ TEST(Guide, makes_no_energy_on_any_way_that_closes)
         Guide guide = guide_of(words);
         for (int round = 0; round < 20; ++round)
         {
-            // A closed way of three harmonics about all axes; trapezoids are exact for those but
-            // for where the spring saturates or lets go.
+            // Closed path of three harmonics about all axes, for which trapezoids are exact except
+            // where the spring saturates or releases.
             Mat3 swing;
             for (int i = 0; i < 9; ++i)
             {

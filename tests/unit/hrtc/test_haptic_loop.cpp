@@ -18,14 +18,14 @@ namespace
 {
 
 constexpr std::uint64_t kFadeFrames = 51; ///< kFadeTime_s, and one for rounding.
-constexpr std::uint64_t kBadFrames = 100; ///< That a cause lasts.
+constexpr std::uint64_t kBadFrames = 100; ///< Frames that a cause lasts.
 
 bool is_bad(std::uint64_t frame)
 {
     return frame >= kSettled && frame < kSettled + kBadFrames;
 }
 
-/// Does this in the frame in which the force has settled.
+/// Options that act in the frame in which the force has settled.
 LoopRigOptions when_settled(void (*act)(LoopRig&))
 {
     LoopRigOptions options;
@@ -39,15 +39,15 @@ LoopRigOptions when_settled(void (*act)(LoopRig&))
     return options;
 }
 
-/// What a test does to the device's readings, and how the loop has to call it.
+/// Change of the device's readings, with the loop's expected reaction.
 struct Trouble
 {
     const char* name;
     ForceOff cause;
-    std::uint64_t notice; ///< Frames until it can be known.
+    std::uint64_t notice; ///< Frames until it can be detected.
     void (*tamper)(std::uint64_t frame, DeviceSample& sample);
-    std::vector<DeviceFault> faults{};     ///< Of the device itself, from kSettled for kBadFrames.
-    SafetyState state{SafetyState::brake}; ///< That it comes to first.
+    std::vector<DeviceFault> faults{};     ///< Faults of the device, from kSettled for kBadFrames.
+    SafetyState state{SafetyState::brake}; ///< First state that follows.
 };
 
 void PrintTo(const Trouble& trouble, std::ostream* out)
@@ -94,10 +94,10 @@ const Trouble kTroubles[] = {
      0,
      leave,
      {{DeviceFaultKind::disconnect, kSettled, kBadFrames}},
-     SafetyState::reset}, // Nothing is left to fade: what isn't there makes no force.
+     SafetyState::reset}, // Nothing fades: an absent device makes no force.
 };
 
-/// Of a device that turns, with a tool that is turned by what it touches.
+/// Troubles of a 6-DoF device with a rigid tool.
 const Trouble kTurningTroubles[] = {
     {"no_rotation", ForceOff::garbage, 0,
      [](std::uint64_t frame, DeviceSample& sample)
@@ -108,7 +108,8 @@ const Trouble kTurningTroubles[] = {
     {"turned_wildly", ForceOff::garbage, 0,
      [](std::uint64_t frame, DeviceSample& sample)
      {
-         // By 1.1 rad about z in every other frame, as encoders that lose their place.
+         // Rotation by 1.1 rad about z in every other frame, as of encoders that lose their
+         // position.
          if (is_bad(frame) && frame % 2 == 0)
          {
              const double half_sine = 0.5226872289306592;
@@ -124,7 +125,7 @@ const Trouble kTurningTroubles[] = {
      { (*sample.angular_velocity_world_rad_per_s)[1] += is_bad(frame) ? 70.0 : 0.0; }},
 };
 
-/// Pressed on off its middle, so that the surface turns it.
+/// Pressed off its middle, so that the surface rotates it.
 LoopRigOptions with_a_lever(const Trouble& trouble)
 {
     LoopRigOptions options;
@@ -135,17 +136,17 @@ LoopRigOptions with_a_lever(const Trouble& trouble)
     return options;
 }
 
-/// Forces or torques that went out, and what they may do by themselves.
+/// Written forces or torques, with their normal changes.
 struct Course
 {
     const std::vector<Vec3>& written;
-    double own_step;      ///< From frame to frame when nobody interferes.
-    double damping;       ///< Of the hand that sinks into the wall as the force goes.
-    double back_step_max; ///< On the way back.
-    double off;           ///< Of the value before, where it ends.
+    double own_step;      ///< Change between frames without disturbance.
+    double damping;       ///< Damping of the hand that sinks into the wall while the force fades.
+    double back_step_max; ///< Greatest change during the return.
+    double off;           ///< Final deviation from the previous value.
 };
 
-/// Faded along a line from the frame on in which the trouble can be known, and back by a ramp.
+/// Expects a linear fade from the frame in which the trouble can be detected, and a ramp back.
 void expect_to_fade_and_return(const Course& course, std::uint64_t known)
 {
     const double before = course.written[kSettled - 1].norm();
@@ -186,7 +187,7 @@ TEST_P(HapticLoopTrouble, fades_the_force_within_two_periods_and_brings_it_back_
     const std::uint64_t known = kSettled + GetParam().notice;
     const double before_n = rig.written_n(kSettled - 1).norm();
     ASSERT_GT(before_n, 1.0);
-    // The hand makes no 0.3 m/s.
+    // The hand is slower than 0.3 m/s.
     const double damping_n =
         GetParam().cause == ForceOff::velocity ? 8.0 * kDampingForceShare : 0.5 * 0.3;
     EXPECT_LT(rig.written_n(known + 1).norm(), 0.97 * before_n + 4.0 * 0.04 * 0.96 * damping_n);
@@ -244,7 +245,7 @@ TEST(HapticLoop, a_stall_takes_as_much_of_the_torque_as_of_the_force)
     EXPECT_NEAR(torque, force, 0.02);
 }
 
-/// The states that the loop went through after the first one, up to the run's end.
+/// Causes of the events after the first one, to the run's end.
 std::vector<ForceOff> causes_of(LoopRig& rig)
 {
     std::vector<ForceOff> causes;
@@ -281,7 +282,7 @@ TEST(HapticLoop, time_that_falls_back_ends_the_force_until_the_clock_is_believed
     options.faults = {{DeviceFaultKind::time_jump, kSettled - 200, 200}};
     LoopRig rig(options);
     rig.run();
-    // Ahead it may jump: what was lost then, nobody knows.
+    // A forward jump is allowed, since the state was lost.
     const double before_n = rig.written_n(kSettled - 1).norm();
     EXPECT_GT(before_n, 1.0);
     EXPECT_LE(rig.largest_step_n(kSettled - 202, kSettled - 1), kOwnStep_n);
@@ -296,7 +297,7 @@ TEST(HapticLoop, time_that_falls_back_ends_the_force_until_the_clock_is_believed
 
 TEST(HapticLoop, encoders_that_were_stuck_come_back_as_a_hand_that_is_too_fast)
 {
-    // In free air, and when it has just begun to press; by the end the hand is at the bottom.
+    // In free air, and just after the press began; finally the hand is at the bottom.
     const double damping_n = 8.0 * kDampingForceShare; // At most, against that speed.
     for (const std::uint64_t begin : {100U, 300U, 400U})
     {
@@ -366,7 +367,7 @@ TEST(HapticLoop, a_lost_host_ends_the_force_unless_the_model_is_here_as_a_whole)
     }
 }
 
-/// A tool is held back at the coarse surface of the first model, and the second one is near.
+/// A tool rests at the coarse surface of the first model, with the second one nearby.
 TEST(HapticLoop, a_piece_that_does_not_come_ends_the_force_where_the_tool_is_at_its_model)
 {
     for (const std::uint32_t starved : {0U, 1U})
@@ -397,7 +398,7 @@ TEST(HapticLoop, the_first_frame_after_a_stall_counts_its_true_time)
         const auto noted = std::ranges::find(events, ForceOff::stall, &SafetyEvent::causes);
         ASSERT_NE(noted, events.end()) << lost;
         const double before_n = rig.written_n(noted->frame - 1).norm();
-        // Its own period, those lost, and on to the next point of the timer's grid.
+        // The frame's own period, the lost ones, and the rest to the next grid point of the timer.
         const double gain =
             std::max(1.0 - static_cast<double>(lost + 2) * kPeriod_s / kFadeTime_s, 0.0);
         EXPECT_NEAR(rig.written_n(noted->frame).norm(), gain * before_n, kOwnStep_n) << lost;
@@ -406,14 +407,14 @@ TEST(HapticLoop, the_first_frame_after_a_stall_counts_its_true_time)
     }
 }
 
-/// As the program's handler does: it never returns.
+/// Handler like the program's: it never returns.
 HapticLoop* failing_loop = nullptr;
 LoopRig* failing_rig = nullptr;
 
 void report_and_leave(const char* /*condition*/, const char* /*file*/, int /*line*/) noexcept
 {
     failing_loop->fail();
-    // What went out since the last good frame: a straight line to zero, and then the brake.
+    // Written since the last good frame: a straight line to zero, and then the brake.
     const std::vector<Vec3>& sent = failing_rig->device().written_n;
     const double before_n = sent[kSettled - 1].norm();
     const std::size_t faded = sent.size() - kSettled;
@@ -460,7 +461,7 @@ TEST(HapticLoop, a_release_that_has_begun_does_not_undo_the_brake_of_a_bug)
     LoopRig rig(when_settled(
         [](LoopRig& running)
         {
-            running.device().brake(); // As the supervisor does; the loop releases it.
+            running.device().brake(); // The supervisor brakes; the loop releases it.
         }));
     rig.device().before_release = [&] { std::thread([&] { rig.loop().fail(); }).join(); };
     rig.run();
@@ -480,7 +481,7 @@ TEST(HapticLoop, a_wall_that_the_device_may_have_goes_through_as_it_is)
     {
         EXPECT_EQ(rig.frames_with(action), 0U) << static_cast<int>(action);
     }
-    EXPECT_LT(rig.frames_with(ForceAction::damped), 100U); // What the way in makes in a period.
+    EXPECT_LT(rig.frames_with(ForceAction::damped), 100U); // Frames of the entry in a period.
 }
 
 TEST(HapticLoop, a_stiffer_wall_than_the_device_may_have_is_as_stiff_as_it_may_be)
@@ -510,7 +511,7 @@ TEST(HapticLoop, takes_back_a_device_that_somebody_has_braked)
         [](LoopRig& running)
         {
             running.device().brake();
-            running.device().brake(); // The second changes nothing.
+            running.device().brake(); // The second call has no effect.
         }));
     rig.run();
     const double before_n = rig.written_n(kSettled - 1).norm();

@@ -64,10 +64,10 @@ TEST(HdrText, tells_of_one_value)
                                    "#[Buckets =           27, SubBuckets     =         2048]\n");
 }
 
-/// Below 2,048 ns each value has a counter of its own: the text must be exact.
+/// Each value below 2,048 ns has its own counter, so the text must be exact.
 TEST(HdrText, holds_against_the_sorted_values)
 {
-    constexpr std::int64_t kValues = 997; // A prime: no share but 0 is a whole number of them.
+    constexpr std::int64_t kValues = 997; // Prime: no share except 0 is a whole number of them.
     std::vector<std::int64_t> values_ns;
     LatencyHistogram histogram;
     for (std::int64_t i = 0; i < kValues; ++i)

@@ -39,7 +39,7 @@ TEST(Load, works_as_long_as_it_is_asked_to_and_no_longer)
         const auto fault = work(kind, has_turns_left);
         EXPECT_FALSE(fault) << *fault;
         EXPECT_EQ(turns_left, -1);
-        EXPECT_GT(read_thread_cpu_time() - before, microseconds(100)); // It did something.
+        EXPECT_GT(read_thread_cpu_time() - before, microseconds(100)); // The load was active.
     }
 }
 

@@ -19,17 +19,17 @@ namespace tactus::hrtc::test
 namespace
 {
 
-/// Steps of a fading force.
+/// Change of a fading force between frames.
 constexpr double kFadeStep_n = 8.0 * kPeriod_s / kFadeTime_s;
 
-/// Puts a pose into the door before each frame for which `shift_m` says how far in x the object is
-/// from where it was placed; the hand comes down on it in -x.
+/// Object whose pose is sent before each frame in which `shift_m` gives its displacement in x; the
+/// hand descends on it in -x.
 class MovedObject
 {
 public:
     using Shift = std::function<std::optional<double>(std::uint64_t frame)>;
 
-    /// `flood`: poses from anywhere that come in each frame before the last one.
+    /// Starts with `flood` random poses that arrive in each frame before the last one.
     explicit MovedObject(Shift shift, int flood = 0, double speed_m_per_s = kInfinity)
         : shift_(std::move(shift)), flood_(flood), rig_(options(speed_m_per_s))
     {
@@ -77,7 +77,7 @@ private:
     LoopRig rig_;
 };
 
-/// Up and down again by `most_m`, a cosine over 400 frames from kSettled on.
+/// Displacement up and down by `most_m`, a cosine over 400 frames from kSettled on.
 std::optional<double> swing(std::uint64_t frame, double most_m)
 {
     const double phase = std::clamp((static_cast<double>(frame) - kSettled) / 400.0, 0.0, 1.0);
@@ -93,7 +93,7 @@ TEST(MovedObject, pushes_the_hand_that_touches_it_and_lets_go_again)
     const double pushed_n = sut.force_n(kSettled + 175);
     const double after_n = sut.force_n(1'800);
     EXPECT_GT(before_n, 1.0);
-    // The hand gives way: of what the wall's 500 N/m would make alone a fifth is left.
+    // The hand yields: a fifth of the force at the wall's 500 N/m remains.
     EXPECT_GT(pushed_n, before_n + 500.0 * kMost_m / 5.0);
     EXPECT_NEAR(after_n, before_n, 0.05 * before_n);
     EXPECT_LE(sut.rig().largest_step_n(kSettled, 1'900), 500.0 * kMost_m / 10.0);
@@ -110,8 +110,8 @@ TEST(MovedObject, whose_poses_stop_loses_the_force_and_gets_it_back_with_them)
     MovedObject sut([&](std::uint64_t frame)
                     { return is_silent(frame) ? std::nullopt : std::optional(0.0); });
     sut.run();
-    // The last pose came at the start of frame kSettled - 1: 100 frames later it is as old as it
-    // may be.
+    // The last pose arrived at the start of frame kSettled - 1: 100 frames later its age is at the
+    // limit.
     const double before_n = sut.force_n(kSettled);
     EXPECT_NEAR(sut.rig().written_n(kSettled + 99).norm(), before_n, 0.05 * before_n);
     EXPECT_LT(sut.rig().written_n(kSettled + 110).norm(), 0.9 * before_n);
@@ -133,7 +133,7 @@ TEST(MovedObject, that_nobody_moves_never_grows_old)
     EXPECT_FALSE(sut.rig().door().uses()[0].is_followed);
 }
 
-/// How far a force is from what the last one may fall to.
+/// Distance of a force from the nearest fading of the last one.
 double growth_n(const Vec3& before_n, const Vec3& now_n)
 {
     double least = kInfinity;
@@ -144,8 +144,8 @@ double growth_n(const Vec3& before_n, const Vec3& now_n)
     return least;
 }
 
-/// The device may 8 N, the wall has 500 N/m: 16 mm at once is a jump. Deep inside then, the hand is
-/// pushed out, and the force falls with its way.
+/// The device's limit is 8 N, the wall has 500 N/m: 16 mm at once is a jump. The hand is then
+/// pushed out from deep inside, and the force falls along its path.
 TEST(MovedObject, that_jumps_under_the_tool_makes_no_step_of_the_force)
 {
     for (const double jump_m : {0.02, 0.2, -0.02, -0.2})
@@ -229,16 +229,16 @@ TEST(MovedObject, that_outruns_what_is_believed_lets_the_force_fade)
     }
 }
 
-/// What a hand that comes down at 0.05 m/s feels of an object that comes to meet it, at once or
-/// with poses for each frame, from so many frames before it would touch it.
+/// Object that moves towards a hand descending at 0.05 m/s, at once or with poses for each frame,
+/// `before` frames before the touch.
 struct Strike
 {
     double way_m;
     std::uint64_t before;
-    int frames; ///< That it takes.
+    int frames; ///< Frames of the motion.
 };
 
-/// The first frame with a force on an object at rest.
+/// First frame with a force on an object at rest.
 std::uint64_t first_touch()
 {
     static const std::uint64_t kFrame = []
@@ -257,8 +257,8 @@ std::uint64_t first_touch()
 
 struct Felt
 {
-    double growth_n{0.0}; ///< Largest in a frame.
-    double step_m{0.0};   ///< Of the object, likewise.
+    double growth_n{0.0}; ///< Greatest growth in a frame.
+    double step_m{0.0};   ///< Greatest step of the object in a frame.
     bool is_jump{false};
 };
 
@@ -284,8 +284,9 @@ Felt felt_of(const Strike& strike, double speed_m_per_s)
     return felt;
 }
 
-/// From 0.2 to 3.3 mm before the touch. The force grows by what 0.5 m/s and the hand make in a
-/// frame at 500 N/m, and by the slew of the law on change; it goes while the limit is outrun.
+/// From 0.2 to 3.3 mm before the touch. The force grows at most by 0.5 m/s and the hand's motion in
+/// a frame at 500 N/m, and by the slew of the change limit; it fades while the object exceeds its
+/// speed limit.
 TEST(MovedObject, that_strikes_before_the_touch_is_carried_no_faster_than_is_believed)
 {
     for (const double way_m : {0.012, 0.015, 0.025})
@@ -306,8 +307,8 @@ TEST(MovedObject, that_strikes_before_the_touch_is_carried_no_faster_than_is_bel
     }
 }
 
-/// An object that leaps over a hand at rest before it, believed without end by all stages but the
-/// last one. 0.5 mm of its way count there, and the slew.
+/// Object that jumps over a hand at rest before it, unlimited by all stages except the last one.
+/// That one permits 0.5 mm of motion, and the slew.
 TEST(MovedObject, that_leaps_over_a_hand_is_felt_step_by_step_whatever_is_believed_of_it)
 {
     const std::array<std::pair<DeviceLimits, double>, 2> devices{

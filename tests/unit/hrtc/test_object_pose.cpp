@@ -18,7 +18,7 @@ namespace
 
 constexpr std::uint64_t kSeed = 20'260'731;
 
-/// A quaternion with a length of 1 but for rounding, or as far from it as a pose may have.
+/// Quaternion of length 1 except for rounding, or with the greatest deviation of a valid pose.
 Pose random_pose(std::mt19937_64& random, double length)
 {
     std::normal_distribution<double> number;
@@ -63,7 +63,7 @@ TEST(ObjectPose, from_a_host_is_where_place_would_put_the_object)
     EXPECT_LT((placed.translation_m - moved.translation_m).norm(), 1e-15);
     EXPECT_EQ(placed.scale, moved.scale);
     EXPECT_EQ(placed.revision, moved.revision);
-    // A quarter turn about z of the source's point (1, 0, 0).
+    // Quarter turn about z of the source's point (1, 0, 0).
     const Vec3 world_m = to_world(moved, Vec3(1.0, 0.0, 0.0));
     EXPECT_LT((world_m - Vec3(0.1, -0.2 + 2.0, 0.3)).norm(), 1e-14);
 }

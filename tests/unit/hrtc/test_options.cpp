@@ -24,7 +24,7 @@ using tactus::test::refusal_of;
 using tactus::test::shown_by;
 using tactus::test::words_of;
 
-/// As main() does, but for the run.
+/// Parses like main(), without the run.
 int parse(int argc, char** argv)
 {
     if (const Subcommand* subcommand = find_subcommand(argc, argv))
@@ -36,7 +36,7 @@ int parse(int argc, char** argv)
     return code == nullptr ? kExitDone : *code;
 }
 
-/// Works in a folder of its own, where some files are.
+/// Test in its own folder with some files.
 class HrtcOptions : public testing::Test
 {
 protected:
@@ -64,7 +64,7 @@ TEST_F(HrtcOptions, are_refused_in_one_line)
     }
     EXPECT_EQ(refusal_of(parse, words_of("hrtc ball.spm" + faults)),
               "hrtc: --device-fault: at most 64 faults\n");
-    // What follows depends on the processor.
+    // The rest depends on the processor.
     const std::string kernels = "hrtc: --kernels: 'sse' is none that this processor runs: portable";
     EXPECT_TRUE(refusal_of(parse, words_of("hrtc ball.spm --kernels sse")).starts_with(kernels));
 }

@@ -19,13 +19,13 @@ namespace tactus::hrtc::test
 namespace
 {
 
-/// Where tool `tool` was in frame `frame`; the third reading of each is not valid.
+/// State of tool `tool` in frame `frame`; the third reading of each is invalid.
 ToolState state_of(int tool, int frame)
 {
     return {Vec3(tool, frame, 0.25), 1'000 * (tool + 1) + frame, 1, frame != 2};
 }
 
-/// Two tools, of 8 and 3 N, at 4 kHz.
+/// Recording of two tools, of 8 and 3 N, at 4 kHz.
 std::vector<std::byte> recording_of(int frames)
 {
     tactus::test::RigOptions options = tactus::test::with_room_for_all();
@@ -74,7 +74,7 @@ TEST_F(RecordedMotion, is_that_of_the_tool_of_the_same_number_or_of_the_first)
     }
 }
 
-/// All that the device said, and where a clutch had parted hand and tool the hand.
+/// All device data, and the hand's place while a clutch separated hand and tool.
 TEST_F(RecordedMotion, is_the_hands_with_all_that_its_device_told)
 {
     const auto model = tactus::test::make_tiny_model({});

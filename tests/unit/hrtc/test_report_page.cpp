@@ -24,7 +24,7 @@ namespace
 using Json = nlohmann::ordered_json;
 using tactus::test::count_of;
 
-/// What make_report() gives, with a number of its own for each figure.
+/// Report like make_report()'s, with a different number for each figure.
 Json report_of(const std::string& model)
 {
     Json report = Json::parse(R"({
@@ -81,7 +81,7 @@ Json report_of(const std::string& model)
     return report;
 }
 
-/// Stands for the chart library, which nothing here runs.
+/// Replacement of the chart library, which is not run here.
 plot::ChartLibrary library()
 {
     return {"the library's script", "its style", ""};
@@ -98,7 +98,7 @@ RunStatistics statistics_of(std::size_t frames)
     return statistics;
 }
 
-/// Whether some text of the page is this number, as far as its digits go.
+/// True if some text of the page is this number to its printed digits.
 bool has_number(const std::string& page, double number)
 {
     for (std::size_t at = page.find('>'); at != std::string::npos; at = page.find('>', at + 1))
@@ -119,7 +119,7 @@ bool has_text(const std::string& page, const std::string& text)
     return page.find(">" + plot::escaped(text) + "<") != std::string::npos;
 }
 
-/// The figures of a report that the page lacks.
+/// Figures of a report that the page lacks.
 std::vector<std::string> lacking(const Json& report, const std::string& page)
 {
     std::vector<std::string> names;
@@ -145,7 +145,7 @@ TEST(ReportPage, holds_every_figure_of_the_report)
     const std::string page = make_page(report, statistics_of(5'003), library());
     EXPECT_EQ(lacking(report, page), std::vector<std::string>{});
     EXPECT_TRUE(has_text(page, "Report schema 1, 5003 frames of 1000003 ns, 5.003 s."));
-    // Force, bracket, stages over time; histograms of a frame, its stages, waking.
+    // Force, bounds, stages over time; histograms of a frame, its stages, waking.
     EXPECT_EQ(count_of(page, "<div class=\"chart\">"), 6U);
     for (const auto& [name, fact] : summary_facts(report))
     {
@@ -189,7 +189,7 @@ TEST(ReportPage, a_hostile_name_stays_text)
 {
     const std::string name = "</title></td><script>alert('\"')</script>&\x1B[31m";
     const std::string page = make_page(report_of(name), statistics_of(1), library());
-    EXPECT_EQ(count_of(page, "</script>"), 3U); // Data, library, what draws.
+    EXPECT_EQ(count_of(page, "</script>"), 3U); // Data, library, drawing code.
     EXPECT_EQ(count_of(page, "alert("), count_of(page, "&lt;script&gt;alert("));
     EXPECT_EQ(count_of(page, "</title>"), 1U);
     EXPECT_NE(page.find(">&lt;/title&gt;&lt;/td&gt;&lt;script&gt;alert(&#39;&quot;&#39;)"
@@ -197,7 +197,7 @@ TEST(ReportPage, a_hostile_name_stays_text)
               std::string::npos);
 }
 
-/// The charts' data, as the page's script parses them.
+/// Data of the charts, as the page's script parses them.
 Json charts_of(const std::string& page)
 {
     const std::string begin = "id=\"chart-data\">";
@@ -252,7 +252,7 @@ TEST(ReportPage, is_whole_without_the_chart_library)
 TEST(ReportPage, says_what_went_wrong)
 {
     Json report = report_of("bunny");
-    report["safety"]["begun"]["stall"] = 0; // The end of the run alone.
+    report["safety"]["begun"]["stall"] = 0; // Only the end of the run.
     report["safety"]["supervisor_brakes"] = 0;
     const auto verdict = [&report](const std::string& kind, const std::string& words)
     {

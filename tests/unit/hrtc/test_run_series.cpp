@@ -26,7 +26,7 @@ SeriesPoint random_point(std::mt19937& random)
     return point;
 }
 
-/// The largest of each `stride` numbers.
+/// Maximum of each `stride` numbers.
 std::vector<float> largest(const std::vector<float>& values, std::size_t stride)
 {
     std::vector<float> result;
@@ -58,7 +58,7 @@ TEST(RunSeries, each_point_is_the_worst_of_its_frames)
     std::vector<SeriesPoint> frames;
     RunSeries series;
     EXPECT_TRUE(series.points().empty());
-    // Around each doubling, and while pairs are still being merged.
+    // Counts around each doubling, and while pairs are being merged.
     const std::vector<std::size_t> looks{1,     2,     2'047, 2'048, 2'049, 2'050, 3'000, 3'072,
                                          3'073, 4'095, 4'096, 4'097, 5'121, 8'192, 8'193, 20'000};
     for (const std::size_t count : looks)

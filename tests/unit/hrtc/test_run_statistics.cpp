@@ -18,7 +18,7 @@ constexpr std::uint32_t kModels = 2;
 constexpr std::uint32_t kTools = 1;
 constexpr std::uint32_t kPairs = kTools * kModels;
 
-/// Frames of two models under one tool, one after the other.
+/// Consecutive frames of two models under one tool.
 class StatisticsRig
 {
 public:
@@ -37,7 +37,7 @@ public:
         change(output, measures);
         sut.add(output, forces_, measures);
     }
-    /// One of a tool that touches, or doesn't, and gets this force.
+    /// Adds a frame of a tool with or without contact, with this force.
     void touch(bool in_contact, double force_n, ForceOff causes = ForceOff::none)
     {
         tools_[0].in_contact = in_contact;
@@ -57,7 +57,7 @@ private:
     CycleMeasures measures_;
 };
 
-/// Budgets are the frame's, whatever models there are, and so many walks.
+/// Budgets belong to the frame, independent of the models, and count several walks.
 TEST(RunStatistics, counts_a_frame_as_over_budget_from_one_beyond_what_it_may_do)
 {
     StatisticsRig run;
@@ -85,8 +85,8 @@ TEST(RunStatistics, counts_a_frame_as_over_budget_from_one_beyond_what_it_may_do
     EXPECT_EQ(run.sut.frames, 5U);
 }
 
-/// A long frame is the loop's own fault if its work is more than a quick frame showed to fit: four
-/// times that frame's work.
+/// With more work than any frame before, a long frame is our overrun; with as much as in a quick
+/// one, the machine's delay.
 TEST(RunStatistics, compares_long_frames_with_quick_ones_by_their_work)
 {
     for (const std::uint32_t done : {12'000U, 12'001U})
@@ -118,7 +118,7 @@ TEST(RunStatistics, takes_no_damping_in_free_air_for_a_force_of_what_is_touched)
 TEST(RunStatistics, tells_contact_from_force_and_leaves_out_the_end_of_the_run)
 {
     StatisticsRig run;
-    run.touch(false, 0.25, ForceOff::stall); // Damping in the air is a force of no contact.
+    run.touch(false, 0.25, ForceOff::stall); // Damping in the air is a force without contact.
     run.touch(true, 0.0, ForceOff::stall);
     run.touch(true, 0.5);
     run.touch(true, 1.0);

@@ -45,7 +45,7 @@ TEST(SafetyRecord, counts_a_cause_when_it_begins_to_hold_for_a_tool)
 {
     SafetyRecord sut(2);
     sut.add(event(1, 0, ForceOff::stall));
-    sut.add(event(2, 0, ForceOff::stall | ForceOff::host)); // The stall goes on.
+    sut.add(event(2, 0, ForceOff::stall | ForceOff::host)); // The stall continues.
     sut.add(event(3, 1, ForceOff::host));
     sut.add(event(4, 0, ForceOff::none));
     sut.add(event(5, 0, ForceOff::stall));

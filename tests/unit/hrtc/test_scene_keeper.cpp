@@ -32,8 +32,8 @@ using tactus::test::small_model;
 
 constexpr Duration kAgeLimit = milliseconds(100);
 
-/// A host that shows objects, a controller with the same two models, and the keeper between them;
-/// in turns, each DDS domain of its own. The frame's side is a door that is read here.
+/// A model server with objects, a controller with the same two models, and the keeper between them,
+/// in turns, each test in its own DDS domain. The frame's side is a door that the test reads.
 class SceneKeeperRig : public ::testing::Test
 {
 protected:
@@ -52,7 +52,7 @@ protected:
         client_ = std::move(dds::DdsClient::create(kClientDomain, "keeper", {})).value();
         reader_ = std::make_unique<dds::SceneReader>(client_->domain(), client_->exchange());
     }
-    void TearDown() override { keeper.reset(); } // Before what it reads from.
+    void TearDown() override { keeper.reset(); } // The keeper ends before its sources.
     [[nodiscard]] std::unique_ptr<dds::DdsHost> make_host(std::uint32_t domain)
     {
         std::vector<dds::PublishedModel> models;
@@ -71,7 +71,7 @@ protected:
         object.pose.translation_m = {x_m, 0.0, 0.0};
         return shower.objects().show(object).value();
     }
-    /// With what the host shows now, or with the first model alone where no scene is followed.
+    /// Starts with the server's objects, or with the first model alone without a scene.
     void start(bool follows_scene, std::uint32_t room, std::size_t models = 2)
     {
         Options options;
@@ -115,7 +115,7 @@ protected:
             [this](std::uint32_t number, std::uint32_t generation, const std::string& name)
             { names.push_back(fmt::format("{} {} {}", number, generation, name)); });
     }
-    /// The host's word counts for the scene, or for each model.
+    /// Pins the server for the scene, or for each model.
     void pin(const ShownScene& scene, std::size_t models)
     {
         dds::Catalogue& catalogue = client_->catalogue();
@@ -166,13 +166,13 @@ protected:
                 return is_so();
             });
     }
-    /// Whose object stands at a place of ours; nobody's without one.
+    /// Object of the server at one of our places, if any.
     [[nodiscard]] std::optional<HostObject> shown_as(std::uint32_t place) const
     {
         return keeper->shown_as(place);
     }
 
-    /// The last object that came.
+    /// Last added object.
     [[nodiscard]] const SceneChange& last_come() { return last_[SceneChangeKind::object_comes]; }
     [[nodiscard]] const SceneChange& last_feel() { return last_[SceneChangeKind::object_feels]; }
     [[nodiscard]] const ToolSetup& tool() { return controller_->tools().front(); }
@@ -182,9 +182,9 @@ protected:
     Failover failover;
     std::vector<dds::Authority> authorities;
     std::optional<SceneKeeper> keeper;
-    std::map<SceneChangeKind, int> changes; ///< As the frame would get them.
-    SceneMaterials materials;               ///< Before start().
-    std::vector<std::string> names;         ///< Number, generation and name of what came.
+    std::map<SceneChangeKind, int> changes; ///< Changes as the frame would get them.
+    SceneMaterials materials;               ///< Materials, set before start().
+    std::vector<std::string> names;         ///< Number, generation and name of added objects.
 
 private:
     std::map<SceneChangeKind, SceneChange> last_;
@@ -241,7 +241,8 @@ TEST_F(FollowedScene, feels_as_its_host_says)
     EXPECT_EQ(keeper->news().feels, 2U);
 }
 
-/// Out of the ranges of --material, or damped by more than leaves the device half of its wall.
+/// Values outside the ranges of --material, or with damping that leaves the device less than half
+/// of its wall.
 TEST_F(FollowedScene, feels_no_more_than_the_device_allows_and_tells_it_once)
 {
     const std::uint32_t cup = show(*host, "cup", 0.0);
@@ -269,7 +270,7 @@ TEST_F(FollowedScene, feels_no_more_than_the_device_allows_and_tells_it_once)
     ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_comes] == 1; }));
     EXPECT_EQ(last_come().object.material, felt);
     EXPECT_TRUE(lines.has("the material of object 'pot' is limited: ")) << lines.text();
-    thick.static_friction = 60.0; // It is felt as before.
+    thick.static_friction = 60.0; // The material is unchanged.
     ASSERT_TRUE(host->objects().feel(cup, thick));
     ASSERT_TRUE(step_until([&] { return keeper->news().limited == 3; }));
     ASSERT_TRUE(host->objects().feel(cup, {}));
@@ -297,7 +298,7 @@ TEST_F(FollowedScene, feels_as_the_controller_was_told_whatever_the_host_says)
     ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_comes] == 1; }));
     EXPECT_EQ(last_come().object.material, (Material{250.0, 0.5, 0.5}));
     EXPECT_EQ(keeper->news().feels, 1U);
-    EXPECT_EQ(names, (std::vector<std::string>{"0 1 cup"})); // Of what came later.
+    EXPECT_EQ(names, (std::vector<std::string>{"0 1 cup"})); // Of later ones.
 }
 
 TEST_F(FollowedScene, leaves_out_what_has_no_room_until_there_is_some)
@@ -332,7 +333,7 @@ TEST_F(FollowedScene, stays_and_grows_stale_when_its_host_is_gone_and_follows_no
     const std::int64_t heard = keeper->heard(0).ns;
     ASSERT_TRUE(step_until([&] { return lines.has("which isn't followed"); }, second.get()));
     ASSERT_TRUE(step_until([&, until = 0]() mutable { return ++until == 300; }, second.get()));
-    EXPECT_EQ(keeper->heard(0).ns, heard); // So the answers are stale.
+    EXPECT_EQ(keeper->heard(0).ns, heard); // The answers are therefore stale.
     EXPECT_EQ(shown_as(0), (HostObject{first, cup}));
     EXPECT_EQ(changes[SceneChangeKind::object_goes], 0);
     EXPECT_EQ(changes[SceneChangeKind::object_comes], 0);
@@ -393,7 +394,7 @@ TEST_F(FollowedModel, goes_where_the_host_s_object_with_the_least_number_is)
     ASSERT_TRUE(step_until([&] { return shown_as(0) == HostObject{host->epoch(), pot}; }));
     host->objects().remove(pot);
     ASSERT_TRUE(step_until([&] { return !shown_as(0).has_value(); }));
-    EXPECT_EQ(changes[SceneChangeKind::object_goes], 0); // It stays where it is.
+    EXPECT_EQ(changes[SceneChangeKind::object_goes], 0); // It stays in place.
     EXPECT_EQ(changes[SceneChangeKind::object_comes], 0);
 }
 

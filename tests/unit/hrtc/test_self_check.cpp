@@ -18,7 +18,7 @@ namespace tactus::hrtc::test
 namespace
 {
 
-/// What the loop measures in a frame that is spoilt this way, on a machine that does nothing.
+/// Measurements of the loop in a frame with this fault, on an idle machine.
 CycleMeasures measures_of(std::optional<InjectedFault> fault)
 {
     CycleMeasures measures{};
@@ -45,7 +45,7 @@ CycleMeasures measures_of(std::optional<InjectedFault> fault)
     return measures;
 }
 
-/// What comes of a run as it should be, but for what `change` does to one frame.
+/// Result of a correct run in which `change` modifies one frame.
 template <typename Change>
 SelfCheck check_with(std::uint64_t changed, Change change)
 {
@@ -89,7 +89,7 @@ TEST(InjectionPlan, has_as_many_of_each_kind_as_it_says_with_room_between_them)
     }
 }
 
-/// Each kind, done on a thread that counts as the loop does.
+/// Injects each kind on a thread that counts like the loop.
 TEST(InjectedFaults, are_seen_by_what_the_loop_counts_with)
 {
     std::thread haptic(
@@ -159,7 +159,7 @@ TEST(SelfCheck, fails_when_a_clean_frame_was_flagged)
     EXPECT_EQ(check.false_flags, 1U);
 }
 
-/// What the machine adds to a frame's processor time isn't there when the frame is repeated.
+/// Processor time that the machine adds to a frame is missing in its repetition.
 TEST(SelfCheck, does_not_mind_a_frame_that_was_long_once)
 {
     const SelfCheck check =

@@ -21,18 +21,18 @@ namespace
 
 constexpr Duration kHang = milliseconds(80); ///< Longer than a soft brake.
 constexpr Duration kShortHang = milliseconds(10);
-/// How late the machine is to wake the supervisor.
+/// Delay of the machine in waking the supervisor.
 constexpr Duration kLate = microseconds(50);
 constexpr double kStepBack_n = 8.0 * kPeriod_s / kRiseTime_s + kOwnStep_n;
 
-/// What the hand felt while the loop hung in a reading, in steps of 10 us.
+/// Force on the hand while the loop hung in a reading, in steps of 10 us.
 struct Felt
 {
-    Duration after; ///< The last beat.
+    Duration after; ///< Time since the last beat.
     double force_n{0.0};
 };
 
-/// The loop hangs for a while, and the supervisor, if there is one, looks when it wants to.
+/// The loop hangs for a while; the supervisor, if any, checks on its own schedule.
 class HangingLoop
 {
 public:
@@ -47,7 +47,7 @@ public:
     [[nodiscard]] LoopRig& rig() { return rig_; }
     [[nodiscard]] Supervisor& supervisor() { return supervisor_; }
     [[nodiscard]] const std::vector<Felt>& felt() const { return felt_; }
-    /// How long after the last beat the last force was felt.
+    /// Time from the last beat to the last force.
     [[nodiscard]] Duration held() const
     {
         Duration last{};
@@ -67,7 +67,7 @@ private:
         {
             if (is_supervised)
             {
-                static_cast<void>(supervisor_.look()); // It never brakes a loop that comes round.
+                static_cast<void>(supervisor_.look()); // It never brakes a running loop.
             }
             if (frame == kSettled)
             {
@@ -115,7 +115,7 @@ TEST(Supervisor, fades_a_held_force_from_three_periods_after_the_last_beat_on)
     EXPECT_GE(sut.held(), begin + kBrakeFade - microseconds(10));
     EXPECT_LE(sut.held(), begin + kLate + kBrakeFade + microseconds(10));
     EXPECT_EQ(sut.felt().back().force_n, 0.0);
-    EXPECT_EQ(sut.supervisor().brakes(), 1U); // Once, however often it looks.
+    EXPECT_EQ(sut.supervisor().brakes(), 1U); // One brake for many checks.
     std::vector<SafetyEvent> events;
     sut.supervisor().log().take_into(events);
     ASSERT_EQ(events.size(), 1U);
@@ -173,13 +173,14 @@ TEST(Supervisor, a_loop_that_comes_back_during_the_fade_goes_on_from_there)
     EXPECT_LT(felt_n, 0.9 * before_n);
     EXPECT_GT(felt_n, 0.8 * before_n);
     EXPECT_NEAR(rig.written_n(kSettled).norm(), felt_n, 0.02 * before_n + kOwnStep_n);
-    // Then it is a stall like any other.
+    // The stall is then an ordinary one.
     EXPECT_GT(rig.written_n(kSettled + 1).norm(), 0.5 * before_n);
     EXPECT_LE(rig.largest_step_n(kSettled + 2, 1'900), kStepBack_n);
     EXPECT_NEAR(rig.written_n(1'900).norm(), before_n, 0.05 * before_n);
 }
 
-/// A device whose own thread hangs as well doesn't fade: brake() comes when that should be over.
+/// A device whose own thread hangs too does not fade: brake() is called when the fade should be
+/// over.
 TEST(Supervisor, brakes_at_once_when_the_fade_should_be_over)
 {
     struct Deaf final : public WrappedDevice
@@ -211,7 +212,7 @@ TEST(Supervisor, brakes_at_once_when_the_fade_should_be_over)
     }
     static_cast<void>(sut.look());
     EXPECT_EQ(deaf.brakes, 1);
-    heartbeat.beat(clock.now()); // Back.
+    heartbeat.beat(clock.now()); // The loop is back.
     static_cast<void>(sut.look());
     EXPECT_EQ(deaf.brakes, 1);
 }
@@ -222,7 +223,7 @@ TEST(Supervisor, looks_when_the_silence_would_be_long_enough)
     Heartbeat heartbeat;
     Supervisor sut({rig.tools(), &heartbeat, &rig.clock(), nullptr, kPeriod});
     SimulatedClock& clock = rig.virtual_clock();
-    EXPECT_EQ(sut.look(), clock.now() + kPeriod * 3); // Not begun.
+    EXPECT_EQ(sut.look(), clock.now() + kPeriod * 3); // It has not begun.
     clock.advance(milliseconds(100));
     EXPECT_EQ(sut.look(), clock.now() + kPeriod * 3);
     EXPECT_EQ(sut.brakes(), 0U);
@@ -237,12 +238,12 @@ TEST(Supervisor, looks_when_the_silence_would_be_long_enough)
     EXPECT_EQ(sut.look(), due + kPeriod);
     EXPECT_EQ(sut.brakes(), 1U);
 
-    heartbeat.beat(clock.now()); // Back, and gone again.
+    heartbeat.beat(clock.now()); // The loop is back, and hangs again.
     clock.advance(kPeriod * 3);
     static_cast<void>(sut.look());
     EXPECT_EQ(sut.brakes(), 2U);
     heartbeat.beat(clock.now());
-    heartbeat.rest(); // Ended as it should.
+    heartbeat.rest(); // Regular end.
     clock.advance(kPeriod * 10);
     static_cast<void>(sut.look());
     EXPECT_EQ(sut.brakes(), 2U);
@@ -286,7 +287,7 @@ TEST(Supervisor, stands_one_above_the_loop_and_beside_it)
     EXPECT_NE(beside.cpu, std::optional(0));
 }
 
-/// Real threads, real time: nothing is said about how long anything takes.
+/// Real threads in real time, without claims about durations.
 TEST(Supervisor, brakes_a_device_whose_reading_hangs_and_lets_the_loop_come_back)
 {
     const PosixClock clock;
@@ -298,7 +299,7 @@ TEST(Supervisor, brakes_a_device_whose_reading_hangs_and_lets_the_loop_come_back
     LoopRigOptions options;
     options.clock = &clock;
     options.timer = &timer;
-    options.frames = 1'000'000; // Ended below.
+    options.frames = 1'000'000; // The run ends below.
     options.tamper = [&](std::uint64_t frame, DeviceSample&)
     {
         if (frame == 100)
@@ -340,7 +341,7 @@ TEST(Supervisor, brakes_a_device_whose_reading_hangs_and_lets_the_loop_come_back
     EXPECT_GE(sut.brakes(), 1U);
     EXPECT_LE(before, brakes_seen.load());
     EXPECT_NE(rig.device().status().state, DeviceState::brake); // It was released.
-    // A loop that a busy machine had stalled before is braked already and notes no change then.
+    // A loop that a busy machine stalled earlier is already braked and logs no change.
     EXPECT_TRUE(std::ranges::any_of(
         rig.events(), [](const SafetyEvent& event)
         { return event.frame <= 100 && has_cause(event.causes, ForceOff::watchdog); }));

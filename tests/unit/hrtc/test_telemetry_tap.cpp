@@ -57,7 +57,7 @@ TEST(TelemetryTap, shows_the_newest_frame_as_the_loop_had_it)
     EXPECT_EQ(telemetry.pairs[0].object, 0U);
     EXPECT_EQ(telemetry.pairs[0].kind, AnswerKind::exact);
     EXPECT_LE(telemetry.pairs[0].lower_m, telemetry.pairs[0].upper_m);
-    EXPECT_EQ(telemetry.pairs[0].force_n[0], -sent_n.x()); // The whole push is the one object's.
+    EXPECT_EQ(telemetry.pairs[0].force_n[0], -sent_n.x()); // The whole force is on the one object.
     EXPECT_EQ(telemetry.pairs[0].force_n[2], -sent_n.z());
 }
 
@@ -83,7 +83,7 @@ TEST(TelemetryTap, sends_no_gripper_that_is_no_number)
     }
 }
 
-/// A pair of a tool at the origin and an object that begins there in that direction.
+/// Pair of a tool at the origin and an object that begins at this distance in that direction.
 PairOutput pair_towards(const Vec3& inward, double distance_m)
 {
     PairOutput pair;

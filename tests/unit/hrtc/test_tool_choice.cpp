@@ -45,7 +45,7 @@ TEST(ToolChoice, takes_names_with_commas_and_a_radius_behind_the_last_one)
 
 TEST(ToolChoice, refuses_what_is_no_shape_and_measures_out_of_range)
 {
-    // Apart by bars.
+    // Values are separated by bars.
     std::istringstream wrong(
         "|ball|point:1|sphere|sphere:|sphere:0|sphere:1.01|sphere:9e-6|sphere:nan|"
         "sphere:0.1,0.1|capsule:0.1|capsule:0.1,0|capsule:0,0.1|capsule:0.1,2|box:0.1,0.1|"
@@ -81,11 +81,11 @@ TEST(ToolChoice, is_held_where_it_touches)
     EXPECT_EQ(hand_radius_m(parse_tool("capsule:0.25,0.5").value(), nullptr, 0.3), 0.25);
 }
 
-/// A folder with files, for one test.
+/// Folder with files for one test.
 class ToolFiles : public testing::Test
 {
 protected:
-    /// Options of one tool, a hull of the file that gets this text.
+    /// Options of one tool, a hull from a file with this text.
     Options of_hull(const std::string& text)
     {
         return of("hull:" + folder_.write("hull.off", text).string());
@@ -110,7 +110,7 @@ protected:
 
 TEST_F(ToolFiles, are_the_corners_of_a_hull_each_once)
 {
-    // Corner 3 is corner 0 again.
+    // Corner 3 equals corner 0.
     Options options = of_hull("OFF\n4 2 0\n0 0 0\n0.3 0 0\n0 0.4 0\n0 0 0\n3 0 1 2\n3 3 1 2\n");
     ASSERT_FALSE(take_tool_files(options));
     const ToolChoice& tool = options.tool_choices.front();

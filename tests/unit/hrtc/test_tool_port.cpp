@@ -20,7 +20,7 @@ namespace
 
 using test::kPeriod_s;
 
-/// Still, connected and held; keeps the last force that was written.
+/// Still, connected device in use; keeps the last written force.
 class StillDevice final : public HapticDevice
 {
 public:
@@ -67,14 +67,14 @@ public:
     double written_gripper_n{0.0};
     HandPlace hand;
     std::uint32_t buttons{0};
-    std::optional<Quaternion> rotation; ///< In place of the hand's.
+    std::optional<Quaternion> rotation; ///< Rotation in place of the hand's.
 
 private:
     DeviceInfo info_;
     std::int64_t reads_{0};
 };
 
-/// Says what it is told to say.
+/// Source of a given external force.
 class SaidForce final : public OwnForceSource
 {
 public:
@@ -119,9 +119,9 @@ protected:
             static_cast<void>(step(output));
         }
     }
-    /// A port of the set-up as it is now.
+    /// Creates a port from the present set-up.
     void restart() { sut_ = std::make_unique<ToolPort>(setup_); }
-    /// Until the whole force goes out.
+    /// Steps until the force is at full gain.
     void warm_up()
     {
         steps(pushed_, 200);
@@ -132,7 +132,7 @@ protected:
     ToolSetup setup_;
     std::unique_ptr<ToolPort> sut_;
     ToolOutput pushed_;
-    ToolForce last_; ///< That step() has sent.
+    ToolForce last_; ///< Last force of step().
 };
 
 TEST_F(ToolPortTest, what_the_frame_says_of_the_tool_becomes_a_cause)
@@ -150,7 +150,7 @@ TEST_F(ToolPortTest, what_the_frame_says_of_the_tool_becomes_a_cause)
     EXPECT_LT(device().written_n.norm(), pushed_.force_n.norm());
 }
 
-/// About z, by what a unit quaternion says.
+/// Place with a rotation about z by a unit quaternion.
 HandPlace turned_place(const Vec3& position_m, double z, double w)
 {
     return {position_m, to_rotation({0.0, 0.0, z, w})};
@@ -181,7 +181,7 @@ TEST_F(ToolPortTest, a_rotation_that_is_none_makes_the_sample_invalid)
     EXPECT_TRUE(sut_->read(1).valid);
 }
 
-/// A box turned against its proxy, on a device that makes a torque.
+/// Box rotated against its proxy, on a device with torque.
 TEST_F(ToolPortTest, a_torque_goes_out_with_the_force_and_fades_with_it)
 {
     device().measure_rotation(kDeskTurn);
@@ -225,7 +225,7 @@ TEST_F(ToolPortTest, a_force_of_the_programs_own_goes_out_and_fades_as_that_of_s
 
     ToolOutput stuck = pushed_;
     stuck.sample_fault = FrameFault::tool_stuck;
-    own.said.gripper_n = 7.0; // What is made of bad data doesn't go out.
+    own.said.gripper_n = 7.0; // Results of bad data are not sent.
     static_cast<void>(step(stuck));
     const double gain = device().written_n.norm() / both_n.norm();
     EXPECT_NEAR(gain, 1.0 - kPeriod_s / kFadeTime_s, 1e-9);
@@ -244,7 +244,7 @@ TEST_F(ToolPortTest, a_force_of_the_programs_own_is_within_the_devices_limits)
     steps({}, 200);
     EXPECT_NEAR(device().written_n.norm(), 8.0, 1e-9);
     EXPECT_TRUE(has_action(last_.push.actions, ForceAction::clamped));
-    own.said.stiffness_n_per_m = 4'000.0; // A spring twice as stiff as the device carries.
+    own.said.stiffness_n_per_m = 4'000.0; // The spring is twice as stiff as the device permits.
     static_cast<void>(step(ToolOutput{}));
     EXPECT_TRUE(has_action(last_.push.actions, ForceAction::stiffness_capped));
 }
@@ -275,7 +275,7 @@ TEST_F(ToolPortTest, a_held_button_parts_hand_and_tool_without_a_force)
     setup_.clutch_button = 3;
     restart();
     warm_up();
-    device().buttons = 4; // Another one.
+    device().buttons = 4; // Another button.
     EXPECT_EQ(step(pushed_).causes, ForceOff::none);
     const ToolState held = sut_->read(1);
 
@@ -294,14 +294,14 @@ TEST_F(ToolPortTest, a_held_button_parts_hand_and_tool_without_a_force)
     EXPECT_LT((sut_->read(1).position_m - held.position_m).norm(), 1e-15) << "goes on from there";
     EXPECT_LT((sut_->read(1).rotation - held.rotation).norm(), 1e-15);
     EXPECT_EQ(step(pushed_).causes, ForceOff::none);
-    // Back to where the hand began: the tool turns by as much, about the world's axes.
+    // Return to the hand's start: the tool rotates equally about the world's axes.
     const Mat3 way = to_rotation({0.0, 0.0, -0.6, 0.8});
     device().hand = HandPlace{};
     EXPECT_LT((sut_->read(1).rotation - way * held.rotation).norm(), 1e-14);
     EXPECT_LT((sut_->read(1).position_m - held.position_m - Vec3(-0.03, 0.0, 0.0)).norm(), 1e-14);
 }
 
-/// What surfaces do is the same to the last bit, the passivity observer's part too.
+/// The surface force is the same to the last bit, with the passivity observer.
 TEST_F(ToolPortTest, a_load_is_carried_beside_the_force_and_while_the_proxy_is_frozen)
 {
     setup_.load.mass_kg = 0.2;

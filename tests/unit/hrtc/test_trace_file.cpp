@@ -30,7 +30,7 @@ TracedFrame frame(std::uint64_t number, std::int64_t start_us)
     return traced;
 }
 
-/// Events of the file, but for those that name its rows.
+/// Events of the file, without those that name its rows.
 std::vector<TraceJson> events_of(const std::filesystem::path& path, TraceJson& file)
 {
     file = TraceJson::parse(std::ifstream(path));
@@ -142,7 +142,7 @@ TEST_F(Traced, what_the_courier_began_before_has_a_negative_time)
     }
     ASSERT_NE(round, nullptr);
     ASSERT_NE(first, nullptr);
-    // Whichever was taken first is the zero.
+    // The first measurement is the zero.
     EXPECT_DOUBLE_EQ(round->at("ts").get<double>() - first->at("ts").get<double>(), -0.001);
     EXPECT_EQ(round->at("dur"), 1.0);
     EXPECT_EQ(

@@ -16,7 +16,7 @@ namespace
 
 using Report = nlohmann::ordered_json;
 
-/// What a verdict is made of, of a run in which nothing was wrong.
+/// Report of a run without faults.
 Report good_report()
 {
     return Report::parse(R"({
@@ -37,7 +37,7 @@ Report good_report()
         "tools": [{"begins_inside": null, "softest_wall_n_per_m": null}]})");
 }
 
-/// The verdict without the parts that are ok.
+/// Verdict without the parts that are ok.
 std::string verdict(const Report& report)
 {
     std::string text = verdict_text(complaints_of(report));
@@ -72,7 +72,7 @@ TEST(Verdict, judges_mesh_and_scene_controller_and_machine_apart)
               "faded for a moment 27 times (2 brakes by the supervisor): 'hrtc doctor' says why");
     EXPECT_TRUE(is_machine_alone(complaints_of(report)));
     EXPECT_FALSE(fails_when_strict(report));
-    report["deadline"]["own_fault"] = 1; // Then it may have been the loop itself.
+    report["deadline"]["own_fault"] = 1; // It may then have been the loop itself.
     EXPECT_EQ(verdict(report), "controller: 1 deadline missed by the loop's own fault; force off "
                                "for: watchdog 1, stall 26; 2 brakes by the supervisor");
     EXPECT_FALSE(is_machine_alone(complaints_of(report)));
@@ -113,7 +113,7 @@ TEST(Verdict, is_never_good_without_one_exact_answer)
 {
     Report report = good_report();
     report["answers"]["exact"] = 0;
-    EXPECT_EQ(verdict(report), "ok"); // Nothing came near: decided.
+    EXPECT_EQ(verdict(report), "ok"); // Nothing came near: separated.
     report["answers"]["bracket"] = 4'655;
     EXPECT_EQ(verdict(report), "mesh and scene: no answer was exact, 4655 were brackets");
     EXPECT_TRUE(fails_when_strict(report));

@@ -18,9 +18,9 @@
 #include <functional>
 #include <random>
 
-/// The controller as `hrtc` puts it together, in virtual time on one thread: scripted hand, device,
-/// haptic loop, governor, recording tap, supervisor, and a courier on a link that loses and delays.
-/// The machine wakes it late, stalls it and hangs in a reading, all by a script.
+/// The controller as `hrtc` assembles it, in virtual time on one thread: scripted hand, device,
+/// haptic loop, governor, recording tap, supervisor, and a loader on a link with loss and delay.
+/// The scripted machine wakes it late, stalls it and hangs in a reading.
 namespace tactus::hrtc::test
 {
 
@@ -31,7 +31,7 @@ constexpr std::uint64_t kFrames = 1'000 * TACTUS_VIRTUAL_SECONDS;
 constexpr std::uint64_t kHangSpacing = 7'919;
 constexpr Duration kHang = milliseconds(8); ///< Long enough for the supervisor.
 
-/// FNV-1a over the bytes of what is put in, so that a run is one number.
+/// FNV-1a over the input bytes, so that a run is one number.
 class Digest
 {
 public:
@@ -62,8 +62,8 @@ private:
     std::uint64_t value_{0xCBF2'9CE4'8422'2325};
 };
 
-/// One sleep in 40 ends up to 0.5 ms late, one in 900 up to 4 ms, and one in
-/// 15,000 as late as the worst that a shared virtual machine was seen to do.
+/// Late wake-ups: one sleep in 40 up to 0.5 ms, one in 900 up to 4 ms, and one in 15,000 as late as
+/// the worst observed on a shared virtual machine.
 std::vector<LateWake> late_wakes(std::uint32_t seed)
 {
     std::mt19937 random(seed);
@@ -87,7 +87,7 @@ std::vector<LateWake> late_wakes(std::uint32_t seed)
     return script;
 }
 
-/// A device whose reading takes time, in which the other threads' work is done, too.
+/// Device whose reading takes time, in which the other threads' work is also done.
 class BusyDevice final : public WrappedDevice
 {
 public:
@@ -170,13 +170,13 @@ public:
     [[nodiscard]] Duration lasted() const { return clock_.now() - kStart; }
     [[nodiscard]] std::uint64_t events() const { return event_count_; }
 
-    /// Every force that went out.
+    /// Hash of all sent forces.
     [[nodiscard]] std::uint64_t forces() const { return device().written.value(); }
-    /// Every frame's inputs and the hashes of all its outputs.
+    /// Hash of every frame's inputs and output hashes.
     [[nodiscard]] std::uint64_t recording() const { return recording_.value(); }
-    /// When which tool was in what state, and why.
+    /// Hash of the tools' safety states with times and causes.
     [[nodiscard]] std::uint64_t safety() const { return safety_.value(); }
-    /// All statistics but those that the real machine makes: faults, switches, allocations.
+    /// Hash of all statistics except those of the real machine: faults, switches, allocations.
     [[nodiscard]] std::uint64_t figures() const
     {
         const RunStatistics& s = statistics_;
@@ -220,7 +220,7 @@ public:
 private:
     static constexpr MonotonicTime kStart{1'000'000'000};
 
-    /// Large enough for its pages to take turns in the cache.
+    /// Model large enough that its pages compete for the cache.
     static const tactus::test::TestModel& model()
     {
         static const tactus::test::TestModel& made = tactus::test::test_model(
@@ -260,7 +260,7 @@ private:
             [this](std::uint64_t frame) { work_meanwhile(frame); });
     }
 
-    /// What the other threads do between two frames, and what time that and the reading take.
+    /// Work of the other threads between two frames, and the time that it and the reading take.
     void work_meanwhile(std::uint64_t frame)
     {
         frames_.deliver();
@@ -319,7 +319,7 @@ TEST(VirtualRun, minutes_of_the_whole_controller_are_the_same_each_time)
 {
     VirtualRun first(1);
     first.run();
-    // It was a run worth repeating.
+    // The run has enough events.
     const RunStatistics& figures = first.statistics();
     EXPECT_EQ(figures.frames, kFrames);
     EXPECT_GE(first.lasted(), kPeriod * static_cast<std::int64_t>(kFrames));
@@ -342,7 +342,7 @@ TEST(VirtualRun, minutes_of_the_whole_controller_are_the_same_each_time)
     EXPECT_EQ(first.figures(), again.figures());
     EXPECT_EQ(first.lasted(), again.lasted());
 
-    VirtualRun other(2); // Late at other times, and so it has to show.
+    VirtualRun other(2); // Other delays must change the result.
     other.run();
     EXPECT_NE(first.forces(), other.forces());
     EXPECT_NE(first.recording(), other.recording());

@@ -17,7 +17,7 @@
 namespace tactus::test
 {
 
-/// Wants to be at the origin.
+/// Hand at the origin.
 class HandAtRest final : public HandMotion
 {
 public:
@@ -25,18 +25,18 @@ public:
     [[nodiscard]] Vec3 next_world_m(const HandSense&) noexcept override { return Vec3::Zero(); }
 };
 
-/// A device under test, with a hand that holds it loosely at one place, and its time in our hands:
-/// nothing happens between two calls of next(), however late the second one is.
+/// Device under test, with a hand that holds it loosely at one place, and controlled time: nothing
+/// happens between two calls of next().
 class DeviceRig
 {
 public:
     virtual ~DeviceRig() = default;
     [[nodiscard]] virtual HapticDevice& device() noexcept = 0;
-    /// One period goes by under the force that was written last; then one read().
+    /// Advances one period under the last written force, then reads once.
     [[nodiscard]] virtual DeviceSample next() = 0;
-    /// Whether the hand gives way to a force; where it doesn't it never moves.
+    /// True if the hand yields to a force; otherwise it never moves.
     [[nodiscard]] virtual bool gives_way() const { return true; }
-    /// Whether it gives way to a torque, too.
+    /// True if it also yields to a torque.
     [[nodiscard]] virtual bool turns() const { return gives_way(); }
 
 protected:
@@ -45,7 +45,7 @@ protected:
     DeviceRig& operator=(const DeviceRig&) = default;
 };
 
-/// Of any class; what wraps it has to keep its promises, too.
+/// Simulated device of any class; its wrapper must keep its promises too.
 class SimulatedRig final : public DeviceRig
 {
 public:
@@ -60,12 +60,12 @@ public:
     [[nodiscard]] DeviceSample next() override { return device_->read(); }
 
 private:
-    /// After all tests are over.
+    /// The time is after all tests.
     std::vector<DeviceFault> faults_{{DeviceFaultKind::nan, 1'000'000, 1}};
     std::unique_ptr<FaultyDevice> device_;
 };
 
-/// A recording of a hand at rest.
+/// Rig with a recording of a hand at rest.
 class ReplayRig final : public DeviceRig
 {
 public:

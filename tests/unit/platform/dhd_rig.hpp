@@ -17,7 +17,7 @@
 namespace tactus::test
 {
 
-/// The stand-in that DhdDevice will find, too: one library of one path is loaded once.
+/// Stand-in library that DhdDevice also finds: one library of one path is loaded once.
 class LoadedStandIn
 {
 public:
@@ -37,7 +37,7 @@ private:
     StandInDhd* stand_in_{nullptr};
 };
 
-/// A DhdDevice on the stand-in, in lock step.
+/// DhdDevice on the stand-in, in lock step.
 class DhdRig final : public DeviceRig
 {
 public:
@@ -50,7 +50,7 @@ public:
         options.clock = &clock_;
         while (stand_in_->devices.at(index_).is_open)
         {
-            ++index_; // Another rig's.
+            ++index_; // Index of another rig.
         }
         options.index = static_cast<int>(index_);
         device_ = std::move(DhdDevice::create(options)).value();
@@ -66,7 +66,7 @@ public:
     }
     [[nodiscard]] bool turns() const override { return false; }
     [[nodiscard]] StandInDhdDevice& hand() { return stand_in_->devices.at(index_); }
-    /// A turn begins with a reading: between two that come from here on lies a whole one.
+    /// Waits for a whole turn, which lies between two readings from now on.
     void await_turn()
     {
         const std::uint64_t now = hand().reads;

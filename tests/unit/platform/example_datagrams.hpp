@@ -4,7 +4,7 @@
 
 #include "platform/devices/udp/datagram.hpp"
 
-/// Datagrams of each kind, no value like another.
+/// Datagrams of each kind, with all values different.
 namespace tactus::test
 {
 

@@ -9,8 +9,8 @@
 #include <functional>
 #include <vector>
 
-/// A stand-in for the controller's force: analytic shapes and a god-object of its own, so that the
-/// device and the hand can be tested before and apart from everything that knows meshes.
+/// Stand-in for the controller's force: analytic shapes and a god-object, to test device and hand
+/// before and apart from all code for meshes.
 namespace tactus::test
 {
 
@@ -31,13 +31,13 @@ inline Shape box(const Vec3& centre, const Vec3& half)
     };
 }
 
-/// The outside distance stays exact; that is all a god-object outside needs.
+/// Union of shapes. The outside distance stays exact, which suffices for a god-object outside.
 inline Shape join(Shape a, Shape b)
 {
     return [=](const Vec3& p) { return std::min(a(p), b(p)); };
 }
 
-/// A ball on a spring: it follows the device, but never into the shape.
+/// Sphere on a spring that follows the device, but never into the shape.
 class FakeWall
 {
 public:
@@ -57,7 +57,7 @@ public:
     }
 
 private:
-    /// In steps no longer than the free distance; at the surface only along it.
+    /// Moves in steps no longer than the free distance, at the surface only along it.
     void follow(const Vec3& device)
     {
         for (int step = 0; step < 64; ++step)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// A library for --device plugin that fails as its words say.
+/// Library for --device plugin that fails as its words say.
 
 #include "platform/devices/plugin/device_plugin.hpp"
 

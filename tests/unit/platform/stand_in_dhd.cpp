@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-/// A library that exports what platform/devices/dhd takes from Force Dimension's SDK; without
-/// dhdSetForceAndTorqueAndGripperForce when STAND_IN_DHD_IS_OLD is defined.
+/// Library that exports the functions of Force Dimension's SDK that platform/devices/dhd uses;
+/// without dhdSetForceAndTorqueAndGripperForce if STAND_IN_DHD_IS_OLD is defined.
 #include "tests/unit/platform/stand_in_dhd.hpp"
 
 #include <cmath>
@@ -33,7 +33,7 @@ StandInDhdDevice& device_of(char id)
     return stand_in.devices.at(static_cast<std::size_t>(id));
 }
 
-/// 0 or -1, as the SDK does.
+/// Returns 0 or -1 like the SDK.
 template <typename Work>
 int on(char id, const Work& work)
 {
@@ -47,14 +47,14 @@ int on(char id, const Work& work)
     return 0;
 }
 
-/// The device that outlives the program; of no effect without a log.
+/// Device that outlives the program; no effect without a log.
 class Hardware
 {
 public:
     Hardware() : log_(std::getenv(tactus::test::kDhdLogVariable)) {}
 
     [[nodiscard]] bool is_there() const { return log_ != nullptr; }
-    /// The system gives the lock back when the process that has it has ended.
+    /// Opens the device with a lock, which the system releases when its process ends.
     bool try_open()
     {
         lock_ = is_there() ? ::open(log_, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644) : -1;
@@ -73,7 +73,7 @@ public:
             ::close(lock_);
         }
     }
-    /// The first call of a program that opens it tells that this is another one.
+    /// Logs a force; a program's first call logs the change of program.
     void make_force(double x, double y, double z)
     {
         if (is_there())

@@ -10,8 +10,8 @@
 namespace tactus::test
 {
 
-/// What a stand-in for Force Dimension's SDK has of one device: 0.1 kg on a spring of 200 N/m. It
-/// moves only in step(), so that a test has its time in its hands.
+/// State of one device in a stand-in for Force Dimension's SDK: 0.1 kg on a spring of 200 N/m. It
+/// moves only in step(), so that a test controls its time.
 struct StandInDhdDevice
 {
     void step()
@@ -33,7 +33,7 @@ struct StandInDhdDevice
     std::array<double, 3> force_n{};
     bool brakes{true};
     bool forces_enabled{false};
-    std::array<double, 9> frame{1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}; ///< By rows.
+    std::array<double, 9> frame{1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}; ///< Matrix by rows.
     std::array<double, 3> turning{};
     std::array<double, 3> torque_nm{};
     double gap_m{0.0};
@@ -47,7 +47,7 @@ struct StandInDhdDevice
     std::atomic<bool> has_velocity{true};
     std::atomic<bool> has_brakes{true};
     std::atomic<std::uint64_t> reads{0};
-    std::atomic<int> watchdog_steps{0}; ///< Of 125 us.
+    std::atomic<int> watchdog_steps{0}; ///< Steps of 125 us.
 };
 
 struct StandInDhd
@@ -56,12 +56,12 @@ struct StandInDhd
     std::array<StandInDhdDevice, 8> devices;
 };
 
-/// A file that TACTUS_DHD_LOG names makes a device that outlives the program: it takes one program
-/// at a time, its hand goes up and down along z by 2 cm in 4 s, and each force goes to the file, a
-/// line each as those of tests/hostile/recording_device.cpp.
+/// Variable TACTUS_DHD_LOG: its file makes a device that outlives the program. It accepts one
+/// program at a time, its hand moves along z by 2 cm in 4 s, and each force is written to the file,
+/// in lines like those of tests/hostile/recording_device.cpp.
 inline constexpr const char* kDhdLogVariable = "TACTUS_DHD_LOG";
 
-/// The name of the function of the stand-in that returns it.
+/// Name of the stand-in's function that returns it.
 inline constexpr const char* kStandInDhdName = "tactus_stand_in_dhd";
 using StandInDhdFunction = StandInDhd*();
 

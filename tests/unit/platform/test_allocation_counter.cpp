@@ -22,7 +22,7 @@ namespace
 
 using allocation_counter::HeapCalls;
 
-/// Keeps the compiler from leaving out an allocation whose result nobody uses.
+/// Keeps the compiler from removing an allocation without a use.
 void keep(void* block)
 {
     asm volatile("" : : "r"(block) : "memory");

@@ -74,7 +74,7 @@ TEST(BrakeLatch, yields_a_fade_to_one_write_and_no_brake_at_once)
     EXPECT_FALSE(latch.lets_through());
 }
 
-/// One brake's beginning with the next one's kind would be a fade that nobody asked for.
+/// The start of one brake with the next one's kind would be an unrequested fade.
 TEST(BrakeLatch, shows_no_fade_while_others_brake_at_once_and_release)
 {
     constexpr int kRounds = 500'000;
@@ -100,7 +100,7 @@ TEST(BrakeLatch, shows_no_fade_while_others_brake_at_once_and_release)
     EXPECT_EQ(shares_between, 0);
 }
 
-/// Whichever comes last; a brake at once never becomes a fade, nor is it half released.
+/// Either order; an immediate brake never becomes a fade, nor is it half released.
 TEST(BrakeLatch, ends_on_at_once_or_off_when_a_brake_and_a_release_meet)
 {
     constexpr int kRounds = 20'000;

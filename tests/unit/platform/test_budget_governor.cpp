@@ -19,19 +19,19 @@ constexpr Duration kBudget = microseconds(60);
 constexpr std::uint32_t kLeast = 40'000;
 constexpr std::uint32_t kMost = 500'000;
 
-/// A machine on which a frame takes what its work costs, with some scatter.
+/// Machine on which a frame takes the time of its work, with some scatter.
 struct Machine
 {
-    double rest_us{14.0}; ///< Of a frame with nothing to do.
-    double pace_ns{0.3};  ///< Of a unit of work.
+    double rest_us{14.0}; ///< Time of a frame without work.
+    double pace_ns{0.3};  ///< Time of a unit of work.
     double scatter_us{4.0};
 };
 
-/// How much of its work a frame would like to do.
+/// Demand of a frame for work.
 enum class Demand
 {
-    hungry, ///< All of it, as after a jump.
-    sliding ///< Little, and all of it in one frame of ten.
+    hungry, ///< All work, as after a jump.
+    sliding ///< Little work, and all in one frame of ten.
 };
 
 class Simulation
@@ -55,7 +55,7 @@ public:
         return frame_us;
     }
 
-    /// Many frames; returns the time that all but one in a hundred stay below.
+    /// Many frames; returns the 99 % quantile of their times.
     double run(int frames)
     {
         std::vector<double> times_us;
@@ -71,7 +71,7 @@ public:
         return times_us[times_us.size() * 99 / 100];
     }
 
-    /// The work that would fill the set time to the last.
+    /// Work that exactly fills the set time.
     [[nodiscard]] double work_that_fills(double budget_us) const
     {
         return (budget_us - machine.rest_us - machine.scatter_us) / (1e-3 * machine.pace_ns);
@@ -80,7 +80,7 @@ public:
     Machine machine;
     Demand demand;
     BudgetGovernor sut;
-    std::uint32_t least{0}; ///< Budgets of the last run().
+    std::uint32_t least{0}; ///< Least budget of the last run().
     std::uint32_t most{0};
 
 private:

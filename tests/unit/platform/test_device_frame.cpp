@@ -32,7 +32,7 @@ TEST(DeviceFrame, changes_nothing_by_default)
 
 TEST(DeviceFrame, turns_scales_and_moves_as_written_by_hand)
 {
-    Mat3 quarter; // About z: x becomes y.
+    Mat3 quarter; // Rotation about z: x becomes y.
     quarter << 0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0;
     const DeviceFrame sut = DeviceFrame::create({quarter, Vec3(10.0, 20.0, 30.0), 2.0}).value();
     EXPECT_EQ(sut.position_to_world(Vec3(1.0, 0.0, 3.0)), Vec3(10.0, 22.0, 36.0));
@@ -40,7 +40,7 @@ TEST(DeviceFrame, turns_scales_and_moves_as_written_by_hand)
     EXPECT_EQ(sut.force_to_device(Vec3(0.0, 5.0, 1.0)), Vec3(5.0, 0.0, 1.0));
 }
 
-/// A wall that the cap of stability.md allows in the world is one that it allows at the device.
+/// A wall within the stiffness limit of stability.md in the world is within that at the device.
 TEST(DeviceFrame, keeps_power_over_the_scale_and_the_stiffness_cap)
 {
     test::Random random(41);

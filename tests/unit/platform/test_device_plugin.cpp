@@ -12,7 +12,7 @@ namespace tactus::test
 namespace
 {
 
-/// What is said of it, without the file's name, which stands in front.
+/// Refusal without the file's name in front.
 std::string refusal_of(const std::string& path, const char* words)
 {
     const auto device = load_device(path, {1'000, {}, words});

@@ -30,7 +30,7 @@ protected:
         options.times = test::patient_times();
     }
 
-    /// The one line that says why not.
+    /// Line of the refusal.
     std::string refusal()
     {
         const auto refused = DhdDevice::create(options);
@@ -45,7 +45,7 @@ protected:
     bool refusal_has(const char* text) { return refusal().find(text) != std::string::npos; }
     void open() { sut = std::move(DhdDevice::create(options)).value(); }
     StandInDhdDevice& hand() { return stand_in->devices.at(0); }
-    /// Reads until it is as wanted.
+    /// Reads until the sample satisfies the condition.
     template <typename Wanted>
     DeviceSample await(const Wanted& is_wanted)
     {
@@ -66,7 +66,7 @@ protected:
         sut->write(wrench);
         await_turn();
     }
-    /// What it makes, and what it was told, as of now.
+    /// Present output of the motors, and the commands.
     struct Motors
     {
         std::array<double, 3> force_n;
@@ -81,7 +81,7 @@ protected:
         return {hand().force_n, hand().torque_nm, hand().grip_n, hand().brakes,
                 hand().forces_enabled};
     }
-    /// Until two turns have begun: a whole one lies between.
+    /// Waits until two turns have begun, with a whole one between.
     void await_turn()
     {
         const std::uint64_t now = hand().reads;
@@ -119,7 +119,7 @@ TEST_F(DhdDeviceTest, says_in_one_line_that_no_device_is_there_or_can_be_opened)
     EXPECT_TRUE(refusal_has("there is no device 2, they are 0..1"));
     stand_in->count = 8;
     options.index = 0;
-    hand().is_open = true; // Some other program's.
+    hand().is_open = true; // Open in another program.
     EXPECT_TRUE(refusal_has("device 0 can't be opened (device in use)"));
 }
 
@@ -174,7 +174,7 @@ TEST_F(DhdDeviceTest, reads_position_velocity_and_button)
 
 TEST_F(DhdDeviceTest, turns_and_grips)
 {
-    hand().frame = {0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0}; // A quarter about z.
+    hand().frame = {0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0}; // Quarter turn about z.
     hand().turning = {4.0, 5.0, 6.0};
     hand().gap_m = 0.02;
     hand().has_gripper = true;
@@ -192,7 +192,7 @@ TEST_F(DhdDeviceTest, turns_and_grips)
     EXPECT_EQ(motors().grip_n, 0.5);
     {
         const std::lock_guard lock(hand().mutex);
-        hand().frame.at(0) = 1.0; // No rotation any more.
+        hand().frame.at(0) = 1.0; // No longer a rotation.
     }
     EXPECT_TRUE(await([](const auto& got) { return !got.valid; }).connected);
 }
@@ -286,7 +286,7 @@ TEST_F(DhdDeviceTest, is_braked_by_its_guard_when_its_program_has_left_it)
     hand().force_n = {1.0, 2.0, 3.0};
     hand().brakes = false;
     hand().forces_enabled = true;
-    hand().is_open = true; // For the program that has died, as the system is about to find.
+    hand().is_open = true; // Open for a program that has died, as the system is about to detect.
     std::thread closes(
         [this]
         {

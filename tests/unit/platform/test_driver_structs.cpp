@@ -18,7 +18,7 @@ namespace
 
 constexpr std::int64_t kMs = 1'000'000;
 
-/// The example's description, in the struct for drivers.
+/// Example's description, in the struct for drivers.
 tactus_describe described()
 {
     const DeviceInfo info = tactus::test::example_description().info;
@@ -52,7 +52,7 @@ tactus_describe described()
     return describe;
 }
 
-/// The example's sample, likewise.
+/// Example's sample, in the struct for drivers.
 tactus_sample sampled()
 {
     const SampleDatagram example = tactus::test::example_sample();
@@ -69,7 +69,7 @@ tactus_sample sampled()
     return sample;
 }
 
-/// A driver that began at second 1, and the controller's side.
+/// Driver that began at second 1, and the controller's side.
 class DriverStructs : public ::testing::Test
 {
 protected:
@@ -78,7 +78,7 @@ protected:
         driver.describe = described();
         tactus_driver_start(&driver, 3, now_ns);
     }
-    /// What it sends now; empty: nothing.
+    /// Bytes sent now; empty: none.
     std::span<const std::byte> next()
     {
         std::size_t size = 0;
@@ -160,7 +160,7 @@ TEST_F(DriverStructs, take_the_force_away_when_the_controller_is_silent_and_begi
     EXPECT_TRUE(takes(force)) << "of a controller that has begun again";
 }
 
-/// Not BLAKE2b: what is sealed, and that it counts, is looked at.
+/// Tag other than BLAKE2b: it shows the authenticated bytes, and that the tag matters.
 void sum(const void* bytes, std::size_t size, std::uint8_t tag[16])
 {
     const auto* at = static_cast<const std::uint8_t*>(bytes);

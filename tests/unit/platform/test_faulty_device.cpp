@@ -16,7 +16,7 @@ namespace tactus
 namespace
 {
 
-/// Along x, a millimetre each period.
+/// Hand that moves along x by a millimetre each period.
 class HandThatWalks final : public HandMotion
 {
 public:
@@ -45,7 +45,7 @@ std::vector<DeviceSample> readings_with(std::vector<DeviceFault> faults, std::ui
     return readings(sut);
 }
 
-/// Bit for bit, but that no number is as good as another.
+/// Comparison bit for bit, with all NaN equal.
 bool is_same(const DeviceSample& a, const DeviceSample& b)
 {
     return a.position_world_m == b.position_world_m &&
@@ -69,7 +69,8 @@ TEST(FaultyDevice, is_the_device_itself_but_from_begin_to_end_of_a_fault)
             const std::vector<DeviceSample> sut = readings_with({fault});
             for (std::size_t i = 0; i < whole.size(); ++i)
             {
-                const bool leaps = kind == DeviceFaultKind::stuck; // Its velocity, right behind.
+                // Its velocity follows immediately.
+                const bool leaps = kind == DeviceFaultKind::stuck;
                 const bool holds = i >= fault.begin_frame &&
                                    i < fault.begin_frame + fault.frames + (leaps ? 1 : 0);
                 EXPECT_EQ(is_same(sut[i], whole[i]), !holds) << static_cast<int>(kind) << " " << i;

@@ -34,7 +34,7 @@ TEST(FloatControl, does_not_take_raised_flags_for_a_change)
 TEST(FloatControl, reports_and_mends_flushed_denormals)
 {
     volatile float least = std::numeric_limits<float>::min();
-    _mm_setcsr(_mm_getcsr() | 0x8040U); // FTZ and DAZ, as fast-maths start-up code sets them.
+    _mm_setcsr(_mm_getcsr() | 0x8040U); // FTZ and DAZ, as set by fast-maths start-up code.
     volatile float half = least / 2.0F;
     EXPECT_FALSE(half > 0.0F);
     EXPECT_FALSE(reset_float_control());
@@ -45,7 +45,7 @@ TEST(FloatControl, reports_and_mends_flushed_denormals)
 
 TEST(FloatControl, reports_and_mends_another_rounding)
 {
-    _mm_setcsr(_mm_getcsr() | 0x6000U); // Towards zero.
+    _mm_setcsr(_mm_getcsr() | 0x6000U); // Rounding towards zero.
     EXPECT_FALSE(reset_float_control());
     volatile double third = 2.0;
     third = third / 3.0;

@@ -12,8 +12,8 @@
 #include <cerrno>
 #include <string>
 
-/// What a system that is not Linux gets: posix/generic_extras.cpp in place of the extras, all else
-/// of the platform as it is.
+/// Platform of a system other than Linux: posix/generic_extras.cpp in place of the extras,
+/// everything else unchanged.
 namespace tactus
 {
 

@@ -15,7 +15,7 @@ namespace tactus::test
 namespace
 {
 
-/// 0.2 kg in empty space, and a hand that has let go.
+/// Mass of 0.2 kg in empty space, released by the hand.
 HandAndDeviceOptions free_mass()
 {
     HandAndDeviceOptions options;

@@ -39,7 +39,7 @@ const std::pair<const char*, MotionKind> kKinds[] = {{"script", MotionKind::scri
                                                      {"edge", MotionKind::edge},
                                                      {"peg", MotionKind::peg}};
 
-/// A ball's, for so many frames at 1 kHz.
+/// Scene of a sphere, for `frames` frames at 1 kHz.
 HandScene scene_of(std::uint64_t frames)
 {
     HandScene scene;
@@ -65,7 +65,7 @@ double nothing(const Vec3& /*place*/)
     return 1.0;
 }
 
-/// A block with a hole from above.
+/// Block with a hole from above.
 constexpr double kHole_m = 0.01;
 constexpr double kHoleBottom_m = 0.01;
 constexpr double kHoleTop_m = 0.05;
@@ -81,13 +81,13 @@ double block_with_a_hole(const Vec3& p)
                            : std::max(to_wall_m, over_m);
 }
 
-/// The default device in that hand, on a ball of 500 N/m or another shape. With a drag its force
-/// damps the motion, too, as one does that comes back after a fault.
+/// Default device in that hand, on a sphere of 500 N/m or another shape. With a drag its force also
+/// damps the motion, as a force does that returns after a fault.
 struct Play
 {
     std::vector<Vec3> device_m;
     std::vector<double> force_n;
-    std::vector<Vec3> normal; ///< Of the wall that it touches, or zero.
+    std::vector<Vec3> normal; ///< Normals of the touched walls, or zero.
     std::vector<Mat3> rotation;
     std::vector<DeviceSample> samples;
 
@@ -116,14 +116,14 @@ struct Play
         }
     }
 
-    /// Of the frames from `from` on.
+    /// Share of frames in contact from `from` on.
     [[nodiscard]] double contact_share(std::size_t from = 0) const
     {
         const auto touching = std::count_if(force_n.begin() + static_cast<std::ptrdiff_t>(from),
                                             force_n.end(), [](double n) { return n > 0.0; });
         return static_cast<double>(touching) / static_cast<double>(force_n.size() - from);
     }
-    /// How often the surface was met anew.
+    /// Number of times that the surface was reached.
     [[nodiscard]] int landings() const
     {
         int landings = 0;
@@ -186,7 +186,7 @@ TEST(HandMotions, free_goes_round_the_model_without_touching_it)
         low = low.cwiseMin(p);
         high = high.cwiseMax(p);
     }
-    EXPECT_GT((high - low).norm(), 1.3 * kDiagonal_m); // In 4 s once round.
+    EXPECT_GT((high - low).norm(), 1.3 * kDiagonal_m); // One round in 4 s.
     EXPECT_LT((run.device_m.back() - run.device_m.front()).norm(), 0.1 * kDiagonal_m);
 }
 
@@ -258,7 +258,7 @@ TEST(HandMotions, turn_turns_the_tool_in_touch_about_one_axis_after_the_other)
     {
         const Vec3 turn = rotation_vector(orthonormalised(run.rotation[i])).cwiseAbs();
         farthest = farthest.cwiseMax(turn);
-        // Where one swing ends and the next begins the wrist rests.
+        // The wrist rests between two swings.
         EXPECT_LT(turn.norm() - turn.maxCoeff(), 0.02) << i;
         EXPECT_TRUE(run.force_n[i] > 0.0 || turn.norm() < 0.05) << i;
     }
@@ -316,7 +316,7 @@ TEST(HandMotions, peg_goes_into_a_hole_and_changes_its_grip_outside_of_it)
         grips += i > 0 && now.buttons > run.samples[i - 1].buttons ? 1 : 0;
         farthest = farthest.cwiseMax(rotation_vector(orthonormalised(run.rotation[i])).cwiseAbs());
     }
-    // Its tool is a ball of 2 mm, and 1 N on 500 N/m are 2 mm more.
+    // Its tool is a sphere of 2 mm, and 1 N on 500 N/m is 2 mm more.
     EXPECT_NEAR(lowest_m, kHoleBottom_m + kTool_m - 0.002, 1e-3);
     EXPECT_EQ(grips, 2);
     EXPECT_EQ(run.landings(), 2);
@@ -347,7 +347,7 @@ TEST(HandMotions, teleport_is_at_places_of_the_model_and_jumps_between_them)
         return places;
     };
     const std::vector<Vec3> places = places_of(1);
-    EXPECT_GT(places.size(), 15U); // Now and then it stays where it is.
+    EXPECT_GT(places.size(), 15U); // It sometimes stays in place.
     EXPECT_LE(places.size(), 20U);
     const std::vector<LandingSite> sites =
         find_landing_sites(scene_of(1).anchors_world_m, kDiagonal_m, kTool_m);
@@ -357,7 +357,7 @@ TEST(HandMotions, teleport_is_at_places_of_the_model_and_jumps_between_them)
             sites, [&](const LandingSite& site)
             { return site.aim_world_m == place || site.gate_world_m == place; }));
     }
-    // Later hands begin elsewhere, of the same places.
+    // Later hands begin at others of the same places.
     std::vector<LandingSite> turned =
         find_landing_sites(scene_of(1).anchors_world_m, kDiagonal_m, kTool_m, 7);
     EXPECT_EQ(turned.size(), sites.size());
@@ -366,7 +366,7 @@ TEST(HandMotions, teleport_is_at_places_of_the_model_and_jumps_between_them)
     EXPECT_FALSE(places == places_of(2));
 }
 
-/// The share of a signal's power at these frequencies, by the definition of the transform.
+/// Share of a signal's power at these frequencies, by the definition of the transform.
 double power_between(const std::vector<double>& signal, double low_hz, double high_hz)
 {
     const auto count = static_cast<double>(signal.size());

@@ -26,7 +26,7 @@ HandTurnOptions held_loosely()
     return options;
 }
 
-/// By the textbook, with the sine and cosine that the code under test does without.
+/// Rotation by the textbook, with the sine and cosine that the code under test avoids.
 Mat3 turned_about(const Vec3& axis, double angle)
 {
     return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
@@ -58,7 +58,7 @@ TEST(HandTurn, turns_about_one_axis_as_a_point_mass_moves)
     EXPECT_NEAR(sut.energy().force_work_j, truth.energy().force_work_j, 1e-9);
 }
 
-/// However far it has gone round, and over pi; the springs know only where bodies are.
+/// Any number of rotations, and beyond pi; the springs know only the poses.
 TEST(HandTurn, comes_to_rest_where_the_hand_wants_it_after_turns_about_all_axes)
 {
     auto sut = std::move(HandTurn::create(held_loosely())).value();

@@ -44,7 +44,7 @@ std::unique_ptr<DeviceRig> make_udp()
     return std::make_unique<test::UdpRig>();
 }
 
-/// Turned by a quarter about z, moved, and ten times as large.
+/// Rotated by a quarter turn about z, moved, and ten times as large.
 std::unique_ptr<DeviceRig> make_udp_elsewhere()
 {
     Mat3 quarter;
@@ -58,11 +58,11 @@ std::unique_ptr<DeviceRig> make_dhd()
     return std::make_unique<test::DhdRig>();
 }
 
-/// What every device promises, given a hand that holds it loosely at one place.
+/// Promises of every device, with a hand that holds it loosely at one place.
 class HapticDeviceConformance : public testing::TestWithParam<std::unique_ptr<DeviceRig> (*)()>
 {
 protected:
-    /// Displacement from the first reading after a while under a steady force.
+    /// Displacement from the first reading after `frames` under a steady force.
     double drift_m(const std::array<double, 3>& force_n, int frames)
     {
         const auto start = rig->next().position_world_m;
@@ -130,7 +130,7 @@ TEST_P(HapticDeviceConformance, gives_way_to_the_force_it_is_told_to_make_or_not
     EXPECT_TRUE(rig->gives_way() ? way_m > 1e-3 : way_m == 0.0) << way_m;
 }
 
-/// A device without a torque takes the force alone; one that doesn't turn tells no rotation.
+/// A device without torque takes the force alone; one without rotation reports none.
 TEST_P(HapticDeviceConformance, turns_by_the_torque_it_is_told_to_make_or_not_at_all)
 {
     const TurnLimits& turn = rig->device().info().limits.turn;
@@ -200,7 +200,7 @@ TEST_P(HapticDeviceConformance, ignores_forces_from_the_brake_to_its_release)
     other.join();
     EXPECT_EQ(rig->device().status().state, DeviceState::brake);
     EXPECT_EQ(drift_m({5.0, 0.0, 0.0}, 100), 0.0);
-    rig->device().brake(); // Again, to no effect.
+    rig->device().brake(); // The second call has no effect.
     EXPECT_EQ(drift_m({5.0, 0.0, 0.0}, 10), 0.0);
     rig->device().release_brake();
     EXPECT_EQ(rig->device().status().state, DeviceState::idle);
@@ -246,8 +246,8 @@ TEST_P(HapticDeviceConformance, leaves_the_heap_alone)
     EXPECT_EQ(after.frees, before.frees);
 }
 
-/// On a thread of its own, since a trap is for good. brake() is exempt: it is for when all else has
-/// failed.
+/// Runs on a separate thread, since a trap is permanent. brake() is exempt: it is for when
+/// everything else has failed.
 TEST_P(HapticDeviceConformance, makes_no_system_call)
 {
     static_cast<void>(rig->next());
@@ -261,7 +261,7 @@ TEST_P(HapticDeviceConformance, makes_no_system_call)
                 refused = set.error().text;
                 return;
             }
-            // A sanitizer looks an object's type up by system calls, once.
+            // A sanitizer looks up an object's type by system calls, once.
             static_cast<void>(rig->device().read());
             system_call_trap::mark_frame(true);
             for (int i = 0; i < 100; ++i)

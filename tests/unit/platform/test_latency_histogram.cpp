@@ -19,7 +19,7 @@ namespace
 
 constexpr double kSteps = 1'024.0;
 
-/// The value of that rank in sorted data, found without any histogram.
+/// Value of that rank in sorted data, without a histogram.
 std::int64_t quantile_of_sorted(const std::vector<std::int64_t>& sorted, double q)
 {
     const auto rank = static_cast<std::size_t>(std::ceil(q * static_cast<double>(sorted.size())));
@@ -52,7 +52,7 @@ TEST(LatencyHistogram, is_exact_up_to_two_microseconds)
     {
         LatencyHistogram sut;
         sut.record({ns});
-        sut.record(milliseconds(1)); // So that the largest value does not hide the edge.
+        sut.record(milliseconds(1)); // Otherwise the largest value would hide the edge.
         EXPECT_EQ(sut.quantile(0.5), nanoseconds(ns));
     }
 }

@@ -23,7 +23,7 @@ namespace
 constexpr Duration kLimit = milliseconds(100);
 constexpr MonotonicTime kStart{1'000'000'000};
 
-/// One number in every field but the rotation, which it turns about z.
+/// Pose with one number in every field except the rotation, which is about z.
 ObjectPose pose_of(double number)
 {
     ObjectPose pose;
@@ -64,12 +64,12 @@ TEST(PoseDoor, counts_the_age_from_when_the_host_was_heard_on_its_own_clock)
     const std::vector<ObjectPose> placed{pose_of(1.0)};
     PoseDoor sut(placed, kLimit);
     ObjectPose pose = pose_of(2.0);
-    pose.stamp_ns = 1; // Whatever the host's clock says.
+    pose.stamp_ns = 1; // Any clock of the server.
     pose.arrival_ns = 77;
     sut.put(0, pose, kStart);
     const auto changes = sut.refresh(kStart + milliseconds(3));
     ASSERT_EQ(changes.size(), 1U);
-    EXPECT_EQ(changes[0].pose.arrival_ns, 0); // While the host is heard it doesn't grow old.
+    EXPECT_EQ(changes[0].pose.arrival_ns, 0); // It does not age while the server is heard.
     EXPECT_EQ(changes[0].pose.stamp_ns, 1);
     static_cast<void>(sut.refresh(kStart + kLimit));
     EXPECT_EQ(sut.uses()[0].old_frames, 0U);
@@ -87,7 +87,7 @@ TEST(PoseDoor, tells_the_frame_of_a_silent_host_before_the_limit_and_of_one_that
     PoseDoor sut(placed, kLimit);
     sut.put(0, pose_of(2.0), kStart);
     ASSERT_EQ(sut.refresh(kStart).size(), 1U);
-    for (int ms = 20; ms <= 200; ms += 20) // It rests, and its host is heard: no changes.
+    for (int ms = 20; ms <= 200; ms += 20) // It rests, and its server is heard: no changes.
     {
         sut.hear(0, kStart + milliseconds(ms));
         EXPECT_TRUE(sut.refresh(kStart + milliseconds(ms + 15)).empty());
@@ -97,7 +97,7 @@ TEST(PoseDoor, tells_the_frame_of_a_silent_host_before_the_limit_and_of_one_that
     ASSERT_EQ(silent.size(), 1U);
     EXPECT_EQ(silent[0].pose.arrival_ns, (kStart + milliseconds(200)).ns);
     EXPECT_EQ(silent[0].pose.scale, 2.0);
-    EXPECT_TRUE(sut.refresh(kStart + milliseconds(400)).empty()); // The frame counts on by itself.
+    EXPECT_TRUE(sut.refresh(kStart + milliseconds(400)).empty()); // The frame continues by itself.
     sut.hear(0, kStart + milliseconds(401));
     const auto back = sut.refresh(kStart + milliseconds(402));
     ASSERT_EQ(back.size(), 1U);
@@ -114,7 +114,7 @@ TEST(PoseDoor, takes_what_came_after_the_frame_began_as_new)
     EXPECT_EQ(sut.uses()[0].age_max.ns, 0);
 }
 
-/// A pose at x that is turned about z by 10 x, stamped by the host's clock.
+/// Pose at x that is rotated about z by 10 x, stamped by the server's clock.
 ObjectPose pose_at(double x_m, Duration stamp)
 {
     ObjectPose pose;
@@ -124,8 +124,8 @@ ObjectPose pose_at(double x_m, Duration stamp)
     return pose;
 }
 
-/// 0.1 m/s by 100 poses a second, which arrive when they like: each step of a frame is as small as
-/// the motion, and no step goes beyond what the host said.
+/// 100 poses a second at 0.1 m/s, with irregular arrival: each frame's step is as small as the
+/// motion, and no step exceeds the server's poses.
 TEST(PoseDoor, lets_an_object_glide_from_pose_to_pose_over_the_time_between_them)
 {
     const std::vector<ObjectPose> placed{pose_at(0.0, {})};
@@ -162,8 +162,8 @@ TEST(PoseDoor, lets_an_object_glide_from_pose_to_pose_over_the_time_between_them
     EXPECT_GT(last_m, 0.045);
 }
 
-/// 100 poses a second, each up to 3 ms under way, one of them 25 ms: an even speed before, and the
-/// object is as near to its newest pose as before soon after.
+/// 100 poses a second, each delayed by up to 3 ms, one of them by 25 ms: the speed is even before,
+/// and the distance to the newest pose is as before soon after.
 TEST(PoseDoor, glides_evenly_though_poses_come_early_or_late)
 {
     constexpr double kSpeed_m_per_ms = 1e-4;
@@ -180,7 +180,7 @@ TEST(PoseDoor, glides_evenly_though_poses_come_early_or_late)
         {
             arrives = ms + pose * 7 % 4;
         }
-        const bool is_held_up = pose >= 50 && ms < 525; // All that came by then comes at once.
+        const bool is_held_up = pose >= 50 && ms < 525; // Delayed poses arrive together.
         if ((ms == arrives && !is_held_up) || ms == 525)
         {
             sut.put(0, pose_at(kSpeed_m_per_ms * 10.0 * pose, milliseconds(10 * pose + 1)),
@@ -201,7 +201,7 @@ TEST(PoseDoor, glides_evenly_though_poses_come_early_or_late)
     }
     EXPECT_LE(step_max_m, 1.1 * kSpeed_m_per_ms);
     EXPECT_GE(step_max_m, kSpeed_m_per_ms);
-    EXPECT_LE(behind_max_m, 18.0 * kSpeed_m_per_ms); // Interval, delay and what is held back.
+    EXPECT_LE(behind_max_m, 18.0 * kSpeed_m_per_ms); // Interval, delay and reserve.
 }
 
 TEST(PoseDoor, ends_a_glide_at_the_pose_and_goes_no_farther)
@@ -211,7 +211,7 @@ TEST(PoseDoor, ends_a_glide_at_the_pose_and_goes_no_farther)
     sut.put(0, pose_at(0.0, milliseconds(1)), kStart);
     static_cast<void>(sut.refresh(kStart));
     const MonotonicTime later = kStart + milliseconds(40);
-    static_cast<void>(sut.refresh(later)); // From here it goes.
+    static_cast<void>(sut.refresh(later)); // The motion starts here.
     sut.put(0, pose_at(0.01, milliseconds(41)), later);
     EXPECT_NEAR(sut.refresh(later + milliseconds(1))[0].pose.translation_m.x(), 2.5e-4, 1e-15);
     EXPECT_NEAR(sut.refresh(later + milliseconds(20))[0].pose.translation_m.x(), 0.005, 1e-15);
@@ -220,7 +220,7 @@ TEST(PoseDoor, ends_a_glide_at_the_pose_and_goes_no_farther)
     EXPECT_EQ(sut.uses()[0].moves, 3U);
 }
 
-/// Each frame brings one: nothing is left to glide over, and nothing is held back.
+/// Each frame has a new pose: nothing is left to blend or to delay.
 TEST(PoseDoor, keeps_up_with_poses_that_come_as_fast_as_frames)
 {
     const std::vector<ObjectPose> placed{pose_at(0.0, {})};
@@ -238,7 +238,7 @@ TEST(PoseDoor, takes_a_far_pose_after_a_rest_at_once_and_glides_to_a_near_one)
 {
     const std::vector<ObjectPose> placed{pose_at(0.0, {})};
     PoseDoor sut(placed, kLimit);
-    sut.put(0, pose_at(0.3, milliseconds(1)), kStart); // The first: it was placed elsewhere.
+    sut.put(0, pose_at(0.3, milliseconds(1)), kStart); // The first pose: it was placed elsewhere.
     EXPECT_EQ(sut.refresh(kStart)[0].pose.translation_m.x(), 0.3);
     const MonotonicTime later = kStart + milliseconds(51);
     sut.put(0, pose_at(0.3 + 1.01 * PoseDoor::kJump_m, milliseconds(52)), later);
@@ -295,14 +295,14 @@ TEST(PoseDoor, gives_a_frame_what_it_takes_and_the_next_one_the_others_first)
             ASSERT_EQ(change.pose.scale, 10.0 + change.number);
         }
     }
-    move_all(20.0); // Those that wait come first, and as they are by now.
+    move_all(20.0); // Waiting ones are first, with their present poses.
     const auto changes = sut.refresh(kStart);
     ASSERT_EQ(changes.size(), kMaxSceneChanges);
     EXPECT_EQ(changes[0].number, next);
     EXPECT_EQ(changes[0].pose.scale, 20.0 + static_cast<double>(next));
 }
 
-/// 300 objects at 0.3 m/s, of which a frame takes 64; tools go from object to object.
+/// 300 objects at 0.3 m/s, of which a frame takes 64; tools move from object to object.
 TEST(PoseDoor, moves_what_is_touched_in_every_frame_however_many_move)
 {
     constexpr std::size_t kObjects = 300;
@@ -325,7 +325,7 @@ TEST(PoseDoor, moves_what_is_touched_in_every_frame_however_many_move)
             }
         }
         const auto first = static_cast<std::uint32_t>(ms / 100 * 7 % 200);
-        std::vector<ObjectTouch> touches; // Two of the first: a tool each.
+        std::vector<ObjectTouch> touches; // Two of the first ones: a tool each.
         for (const std::uint32_t object : {first, first, first + 1, first + 90})
         {
             touches.push_back({.object = object, .place_m = places_m[object], .radius_m = 0.01});
@@ -339,7 +339,7 @@ TEST(PoseDoor, moves_what_is_touched_in_every_frame_however_many_move)
             const bool is_long_touched = ms % 100 > 1 && ms > 100;
             const bool is_touched =
                 std::ranges::find(touches, change.number, &ObjectTouch::object) != touches.end();
-            // A frame's way, and not that of the frames since its last turn.
+            // One frame's motion, not that since its last turn.
             ASSERT_LE(step_m, is_long_touched && is_touched ? 4e-4 : 2.2e-3) << change.number;
             places_m[change.number] = change.pose.translation_m;
         }
@@ -356,8 +356,8 @@ TEST(PoseDoor, moves_what_is_touched_in_every_frame_however_many_move)
     }
 }
 
-/// A pose 50 ms later, and what of the way to it a tool of 7 mm round `tool_m` could meet in each
-/// frame; the object stood without a turn.
+/// Greatest motion in a frame that a tool of 7 mm at `tool_m` could meet, while an object moves to
+/// a pose of 50 ms later; it had no rotation before.
 double farthest_way_m(const ObjectPose& to, const Vec3& tool_m, Duration rest, bool& outran)
 {
     constexpr double kReach_m = 0.007;
@@ -393,7 +393,8 @@ double farthest_way_m(const ObjectPose& to, const Vec3& tool_m, Duration rest, b
     return most_m;
 }
 
-/// By a way, by a turn about itself or about the tool, by growing; after a rest and without one.
+/// Motion by translation, rotation about itself or the tool, and scale; after a rest and without
+/// one.
 TEST(PoseDoor, moves_nothing_that_a_tool_may_meet_faster_than_is_believed)
 {
     const Vec3 tool_m(0.3, 0.2, 0.1);
@@ -430,7 +431,7 @@ TEST(PoseDoor, takes_what_outruns_its_belief_after_a_rest_at_once_and_says_so)
     EXPECT_TRUE(outran);
 }
 
-/// Times of a host are numbers that may be anything: no difference of them overflows.
+/// Times of a server may be any numbers: no difference of them overflows.
 TEST(PoseDoor, takes_poses_of_any_time_that_the_clock_of_their_host_shows)
 {
     constexpr std::int64_t kLeast = std::numeric_limits<std::int64_t>::min();
@@ -456,14 +457,14 @@ TEST(PoseDoor, takes_poses_of_any_time_that_the_clock_of_their_host_shows)
     EXPECT_LT(sut.uses()[0].step_max_m, 1e-3);
 }
 
-/// More objects than a frame looks at the ages of.
+/// More objects than a frame checks for their age.
 TEST(PoseDoor, tells_of_each_of_many_silent_objects_before_the_limit_once)
 {
     constexpr std::size_t kObjects = 1'000;
     static_assert(kObjects > 2 * PoseDoor::kAgedAFrame);
     const std::vector<ObjectPose> placed(kObjects, pose_of(1.0));
     PoseDoor sut(placed, kLimit);
-    for (std::size_t i = 0; i < kObjects; i += 2) // The others are nobody's.
+    for (std::size_t i = 0; i < kObjects; i += 2) // The others belong to no server.
     {
         sut.put(i, pose_of(2.0 + static_cast<double>(i)), kStart);
     }
@@ -483,7 +484,7 @@ TEST(PoseDoor, tells_of_each_of_many_silent_objects_before_the_limit_once)
         ASSERT_EQ(moved[i] > 0, i % 2 == 0) << i;
         ASSERT_EQ(told[i], i % 2 == 0 ? 1 : 0) << i;
     }
-    // Each counts as many frames as there were, within a round.
+    // Each counts the number of frames, within a round.
     for (int ms = 101; ms <= 140; ++ms)
     {
         EXPECT_TRUE(sut.refresh(kStart + milliseconds(ms)).empty());
@@ -511,7 +512,7 @@ TEST(PoseDoor, leaves_an_object_that_came_and_whose_host_falls_silent_where_it_s
     EXPECT_EQ(sut.uses()[2].moves, 0U);
 }
 
-/// Whatever comes in whatever order: each object ends where its last pose put it.
+/// Any poses in any order: each object ends at its last pose.
 TEST(PoseDoor, forgets_no_object_of_many_that_move_at_random)
 {
     constexpr std::size_t kObjects = 4'096;
@@ -551,15 +552,15 @@ TEST(PoseDoor, forgets_no_object_of_many_that_move_at_random)
     EXPECT_EQ(seen_m, last_m) << "seed " << kSeed;
 }
 
-/// The writer goes on until enough different poses were seen, so that the two do meet. Their stamps
-/// are so far apart, and they themselves, that each is taken at once.
+/// The writer continues until enough different poses were read, so that reader and writer do
+/// interleave. Stamps and poses are so far apart that each is taken at once.
 TEST(PoseDoor, brings_an_object_with_what_it_is_and_takes_it_away)
 {
     const std::vector<ObjectPose> placed{pose_of(1.0)};
     PoseDoor sut(placed, 3, kLimit);
     const ObjectSpec spec{ModelId{7}, {300.0, 0.4, 0.2, 1.5}};
     ASSERT_TRUE(sut.try_come(2, 1, spec, pose_of(4.0), kStart));
-    sut.put(2, pose_of(5.0), kStart); // Before the frame knows that it is there.
+    sut.put(2, pose_of(5.0), kStart); // Before the frame knows that it exists.
     const auto came = sut.refresh(kStart);
     ASSERT_EQ(came.size(), 2U);
     EXPECT_EQ(came[0].kind, SceneChangeKind::object_comes);
@@ -579,11 +580,11 @@ TEST(PoseDoor, brings_an_object_with_what_it_is_and_takes_it_away)
     ASSERT_TRUE(sut.try_go(2));
     sut.put(2, pose_of(6.0), kStart);
     const auto went = sut.refresh(kStart + milliseconds(1));
-    ASSERT_EQ(went.size(), 1U); // What was put for it is nobody's.
+    ASSERT_EQ(went.size(), 1U); // Its pending pose is dropped.
     EXPECT_EQ(went[0].kind, SceneChangeKind::object_goes);
     EXPECT_EQ(went[0].number, 2U);
     EXPECT_EQ(went[0].generation, 1U);
-    EXPECT_TRUE(sut.refresh(kStart + milliseconds(1000)).empty()); // Nor does it grow old.
+    EXPECT_TRUE(sut.refresh(kStart + milliseconds(1000)).empty()); // It does not age either.
 }
 
 TEST(PoseDoor, tells_that_an_object_feels_otherwise_in_its_turn)

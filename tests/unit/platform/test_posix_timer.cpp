@@ -18,7 +18,7 @@ namespace
 constexpr Duration kPosixPeriod = milliseconds(4);
 constexpr Duration kMargin = microseconds(400);
 
-// A handler is given nothing of the program's.
+// A handler has no access to the program's data.
 volatile std::sig_atomic_t signals_seen = 0; // NOLINT(*-avoid-non-const-global-variables)
 
 void count_signal(int /*number*/)
@@ -26,7 +26,7 @@ void count_signal(int /*number*/)
     signals_seen = signals_seen + 1;
 }
 
-/// While it lives, SIGALRM interrupts this process, whose only thread is the test's, each
+/// Timer that interrupts this process, whose only thread is the test's, by SIGALRM each
 /// millisecond: a quarter of the period.
 class Interruptions
 {
@@ -95,7 +95,7 @@ TEST(PosixPeriodicTimer, gives_the_processor_up_but_for_the_margin)
         static_cast<void>(sut.spin_until_deadline());
     }
     const ThreadUsage used = read_thread_usage() - before;
-    EXPECT_LT(used.cpu_time * 2, clock.now() - began); // A tenth, if nothing is in the way.
+    EXPECT_LT(used.cpu_time * 2, clock.now() - began); // A tenth on an idle machine.
 }
 
 } // namespace

@@ -15,14 +15,14 @@ namespace tactus
 namespace
 {
 
-/// 1 for the first answer, 2 for the second.
+/// Result: 1 for the first answer, 2 for the second.
 int look_twice()
 {
     const int first = take_process_stop() ? 1 : 0;
     return first + (take_process_stop() ? 2 : 0);
 }
 
-/// What a child saw of its stops, as its exit code.
+/// Stops that a child detected, as its exit code.
 int after_stops(int stops)
 {
     const pid_t child = fork();
@@ -59,7 +59,7 @@ TEST(ProcessStop, is_seen_by_a_thread_that_was_started_later)
     std::thread later(
         [&seen]
         {
-            kill(getpid(), SIGCONT); // It needs no stop.
+            kill(getpid(), SIGCONT); // It works without a stop.
             seen = look_twice();
         });
     later.join();

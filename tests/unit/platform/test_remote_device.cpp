@@ -140,7 +140,7 @@ TEST_F(RemoteDeviceTest, never_sends_a_force_to_another_attachment_than_it_was_w
     sut.write({{1.0, 0.0, 0.0}, {}, 0.0});
     arrive(0.0, true); // Another device, before the haptic thread has seen it.
     EXPECT_EQ(sut.command().state, DeviceState::idle);
-    sut.write({{1.0, 0.0, 0.0}, {}, 0.0}); // Still for the one before.
+    sut.write({{1.0, 0.0, 0.0}, {}, 0.0}); // For the previous one.
     EXPECT_EQ(sut.command().state, DeviceState::idle);
     static_cast<void>(sut.read());
     EXPECT_EQ(sut.status().state, DeviceState::idle);
@@ -178,7 +178,8 @@ TEST_F(RemoteDeviceTest, fades_softly_whatever_the_hold_and_goes_on_with_the_nex
         const DeviceCommand command = sut.command();
         EXPECT_EQ(command.state, DeviceState::force);
         EXPECT_NEAR(command.force_n.x(), 1.0 - ms / 50.0, 1e-9);
-        EXPECT_TRUE(ms == 0 || command.written == clock.now()); // So that it is sent.
+        // The command is new and will be sent.
+        EXPECT_TRUE(ms == 0 || command.written == clock.now());
         EXPECT_EQ(sut.status().state, DeviceState::brake);
         arrive(0.0);
         static_cast<void>(sut.read());
@@ -194,7 +195,7 @@ TEST_F(RemoteDeviceTest, fades_softly_whatever_the_hold_and_goes_on_with_the_nex
     sut.write({{1.0, 0.0, 0.0}, {}, 0.0});
     sut.brake_softly();
     clock.advance(milliseconds(20));
-    sut.release_brake(); // It fades on until the next write.
+    sut.release_brake(); // It fades until the next write.
     EXPECT_NEAR(sut.command().force_n.x(), 0.6, 1e-9);
     sut.write({{0.5, 0.0, 0.0}, {}, 0.0});
     EXPECT_EQ(sut.command().force_n.x(), 0.5);
@@ -202,15 +203,14 @@ TEST_F(RemoteDeviceTest, fades_softly_whatever_the_hold_and_goes_on_with_the_nex
 
     sut.brake_softly();
     sut.release_brake();
-    sut.brake(); // At once, for all that was released.
+    sut.brake(); // Immediate brake after the release.
     sut.write({{0.5, 0.0, 0.0}, {}, 0.0});
     EXPECT_EQ(sut.command().state, DeviceState::brake);
     EXPECT_EQ(sut.status().force_left, 0.0);
 }
 
-/// More threads than processors, so that the haptic thread is stopped in the middle of a write now
-/// and then: the I/O thread must not fall back on what it had before the brake. A fault here is
-/// rare.
+/// More threads than processors, so that the haptic thread is sometimes stopped during a write: the
+/// I/O thread must not return to data from before the brake. A fault here is rare.
 TEST_F(RemoteDeviceTest, brings_no_force_back_from_before_a_release_with_threads_that_are_stopped)
 {
     constexpr int kRounds = 2'000'000;

@@ -17,7 +17,7 @@ namespace
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// Four readings, at times of their own; the second is not valid and the third is no number.
+/// Four readings with their own times; the second is invalid and the third is NaN.
 ReplayDeviceOptions four_readings()
 {
     ReplayDeviceOptions options;

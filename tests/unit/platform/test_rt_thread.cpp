@@ -26,7 +26,7 @@ namespace tactus
 namespace
 {
 
-/// What a body finds out about the thread it runs on.
+/// Properties of a thread, found by its body.
 struct Seen
 {
     bool ran{false};
@@ -62,7 +62,7 @@ RtThreadOptions as_far_as_allowed()
     return options;
 }
 
-/// What a thread's body finds out, and what is said of the thread when it has ended.
+/// Findings of a thread's body, with the report after its end.
 struct Ran
 {
     Seen seen{};
@@ -88,8 +88,8 @@ std::string why_no_fifo()
     return refused.value().empty() ? std::string() : refused.value().front();
 }
 
-/// Runs `check` as an ordinary user with the given limits; the answer is its exit status, 77 when
-/// this user cannot become another. The child makes no other thread.
+/// Runs `check` as an ordinary user with the given limits; returns its exit status, 77 if this user
+/// cannot become another. The child creates no thread.
 template <typename Check>
 int exit_status_without_privilege(rlim_t rtprio, rlim_t memlock, const Check& check)
 {
@@ -111,7 +111,7 @@ int exit_status_without_privilege(rlim_t rtprio, rlim_t memlock, const Check& ch
     return WIFEXITED(status) ? WEXITSTATUS(status) : 255;
 }
 
-/// These sanitizers answer mlockall themselves: it never refuses, and locks nothing.
+/// True if a sanitizer replaces mlockall, which then never refuses and locks nothing.
 constexpr bool mlockall_is_replaced()
 {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -197,7 +197,7 @@ TEST(RtThread, refuses_priorities_and_stacks_out_of_range)
     }
     RtThreadOptions above = as_far_as_allowed();
     above.is_supervisor = true;
-    above.priority = 99; // The supervisor's of a loop at the highest.
+    above.priority = 99; // Priority of the supervisor of a loop at the highest.
     EXPECT_TRUE(RtThread::start(above, [] {}));
     above.priority = 100;
     EXPECT_FALSE(RtThread::start(above, [] {}));
@@ -239,7 +239,7 @@ TEST(RtThread, has_its_stack_in_memory_before_the_body_runs)
     auto started = RtThread::start(options, touch_deep);
     ASSERT_TRUE(started);
     started.value().join();
-    // 192 if each page came in by itself; code pages and sanitizers may add some of their own.
+    // 192 if each page were loaded separately; code pages and sanitizers may add some.
     EXPECT_LT(faults, 96);
 }
 
@@ -275,7 +275,7 @@ TEST(RtThread, locks_the_memory_of_the_process)
     posix::unlock_all_memory();
 }
 
-/// What all processes together ask for: the longest time to wake, in microseconds.
+/// Longest wake-up time in microseconds that the processes request.
 std::int32_t longest_wake_us()
 {
     std::int32_t time_us = -1;
@@ -284,7 +284,7 @@ std::int32_t longest_wake_us()
     return file ? time_us : -1;
 }
 
-/// How often this process has that file open.
+/// Number of open descriptors of that file in this process.
 std::ptrdiff_t wishes_held()
 {
     return std::ranges::count_if(std::filesystem::directory_iterator("/proc/self/fd"),

@@ -63,7 +63,7 @@ Model sphere_model()
     return {"sphere", test::sphere(radius_m), anchors};
 }
 
-/// So narrow that the hand slides over one edge after the other.
+/// Strip so narrow that the hand slides over its edges.
 Model strip_model()
 {
     const Vec3 half(0.1, 0.006, 0.003);
@@ -97,7 +97,7 @@ struct Recording
     }
 };
 
-/// What reaches the device of the wall's force in that frame, at that velocity.
+/// Force at the device from the wall's force in that frame, at that velocity.
 using ForceLaw = std::function<Vec3(std::uint64_t frame, const Vec3& wall_n, const Vec3& velocity)>;
 
 Vec3 all_of_it(std::uint64_t /*frame*/, const Vec3& wall_n, const Vec3& /*velocity*/)
@@ -105,8 +105,8 @@ Vec3 all_of_it(std::uint64_t /*frame*/, const Vec3& wall_n, const Vec3& /*veloci
     return wall_n;
 }
 
-/// Five times a second the force fades within 50 ms, which damps the motion, in the air as well,
-/// and comes back within 100 ms: SafeState's law.
+/// SafeState's law: five times a second the force fades within 50 ms, with damping also in the air,
+/// and returns within 100 ms.
 Vec3 cut_and_damped(std::uint64_t frame, const Vec3& wall_n, const Vec3& velocity)
 {
     constexpr double kDamping_n_s_per_m = 0.5;
@@ -191,7 +191,7 @@ TEST_P(ScriptedHandOnModel, touches_stiff_walls_at_high_rates_as_well)
     EXPECT_GE(play(GetParam(), 5.0, 10'000, 3'000.0).contact_share(), 0.65);
 }
 
-/// The wall is what it touches, whether its force is on or off.
+/// The wall stays in contact with and without its force.
 TEST_P(ScriptedHandOnModel, finds_the_surface_again_when_the_force_is_cut_and_damps_the_air)
 {
     EXPECT_GE(play(GetParam(), 10.0, 1'000, 500.0, cut_and_damped).contact_share(), 0.6);
@@ -199,7 +199,7 @@ TEST_P(ScriptedHandOnModel, finds_the_surface_again_when_the_force_is_cut_and_da
 
 TEST(ScriptedHand, goes_on_to_other_sites_when_the_first_is_empty)
 {
-    // Half of the anchors float where nothing is, and they are the extreme ones.
+    // Half of the anchors float in empty space, and they are the extreme ones.
     Model model = sphere_model();
     model.anchors = {Vec3(0.0, 0.0, 0.08),  Vec3(0.0, 0.0, -0.0577), Vec3(0.09, 0.0, 0.0),
                      Vec3(-0.09, 0.0, 0.0), Vec3(0.0, 0.09, 0.0),    Vec3(0.0, -0.09, 0.0)};

@@ -21,7 +21,7 @@ namespace tactus
 namespace
 {
 
-/// A service manager that listens: at a path, or where `name` begins with '@' in no folder.
+/// Service manager that listens at a path, or in the abstract namespace if `name` begins with '@'.
 class Manager
 {
 public:
@@ -51,7 +51,7 @@ public:
         }
     }
 
-    /// All that has come so far.
+    /// All messages so far.
     [[nodiscard]] std::vector<std::string> heard() const
     {
         std::vector<std::string> all;

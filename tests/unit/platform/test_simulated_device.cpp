@@ -14,7 +14,7 @@ namespace tactus
 namespace
 {
 
-/// Rests at the origin, jumps to `target` in the first frame and stays there.
+/// Hand that rests at the origin, jumps to `target` in the first frame and stays.
 class HandThatJumps final : public HandMotion
 {
 public:
@@ -26,7 +26,7 @@ private:
     Vec3 target_;
 };
 
-/// Moves at constant speed along x.
+/// Hand that moves at constant speed along x.
 class HandThatPulls final : public HandMotion
 {
 public:
@@ -54,7 +54,7 @@ std::string refusal(const SimulatedDeviceOptions& options)
     return made ? std::string() : made.error().text;
 }
 
-/// Arm and grip of the default hand, one behind the other.
+/// Compliance of arm and grip of the default hand in series.
 constexpr double kArmAndGrip_m_per_n = 1.0 / 200.0 + 1.0 / 2'000.0;
 
 TEST(SimulatedDevice, settles_where_springs_and_force_balance)
@@ -131,7 +131,7 @@ TEST(SimulatedDevice, has_the_friction_the_quantum_and_the_delay_of_its_limits)
     };
     EXPECT_EQ(read_after(0.49, 500), 0.0); // Friction holds it.
     const Vec3 before = Vec3(read_after(3.0, 2), 0.0, 0.0);
-    EXPECT_EQ(before.x(), 0.0); // Late.
+    EXPECT_EQ(before.x(), 0.0); // The reading is delayed.
     const double there_m = read_after(3.0, 500);
     EXPECT_GT(there_m, 2.0 * kArmAndGrip_m_per_n);
     EXPECT_NEAR(std::remainder(there_m, 1e-4), 0.0, 1e-12);
@@ -158,7 +158,7 @@ TEST(SimulatedDevice, its_brake_drops_a_force_that_is_still_under_way)
 TEST(SimulatedDevice, repeats_bit_for_bit_and_takes_its_time_from_the_frame)
 {
     SimulatedDeviceOptions options;
-    options.rate_hz = 3'000; // No whole number of nanoseconds a period.
+    options.rate_hz = 3'000; // The period is not a whole number of nanoseconds.
     auto one = make(options, std::make_unique<HandThatPulls>(1e-5));
     auto two = make(options, std::make_unique<HandThatPulls>(1e-5));
     for (std::int64_t i = 0; i <= 3'000; ++i)
@@ -225,7 +225,7 @@ TEST(SimulatedDevice, refuses_values_that_make_no_device)
     EXPECT_NE(refusal(options).find("radius is 0.0"), std::string::npos);
 }
 
-/// A force of 2 N for half a second, and then nobody reads or writes for `pause`.
+/// Drift after 2 N for half a second and a pause without reads and writes.
 double drift_in_a_pause_m(std::optional<Duration> watchdog, Duration pause,
                           std::optional<Duration> brake_after = std::nullopt)
 {
@@ -233,9 +233,9 @@ double drift_in_a_pause_m(std::optional<Duration> watchdog, Duration pause,
     SimulatedDeviceOptions options;
     options.clock = &clock;
     options.watchdog = watchdog;
-    options.hand.grip_stiffness_n_per_m = 0.0; // A hand that does not hold it,
+    options.hand.grip_stiffness_n_per_m = 0.0; // The hand does not hold it.
     options.hand.grip_damping_n_s_per_m = 0.0;
-    options.device.damping_n_s_per_m = 7.0; // and a device that comes to rest soon.
+    options.device.damping_n_s_per_m = 7.0; // The device comes to rest soon.
     auto sut = make(options, std::make_unique<HandThatJumps>(Vec3::Zero()));
     DeviceSample before;
     for (int i = 0; i < 500; ++i)
@@ -259,7 +259,7 @@ double drift_in_a_pause_m(std::optional<Duration> watchdog, Duration pause,
 
 TEST(SimulatedDevice, holds_its_last_force_through_a_pause_unless_a_watchdog_ends_it)
 {
-    // At its final speed, F over the damping, it goes on as long as the force does.
+    // At its final speed, F over the damping, it continues as long as the force.
     const double speed_m_per_s = 2.0 / 7.0;
     const double held_m = drift_in_a_pause_m(std::nullopt, milliseconds(100));
     EXPECT_NEAR(held_m, 0.1 * speed_m_per_s, 1e-5);
@@ -301,7 +301,7 @@ TEST(SimulatedDevice, with_a_clock_counts_true_periods_and_catches_up_on_one_sec
     options.clock = &clock;
     auto sut = make(options, std::make_unique<HandThatJumps>(Vec3::Zero()));
     EXPECT_EQ(sut->read().time.ns, 0);
-    EXPECT_EQ(sut->read().time.ns, 333'333); // A reading is a period, however soon it comes.
+    EXPECT_EQ(sut->read().time.ns, 333'333); // Every reading is one period, however early.
     clock.advance(milliseconds(10));
     EXPECT_EQ(sut->read().time.ns, 10'000'000);
     clock.advance(milliseconds(3'600'000));

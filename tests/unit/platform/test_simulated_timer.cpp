@@ -48,7 +48,7 @@ TEST(SimulatedPeriodicTimer, runs_a_frame_at_once_that_is_less_than_a_period_lat
     EXPECT_EQ(late.wake_lateness, microseconds(400));
     EXPECT_EQ(late.start_lateness, microseconds(300));
     EXPECT_EQ(late.periods, 1U);
-    EXPECT_EQ(next(sut).start_lateness, Duration{}); // The grid has not moved.
+    EXPECT_EQ(next(sut).start_lateness, Duration{}); // The grid is unchanged.
 }
 
 TEST(SimulatedPeriodicTimer, moves_to_the_next_grid_point_after_a_late_wake_of_many_periods)

@@ -24,7 +24,7 @@ using system_call_trap::mark_frame;
 using system_call_trap::of_this_thread;
 using system_call_trap::TrappedCalls;
 
-/// Runs the work on a thread of its own with the trap set, since a trap is for good.
+/// Runs the work on a separate thread with the trap set, since a trap is permanent.
 void with_trap(const std::function<void()>& work)
 {
     std::string refused;
@@ -155,14 +155,14 @@ TEST(SystemCallTrap, lets_a_sleep_last)
         });
 }
 
-/// Through the vDSO none of them is a system call; without it every one is.
+/// With the vDSO none of them is a system call; without it every one is.
 TEST(SystemCallTrap, counts_all_clock_reads_or_none)
 {
     with_trap(
         []
         {
             const PosixClock clock;
-            static_cast<void>(clock.now()); // A sanitizer looks the function up first.
+            static_cast<void>(clock.now()); // A sanitizer looks up the function first.
             mark_frame(true);
             for (int i = 0; i < 100; ++i)
             {

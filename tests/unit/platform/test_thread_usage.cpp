@@ -41,7 +41,7 @@ TEST(ThreadUsage, counts_a_voluntary_switch_for_every_sleep)
     {
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
-    // Who is held up on the way to a sleep finds it over and doesn't switch.
+    // A delayed thread may find its sleep already over, and does not switch.
     EXPECT_GE((read_thread_usage() - before).voluntary_switches, 10);
 }
 

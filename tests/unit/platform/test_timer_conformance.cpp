@@ -9,9 +9,9 @@
 #include <type_traits>
 #include <vector>
 
-/// What every backend of Clock and PeriodicTimer promises. A shared machine may delay any step, so
-/// nothing here sets a limit to lateness: only to earliness, to the grid, and to what a cycle says
-/// about times that were read around it.
+/// Promises of every backend of Clock and PeriodicTimer. A shared machine may delay any step, so
+/// lateness has no limit here: only earliness, the grid, and the cycle's values about times read
+/// around it are checked.
 namespace tactus::test
 {
 
@@ -67,7 +67,7 @@ TYPED_TEST(ClockConformance, knows_the_century)
     EXPECT_LT(this->sut.wall_now().ns, 4'102'444'800'000'000'000); // 2100-01-01.
 }
 
-/// A cycle and the times that the clock told around it.
+/// Cycle with clock readings around it.
 struct WatchedCycle
 {
     MonotonicTime before;
@@ -96,7 +96,7 @@ protected:
 
     [[nodiscard]] MonotonicTime now() { return machine.clock().now(); }
 
-    /// Cycles with frames of no time, a part of a period and stalls between them.
+    /// Runs cycles with frames of zero time, a part of a period and stalls between them.
     std::vector<WatchedCycle> run_with_hardship(int cycles)
     {
         std::mt19937 random(20'240'613); // NOLINT(cert-msc51-cpp): the same hardship each time.
@@ -254,7 +254,7 @@ TYPED_TEST(PeriodicTimerConformance, keeps_all_deadlines_on_one_grid_so_that_lat
         periods += seen.cycle.periods;
         EXPECT_EQ(seen.cycle.deadline, origin + this->kPeriod * periods);
     }
-    EXPECT_GT(periods, 40); // Some were lost, so the grid was put to a test.
+    EXPECT_GT(periods, 40); // Some were lost, so the grid was tested.
 }
 
 TYPED_TEST(PeriodicTimerConformance, tells_how_many_periods_a_stall_took_and_counts_one_episode)
@@ -264,12 +264,12 @@ TYPED_TEST(PeriodicTimerConformance, tells_how_many_periods_a_stall_took_and_cou
     const TimerCounts counts = this->sut.counts();
     this->machine.pass(this->kPeriod * 5 + microseconds(700));
     const WatchedCycle after = this->next();
-    EXPECT_GT(after.cycle.deadline, after.before); // No point that the stall ran over is left.
+    EXPECT_GT(after.cycle.deadline, after.before); // No grid point within the stall is left.
     EXPECT_GE(after.cycle.periods, 6U);
     EXPECT_EQ(after.cycle.deadline - before.deadline, this->kPeriod * after.cycle.periods);
     EXPECT_EQ(this->sut.counts().missed_periods - counts.missed_periods, after.cycle.periods - 1);
     EXPECT_EQ(this->sut.counts().episodes,
-              counts.episodes + (before.periods > 1 ? 0 : 1)); // Else it is the same episode.
+              counts.episodes + (before.periods > 1 ? 0 : 1)); // Otherwise it is the same episode.
     EXPECT_EQ(this->sut.counts().cycles, 2U);
 }
 
@@ -326,7 +326,7 @@ TYPED_TEST(PeriodicTimerConformance, forgets_counts_and_lateness_when_started_ag
     static_cast<void>(this->next());
     EXPECT_GE(this->sut.counts().missed_periods, 4U);
     this->machine.pass(this->kPeriod * 4);
-    this->sut.sleep_until_margin(); // Left in the middle of a cycle.
+    this->sut.sleep_until_margin(); // The cycle is not completed.
     const MonotonicTime before = this->now();
     ASSERT_TRUE(this->sut.start(milliseconds(3), Duration{}));
     EXPECT_EQ(this->sut.period(), milliseconds(3));

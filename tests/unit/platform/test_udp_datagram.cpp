@@ -25,7 +25,7 @@ Bytes to_bytes(const Datagram& datagram)
     return {datagram.begin(), datagram.end()};
 }
 
-/// As a device of version 1 sends it, and as it is answered.
+/// Datagram of a device of version 1, or an answer to it.
 template <typename Datagram>
 Datagram of_points(Datagram datagram)
 {
@@ -41,7 +41,7 @@ T value_at(const Bytes& bytes, std::size_t at)
     return value;
 }
 
-/// Sealed anew, so that what stands in it is looked at.
+/// Datagram with another value and a valid checksum, so that the value is checked.
 template <typename T>
 Bytes with(Bytes bytes, std::size_t at, const T& value)
 {
@@ -54,7 +54,7 @@ Bytes with(Bytes bytes, std::size_t at, const T& value)
 template <typename T>
 using Places = std::vector<std::pair<std::size_t, T>>;
 
-/// Its size, how it begins, its checksum at the end, and numbers at places.
+/// Expects the size, the start, the checksum at the end, and numbers at places.
 void expect_bytes(const Datagram& datagram, std::size_t size, const char* head,
                   const Places<double>& numbers, const Places<std::uint64_t>& words,
                   const Places<std::uint32_t>& flags)
@@ -82,7 +82,7 @@ DatagramFault refusal_of(const Bytes& bytes)
 {
     const FromDevice decoded = decode_from_device(bytes);
     const auto* refusal = std::get_if<DatagramFault>(&decoded);
-    return refusal != nullptr ? *refusal : DatagramFault::foreign; // Which decode() never says.
+    return refusal != nullptr ? *refusal : DatagramFault::foreign; // decode() never returns it.
 }
 
 DatagramFault force_refusal_of(const Bytes& bytes)
@@ -109,7 +109,7 @@ TEST(UdpDatagram, has_the_bytes_of_the_page)
                  {{48, 3.5}, {72, 0.3}, {80, -0.4}}, {{88, 5}, {96, 0}, {104, 0}}, {{112, 2}});
 }
 
-/// Later ones will fill the tag; who can't check it doesn't look at it.
+/// Later versions will use the tag; a receiver that cannot check it ignores it.
 TEST(UdpDatagram, is_taken_whatever_its_tag)
 {
     const Bytes sample = to_bytes(encode(test::example_sample()));
@@ -123,7 +123,7 @@ TEST(UdpDatagram, is_taken_whatever_its_tag)
     EXPECT_EQ(got.tag[3], std::byte{0x34});
 }
 
-/// A device that doesn't turn, as they all were.
+/// Device without rotation, as of version 1.
 TEST(UdpDatagram, of_version_1_is_still_understood)
 {
     const auto described = decode_from_device(encode(of_points(test::example_description())));
@@ -263,7 +263,7 @@ TEST(UdpDatagram, is_refused_for_values_out_of_range)
     EXPECT_EQ(force_refusal_of(with(force, 112, std::uint32_t{3})), DatagramFault::content);
 }
 
-/// A device that has no position must be able to say so, whatever stands in its variables.
+/// A device without a position must be able to say so with any values in its variables.
 TEST(UdpDatagram, looks_at_no_position_that_is_said_to_be_invalid)
 {
     SampleDatagram lost = test::example_sample();

@@ -47,13 +47,13 @@ protected:
         options.proof = Duration{};
     }
 
-    /// From here on `peer` is the device of `sut`.
+    /// Makes `peer` the device of `sut`.
     void attach()
     {
         peer.describe(desk());
         sut = std::move(UdpDevice::create(std::move(socket), options)).value();
     }
-    /// And its first sample was read.
+    /// Attaches, and reads the first sample.
     void attach_and_read()
     {
         options.times = test::patient_times();
@@ -74,7 +74,7 @@ protected:
     {
         return sut->traffic().refused.at(static_cast<std::size_t>(fault));
     }
-    /// Until one is there that is as wanted.
+    /// Receives until a datagram satisfies the condition.
     template <typename Wanted>
     static udp::ForceDatagram await_force(UdpPeer& from, const Wanted& is_wanted)
     {
@@ -109,7 +109,7 @@ TEST_F(UdpDeviceTest, refuses_options_out_of_range_in_one_line)
     UdpDeviceOptions bad = options;
     bad.address = "localhost";
     EXPECT_NE(line_of(bad).find("'localhost' is no numeric IPv4 address"), std::string::npos);
-    bad.address = "192.0.2.1"; // Of nobody, by RFC 5737.
+    bad.address = "192.0.2.1"; // Unused address of RFC 5737.
     EXPECT_NE(line_of(bad).find("can't listen on 192.0.2.1:48500"), std::string::npos);
     bad = options;
     for (const int port : {-1, 80, 65'536})
@@ -263,9 +263,9 @@ TEST_F(UdpDeviceTest, refuses_and_counts_what_is_stale_foreign_or_spoilt)
 
     udp::SampleDatagram again = sample_at(0.02);
     again.address = {peer.instance(), session, sequence};
-    peer.send(udp::encode(again)); // The number of the one before.
+    peer.send(udp::encode(again)); // The number of the previous one.
     again.address = {peer.instance(), session + 1, sequence + 1};
-    peer.send(udp::encode(again)); // Another session's.
+    peer.send(udp::encode(again)); // Number of another session.
     const auto sound = udp::encode(sample_at(0.03));
     std::vector<std::byte> spoilt(sound.begin(), sound.end());
     spoilt[50] ^= std::byte{1};
@@ -275,10 +275,10 @@ TEST_F(UdpDeviceTest, refuses_and_counts_what_is_stale_foreign_or_spoilt)
     UdpPeer thief(controller, 12);
     thief.describe(desk());
     again.address = {peer.instance(), session, sequence + 1};
-    thief.send(udp::encode(again)); // All of it right, but from another port.
+    thief.send(udp::encode(again)); // All correct, but from another port.
 
-    peer.say(sample_at(0.04)); // On one socket all others have been taken in before it...
-    while (refused(DatagramFault::foreign) < 2) // ... but it is two sockets here.
+    peer.say(sample_at(0.04)); // One socket would have accepted all others before it.
+    while (refused(DatagramFault::foreign) < 2) // Two sockets need this wait.
     {
         std::this_thread::yield();
     }
@@ -306,7 +306,7 @@ TEST_F(UdpDeviceTest, is_gone_when_the_device_is_silent_and_idle_when_another_is
     const std::uint64_t lost = sut->traffic().lost;
 
     UdpPeer other(controller, 12);
-    // Until it is connected: it may be silent for too long by the machine's fault.
+    // Runs until it is connected: the machine's delay may make it silent for too long.
     while (!sut->read().connected)
     {
         other.describe(desk());
@@ -332,7 +332,7 @@ TEST_F(UdpDeviceTest, sends_the_brake_by_itself)
     attach_and_read();
     std::thread other([this] { sut->brake(); });
     other.join();
-    // The I/O thread knows which sample it answers; brake() doesn't.
+    // The I/O thread knows which sample it answers; brake() does not.
     const udp::ForceDatagram at_once =
         await_force(peer, [](const auto& force) { return force.answers == 0; });
     EXPECT_EQ(at_once.state, DeviceState::brake);
@@ -342,8 +342,8 @@ TEST_F(UdpDeviceTest, sends_the_brake_by_itself)
     EXPECT_EQ(peer.ask().state, DeviceState::idle);
 }
 
-/// Whatever the threads do: of two datagrams the one with the greater number counts. The force
-/// tells the round that it is from, and each round ends with one brake that is sent at once.
+/// Under any scheduling, the datagram with the greater number counts. The force contains its round,
+/// and each round ends with one immediate brake.
 TEST_F(UdpDeviceTest, sends_no_force_with_a_number_beyond_that_of_the_brake)
 {
     constexpr int kRounds = 50'000;
@@ -404,8 +404,8 @@ void print(const char* way, std::vector<Duration> times)
                 at(100));
 }
 
-/// Each way by itself, over loopback. The figures are those of docs/udp-device.md; what is asserted
-/// is that everything arrives.
+/// Each way separately, over loopback. The figures are those of docs/udp-device.md; asserted is
+/// that everything arrives.
 TEST_F(UdpDeviceTest, tells_what_each_way_takes)
 {
     constexpr int kRounds = 1'000;
@@ -436,7 +436,7 @@ TEST_F(UdpDeviceTest, tells_what_each_way_takes)
     EXPECT_EQ(sut->traffic().unsent, 0U);
 }
 
-/// Its tool doesn't turn, and it is told what it knows.
+/// The tool has no rotation, and is answered in its version.
 TEST_F(UdpDeviceTest, of_version_1_is_answered_in_its_version)
 {
     DeviceInfo old = desk();

@@ -24,13 +24,13 @@ bool has_python()
                        "2>/dev/null") == 0;
 }
 
-/// Runs until it is killed, by stop() at the latest when it ends.
+/// Driver that runs until stop() or the destructor kills it.
 class Driver
 {
 public:
     Driver(const std::string& script, std::uint16_t port)
     {
-        const std::string text = std::to_string(port); // Made here: a child must not allocate.
+        const std::string text = std::to_string(port); // Converted here: a child must not allocate.
         id_ = fork();
         if (id_ == 0)
         {
@@ -56,7 +56,7 @@ private:
     pid_t id_{-1};
 };
 
-/// Reads and writes until the hand is where the force brings it: at force / 200 N/m.
+/// Reads and writes until the hand is at force / 200 N/m.
 void push_to(UdpDevice& device, const std::array<double, 3>& force_n, double wanted_m)
 {
     DeviceSample sample;
@@ -70,7 +70,7 @@ void push_to(UdpDevice& device, const std::array<double, 3>& force_n, double wan
     EXPECT_TRUE(sample.deadman_held);
 }
 
-/// Likewise: at torque / 0.5 N m.
+/// Reads and writes until the hand is at torque / 0.5 N m.
 void turn_to(UdpDevice& device, const std::array<double, 3>& torque_nm, double wanted_rad)
 {
     double turned_rad = 0.0;
@@ -93,7 +93,7 @@ TEST(UdpDriver, of_the_examples_attaches_obeys_dies_and_attaches_again)
     const PosixClock clock;
     UdpDeviceOptions options;
     options.clock = &clock;
-    options.wait = milliseconds(120'000); // As long as the machine needs to start an interpreter.
+    options.wait = milliseconds(120'000); // Time for the machine to start an interpreter.
     options.times.silence = milliseconds(200);
     auto socket = std::move(udp::Socket::open("127.0.0.1", 0)).value();
     const std::uint16_t port = socket.endpoint().port;

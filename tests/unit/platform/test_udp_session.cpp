@@ -146,7 +146,7 @@ TEST_F(UdpSession, lets_another_instance_in_when_the_first_is_silent)
     EXPECT_TRUE(std::get<Sampled>(sample(2, kSecret + 1, 10, kElsewhere)).is_new);
 }
 
-/// A driver that stumbles is back in its place, whoever knocked meanwhile.
+/// A driver that restarts gets its place back, despite other attempts meanwhile.
 TEST_F(UdpSession, keeps_the_place_of_a_device_that_has_sent_samples)
 {
     sut = Session(kSecret, milliseconds(20), milliseconds(3'000));
@@ -170,7 +170,7 @@ TEST_F(UdpSession, keeps_the_place_of_a_device_that_has_sent_samples)
     EXPECT_TRUE(is_described(describe(1, 11, kHome))) << "later than that";
 }
 
-/// Who was first with a lie has nothing of it once it is silent.
+/// A first device with false data loses its place once it is silent.
 TEST_F(UdpSession, forgets_a_device_that_falls_silent_before_it_was_settled_on)
 {
     sut = Session(kSecret, milliseconds(20), milliseconds(3'000));
@@ -218,7 +218,7 @@ TEST_F(UdpSession, believes_a_device_that_samples_for_a_while_and_alone)
     EXPECT_FALSE(sut.is_proven(kTime, now));
 }
 
-/// A tag that the test can make: the sum of the bytes, and a secret.
+/// Tag that the test can compute: the sum of the bytes, and a secret.
 class Sum final : public Seal
 {
 public:
