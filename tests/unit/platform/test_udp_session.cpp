@@ -261,7 +261,7 @@ TEST_F(UdpSession, with_a_seal_hears_nobody_without_the_key)
     EXPECT_TRUE(is_sampled(sut.receive(sealed(encode(datagram), seal), kHome, now)));
 }
 
-/// Whatever byte before the checksum is another, the tag is wrong.
+/// A change of any byte before the checksum invalidates the tag.
 TEST_F(UdpSession, a_seal_covers_every_byte)
 {
     const Sum seal(7);
@@ -280,7 +280,7 @@ TEST_F(UdpSession, a_seal_covers_every_byte)
         {
             if (i == 6 || i == 7)
             {
-                continue; // The kind, which a datagram that decodes has right.
+                continue; // The kind, which is right in any datagram that decodes.
             }
             bytes[i] ^= std::byte{1};
             EXPECT_FALSE(is_sealed(bytes, seal)) << i;
@@ -289,7 +289,7 @@ TEST_F(UdpSession, a_seal_covers_every_byte)
     }
 }
 
-/// What was recorded of a session is of no use in a later one.
+/// The recording of a session is useless in a later one.
 TEST_F(UdpSession, refuses_a_session_that_is_played_again)
 {
     EXPECT_TRUE(is_described(describe(1)));
@@ -324,7 +324,7 @@ TEST_F(UdpSession, steps_as_the_devices_clock_does_and_starts_as_ours)
     EXPECT_TRUE(is_described(describe(1)));
     const MonotonicTime first = std::get<Sampled>(sample(2)).reading.time;
     EXPECT_EQ(first, now);
-    now = now + microseconds(1'700); // Late on its way; the device's step is 1 ms.
+    now = now + microseconds(1'700); // Late in transit; the device's step is 1 ms.
     const auto second = std::get<Sampled>(sample(3)).reading;
     EXPECT_EQ(second.time - first, milliseconds(1));
     EXPECT_EQ(second.arrival, now);
@@ -348,7 +348,7 @@ TEST_F(UdpSession, never_goes_back_in_time_whatever_the_devices_clock_does)
         last = time;
     }
     be_silent();
-    device_ns = 0; // Started anew.
+    device_ns = 0; // Restarted.
     EXPECT_TRUE(is_described(describe(1, 10)));
     EXPECT_GT(std::get<Sampled>(sample(2, kSecret + 1, 10)).reading.time, last);
 }

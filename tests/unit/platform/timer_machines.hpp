@@ -9,7 +9,7 @@
 #include <chrono>
 #include <thread>
 
-/// Each backend of the clock and the timer, with a way to let time pass on it.
+/// Backends of the clock and the timer, with a way to let time pass.
 namespace tactus::test
 {
 
@@ -19,7 +19,7 @@ public:
     virtual ~Machine() = default;
     [[nodiscard]] virtual PeriodicTimer& timer() = 0;
     [[nodiscard]] virtual const Clock& clock() = 0;
-    /// At least so long: a frame's work, or a stall.
+    /// Lets at least this time pass: a frame's work, or a stall.
     virtual void pass(Duration duration) = 0;
 };
 

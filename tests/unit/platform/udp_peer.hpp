@@ -17,8 +17,8 @@
 namespace tactus::test
 {
 
-/// What a device program has of the protocol. Waits as long as it takes: nothing here depends on
-/// how fast the machine is.
+/// Protocol side of a device program. It has no time limits, so that tests do not depend on the
+/// machine's speed.
 class UdpPeer
 {
 public:
@@ -39,18 +39,18 @@ public:
         send(udp::encode(datagram));
     }
 
-    /// What the device has to do now: the answer to a question that was put after all that the
-    /// caller has done.
+    /// Present command to the device: the answer to a question sent after all earlier actions of
+    /// the caller.
     [[nodiscard]] udp::ForceDatagram ask()
     {
         return until_answered([this] { describe(info_); });
     }
-    /// Until it has arrived.
+    /// Sends a sample and waits for its arrival.
     void say(const udp::SampleDatagram& datagram)
     {
         static_cast<void>(until_answered([&] { sample(datagram); }));
     }
-    /// The next one, in time.
+    /// Next force datagram, if it arrives in time.
     [[nodiscard]] std::optional<udp::ForceDatagram> receive(Duration time)
     {
         std::array<std::byte, udp::kDatagramBytesMax + 1> buffer{};

@@ -10,7 +10,7 @@
 namespace tactus::test
 {
 
-/// A simulated device that obeys what a protocol says.
+/// Simulated device that follows the protocol's commands.
 class ObedientDevice
 {
 public:
@@ -38,13 +38,13 @@ private:
         std::move(SimulatedDevice::create({}, std::make_unique<HandAtRest>())).value();
 };
 
-/// Times that no stall of the machine reaches, for what is about something else.
+/// Times that no stall of the machine reaches, for tests of other properties.
 inline RemoteTimes patient_times()
 {
     return {milliseconds(60'000), milliseconds(60'000)};
 }
 
-/// A UdpDevice, and at the other end a simulated one, in lock step.
+/// UdpDevice with a simulated device at the other end, in lock step.
 class UdpRig final : public DeviceRig
 {
 public:

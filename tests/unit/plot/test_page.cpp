@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// That a page is well-formed is looked at by an XML parser, in integration.hrtc_bad_input; here,
-/// that no text can make it otherwise.
+/// No text can break a page's form. An XML parser checks that pages are well-formed in
+/// integration.hrtc_bad_input.
 
 #include "platform/plot/markup.hpp"
 #include "platform/plot/page.hpp"
@@ -38,12 +38,12 @@ TEST(Escaped, replaces_what_is_no_character)
     EXPECT_EQ(escaped(std::string("a\0b", 3)), "a\uFFFDb");
     EXPECT_EQ(escaped("\x1B[31m\x7F"), "\uFFFD[31m\uFFFD");
     EXPECT_EQ(escaped("\xFFz"), "\uFFFDz");
-    EXPECT_EQ(escaped("\xC3"), "\uFFFD");           // Cut off.
-    EXPECT_EQ(escaped("\xC0\xAF"), "\uFFFD\uFFFD"); // Too long a form.
+    EXPECT_EQ(escaped("\xC3"), "\uFFFD");           // Truncated.
+    EXPECT_EQ(escaped("\xC0\xAF"), "\uFFFD\uFFFD"); // Overlong.
     EXPECT_EQ(escaped("\xE0\x80\xBC"), "\uFFFD\uFFFD\uFFFD");
-    EXPECT_EQ(escaped("\xED\xA0\x80"), "\uFFFD\uFFFD\uFFFD"); // Half of a pair of UTF-16.
+    EXPECT_EQ(escaped("\xED\xA0\x80"), "\uFFFD\uFFFD\uFFFD"); // Half of a UTF-16 surrogate pair.
     EXPECT_EQ(escaped("\xEF\xBF\xBF"), "\uFFFD\uFFFD\uFFFD");
-    EXPECT_EQ(escaped("\xC2\x85"), "\uFFFD\uFFFD"); // A control character beyond ASCII.
+    EXPECT_EQ(escaped("\xC2\x85"), "\uFFFD\uFFFD"); // Control character beyond ASCII.
     EXPECT_EQ(escaped("\t\n\r"), "\t\n\uFFFD");
 }
 
@@ -65,7 +65,7 @@ Page full_page(const std::string& text)
     return page;
 }
 
-/// The text of the element that begins so.
+/// Text of the element with this start.
 std::string element(const std::string& html, const std::string& begin)
 {
     const std::size_t at = html.find(begin) + begin.size();
@@ -76,11 +76,11 @@ TEST(Page, escapes_whatever_is_in_it)
 {
     const std::string text = "</td>\"</script><!-- ]]> &amp; \x1B\xFF";
     const std::string html = full_page(text).html();
-    EXPECT_EQ(count_of(html, "</script>"), 3U); // Data, library, what draws.
-    EXPECT_EQ(count_of(html, "]]>"), 3U);       // Style, library, what draws.
+    EXPECT_EQ(count_of(html, "</script>"), 3U); // Data, library, drawing code.
+    EXPECT_EQ(count_of(html, "]]>"), 3U);       // Style, library, drawing code.
     EXPECT_EQ(html.find("<!--"), std::string::npos);
     EXPECT_EQ(count_of(html, "</td>"), count_of(html, "<td"));
-    EXPECT_EQ(count_of(html, "&lt;/td&gt;&quot;"), 14U); // Each text that it takes.
+    EXPECT_EQ(count_of(html, "&lt;/td&gt;&quot;"), 14U); // Each of its texts.
     const std::string json = element(html, "id=\"chart-data\">");
     EXPECT_EQ(json.find_first_of("<>&"), std::string::npos) << json;
     const auto charts = nlohmann::json::parse(json);
@@ -115,11 +115,12 @@ TEST(Page, needs_nothing_from_elsewhere)
     {
         EXPECT_EQ(html.find(way), std::string::npos) << way;
     }
-    EXPECT_EQ(count_of(html, "content=\"default-src 'none';"), 1U); // Nor could a script get it.
+    // A script could not be loaded either.
+    EXPECT_EQ(count_of(html, "content=\"default-src 'none';"), 1U);
     std::size_t addresses = count_of(html, "http");
     addresses -= count_of(html, "\"http://www.w3.org/1999/xhtml\"");
     addresses -= count_of(html, "http-equiv");
-    EXPECT_EQ(addresses, 0U); // What is left are names of languages.
+    EXPECT_EQ(addresses, 0U); // The remaining ones are names of languages.
 }
 
 struct LibraryFolder

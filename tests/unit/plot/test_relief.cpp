@@ -16,7 +16,7 @@ namespace
 
 using tactus::test::count_of;
 
-/// A square of a metre on the ground, of two faces.
+/// Square of a metre on the ground, of two faces.
 Relief ground()
 {
     return {.title = "way & force",
@@ -60,7 +60,7 @@ TEST(Relief, draws_what_is_nearer_to_the_eye_over_what_is_farther)
     const auto face_at = [](float z) {
         return std::array<Place, 3>{{{0.0F, 0.0F, z}, {1.0F, 0.0F, z}, {1.0F, 1.0F, z}}};
     };
-    relief.faces = {face_at(1.0F), face_at(0.0F)}; // Seen from above.
+    relief.faces = {face_at(1.0F), face_at(0.0F)}; // View from above.
     const std::string one = figure_of(relief);
     relief.faces = {face_at(0.0F), face_at(1.0F)};
     EXPECT_EQ(one, figure_of(relief));

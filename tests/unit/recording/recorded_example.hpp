@@ -14,7 +14,8 @@
 namespace tactus::test
 {
 
-/// Arguments and output of a frame of one tool, one model and two changes, no value like another.
+/// Arguments and output of a frame of one tool, one model and two changes, with all values
+/// different.
 struct ExampleFrame
 {
     std::array<ToolState, 1> tools{ToolState{Vec3(0.5, -0.25, 2.0), 77, 3, true}};
@@ -63,7 +64,7 @@ struct ExampleFrame
     {
         return {tool_outputs, pair_outputs, model_outputs, {}, FrameFault::none, door, {}};
     }
-    /// Coded by `encoder`, in memory of its own.
+    /// Frame coded by `encoder`, in separate memory.
     [[nodiscard]] std::vector<std::byte> code(FrameEncoder& encoder) const
     {
         const auto coded = encoder.encode(input(), output(), devices);
@@ -102,7 +103,7 @@ inline std::vector<std::byte> example_recording(const TinyModel& model,
     FrameEncoder encoder;
     ExampleFrame frame;
     writer.add_piece(0, kChunk, model.piece(kChunk));
-    writer.add_piece(0, kChunk, model.piece(kChunk)); // Evicted and here again.
+    writer.add_piece(0, kChunk, model.piece(kChunk)); // Evicted and resident again.
     for (int i = 0; i < 3; ++i)
     {
         writer.add_frame(frame.code(encoder));

@@ -17,7 +17,7 @@ const char* decode(const std::vector<std::byte>& bytes)
     return decoder.decode(reader);
 }
 
-/// As docs/recording.md lists them, put together without the encoder's help.
+/// Bytes as docs/recording.md lists them, assembled without the encoder.
 TEST(FrameCoding, writes_the_bytes_that_the_format_page_lists)
 {
     const ExampleFrame frame;
@@ -176,7 +176,7 @@ TEST(FrameCoding, refuses_values_that_no_frame_can_have)
     };
     const std::vector<Case> cases{{kFlags, {8}, "flags"},
                                   {kFlags, {1}, "flags"},          // The first frame has budgets.
-                                  {kValid, {0xFF, 0x3F}, "flags"}, // An unknown one.
+                                  {kValid, {0xFF, 0x3F}, "flags"}, // Unknown flag.
                                   {kChanges, {0}, "1 to 64 changes"},
                                   {kChanges, {65}, "1 to 64 changes"},
                                   {kChanges + 1, {6}, "unknown kind"},

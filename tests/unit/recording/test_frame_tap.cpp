@@ -20,7 +20,7 @@ void record(FrameTap& tap, ExampleFrame& frame, std::int64_t number)
     tap.record(frame.input(), frame.output());
 }
 
-/// Takes what waits; the numbers that record() gave the frames.
+/// Takes all waiting frames; returns the numbers that record() gave them.
 std::vector<std::int64_t> take_all(FrameTap& tap, FrameDecoder& decoder)
 {
     std::vector<std::int64_t> numbers;
@@ -69,7 +69,7 @@ TEST(FrameTap, loses_all_frames_from_the_first_that_finds_no_room)
     record(sut, frame, 1);
     EXPECT_EQ(sut.lost_from(), 1U);
     EXPECT_EQ(take_all(sut, decoder), std::vector<std::int64_t>{0});
-    record(sut, frame, 2); // There is room again, but a replay can't go past the gap.
+    record(sut, frame, 2); // There is space again, but a replay cannot pass the gap.
     EXPECT_TRUE(take_all(sut, decoder).empty());
     EXPECT_EQ(sut.lost_from(), 1U);
 }
@@ -79,7 +79,7 @@ TEST(LastInputs, keeps_the_newest_in_order)
     const TinyModel model = make_tiny_model({});
     for (const std::int64_t frames : {0, 1, 4, 5, 6, 1'003})
     {
-        LastInputs sut(2, 11); // Five frames, and a sample too few for a sixth.
+        LastInputs sut(2, 11); // Five frames, and one sample too few for a sixth.
         std::array<ToolState, 2> tools{};
         std::array<DeviceRecord, 2> devices{};
         for (std::int64_t number = 0; number < frames; ++number)
@@ -143,7 +143,7 @@ TEST(FrameTap, carries_frames_between_threads)
             ExampleFrame frame;
             for (std::int64_t number = 0; number < kFrames; ++number)
             {
-                while (number - taken.load() > 4) // Within what the queue holds.
+                while (number - taken.load() > 4) // Within the capacity of the queue.
                 {
                     std::this_thread::yield();
                 }

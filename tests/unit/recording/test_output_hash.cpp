@@ -29,7 +29,7 @@ struct Outputs
     }
 };
 
-/// A part of the output and changes of it, one for each field that a frame sets.
+/// Part of the output with changes of it, one for each field that a frame sets.
 struct Part
 {
     std::uint64_t OutputHashes::*hash;
@@ -130,16 +130,16 @@ TEST(OutputHash, sees_every_field_in_its_part_and_tells_them_apart)
             OutputHashes hashes = changed.hashes();
             EXPECT_TRUE(seen.insert(hashes.*part.hash).second) << i;
             hashes.*part.hash = plain.*part.hash;
-            EXPECT_EQ(hashes, plain) << i; // The other parts are as they were.
+            EXPECT_EQ(hashes, plain) << i; // The other parts are unchanged.
         }
     }
 }
 
-/// The definition, once more: SplitMix64's finalizer over one value after the other.
+/// Second implementation of the definition: SplitMix64's finalizer over the values in turn.
 TEST(OutputHash, is_what_the_format_page_says)
 {
     std::uint64_t state = 0;
-    // 15 counters, five of the scene, refusals, the shortcuts' and the faults, all zero.
+    // 15 counters, five of the scene, refusals, those of shortcuts and the faults, all zero.
     for (std::size_t value = 0; value < 21 + kChangeRefusals + kSkips; ++value)
     {
         state += 0x9E3779B97F4A7C15U;

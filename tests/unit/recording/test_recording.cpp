@@ -44,7 +44,7 @@ void expect_refusal(std::span<const std::byte> bytes, const std::string& said)
     EXPECT_EQ(text.find('\n'), std::string::npos);
 }
 
-/// Where each section begins.
+/// Starts of the sections.
 std::vector<std::size_t> sections_of(std::span<const std::byte> bytes)
 {
     std::vector<std::size_t> starts;
@@ -58,7 +58,7 @@ std::vector<std::size_t> sections_of(std::span<const std::byte> bytes)
     return starts;
 }
 
-/// Another content of one section, under a checksum that fits.
+/// Recording with another content of one section, under a valid checksum.
 template <typename Change>
 std::vector<std::byte> with_section(std::size_t index, Change&& change)
 {
@@ -83,7 +83,7 @@ std::vector<std::byte> with_section(std::size_t index, Change&& change)
     return made;
 }
 
-/// The same, with `values` at a place of the section's content.
+/// Recording with `values` at a place of the section's content.
 std::vector<std::byte> with_bytes(std::size_t index, std::size_t at, std::vector<unsigned> values)
 {
     return with_section(index,
@@ -140,7 +140,7 @@ TEST(RecordingFile, gives_back_what_was_written)
     EXPECT_TRUE(sut.value().piece(0, {ContentKind::chunk, 0}).empty());
 }
 
-/// With one name more than the example has.
+/// Example with an additional name.
 std::vector<std::byte> with_name(const RecordedName& what, const std::string& name)
 {
     RecordedSetup setup = example_setup(model());
@@ -189,7 +189,7 @@ TEST(RecordingFile, tells_from_where_frames_were_lost)
     expect_refusal(example(2), "the first lost frame is 2; after 3 frames only that number");
 }
 
-/// So many frames of a run, and so many of which only what they were given is kept.
+/// Recording of `of_run` frames, and `given` frames of inputs only.
 Result<Recording, Refusal> with_given_frames(int of_run, int given)
 {
     RecordingWriter writer(example_setup(model()));
@@ -279,7 +279,7 @@ TEST(RecordingFile, is_refused_when_sections_are_out_of_order)
 
 TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
 {
-    // What the checksums vouch for is checked all the same.
+    // Content under valid checksums is also checked.
     constexpr std::size_t kTool = 26;
     constexpr std::size_t kTorque = kTool + 33;
     constexpr std::size_t kAngular = kTorque + 9;
@@ -314,7 +314,7 @@ TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
     expect_refusal(with_bytes(kSetup, kObject + 1, {1}), "object 0 doesn't come where it should");
     expect_refusal(with_bytes(kSetup, kSpec, {1}), "object 0 names model 1 of 1");
     for (const std::size_t value :
-         {4U, 12U, 20U, 28U, 36U, 44U, 52U}) // NaN, then less than nothing.
+         {4U, 12U, 20U, 28U, 36U, 44U, 52U}) // NaN, then a negative number.
     {
         const std::string refusal = "object 0 is not of more than 0 N/m";
         expect_refusal(with_bytes(kSetup, kSpec + value + 6, {0xF8, 0x7F}), refusal);
@@ -379,7 +379,7 @@ TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
                    "the end section has another size than its content");
 }
 
-/// A recording of several sections of frames, and where its end section begins.
+/// Recording of several sections of frames, with the start of its end section.
 std::pair<std::vector<std::byte>, std::size_t> long_recording()
 {
     RecordingWriter writer(example_setup(model()));
@@ -452,10 +452,10 @@ TEST(RecordingFile, whose_end_a_file_system_lost_is_cut_where_the_zeros_begin)
     std::vector<std::byte> damaged = bytes;
     damaged[last + 100] ^= std::byte{1};
     expect_refusal(damaged, "is damaged: its checksum does not fit");
-    damaged.resize(end); // Cut, too: what is whole before is not what it says.
+    damaged.resize(end); // Also truncated: the complete part is not what it claims.
     expect_refusal(damaged, "is damaged: its checksum does not fit");
     damaged = bytes;
-    damaged[starts[3] + 7] = std::byte{0x7F}; // A length that no section has.
+    damaged[starts[3] + 7] = std::byte{0x7F}; // Length that no section has.
     expect_refusal(damaged, "section of kind 4 says that it has 21");
 }
 
@@ -464,7 +464,7 @@ TEST(ToolCoreCoding, refuses_what_is_of_no_kind_or_out_of_range)
     HullVertices kept;
     std::vector<std::byte> segment;
     append_core(segment, Segment{Vec3(1, 2, 3), Vec3(-4, 5, -6)});
-    // Infinity in the last number, then a kind that there is not.
+    // Infinity in the last number, then an invalid kind.
     segment[segment.size() - 1] = std::byte{0x7F};
     segment[segment.size() - 2] = std::byte{0xF0};
     ByteReader infinite(segment);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// What the network tests rest on: delay, order, losses and counts are those that were asked for.
+/// Basis of the network tests: delay, order, losses and counts are the requested ones.
 
 #include "tests/relay/frame_content.hpp"
 #include "tests/relay/one_way.hpp"
@@ -32,7 +32,7 @@ MonotonicTime at_us(std::int64_t time)
     return MonotonicTime{} + microseconds(time);
 }
 
-/// An Ethernet frame of a protocol that the relay knows nothing of, or of ARP.
+/// Ethernet frame of a protocol unknown to the relay, or of ARP.
 Bytes numbered(std::uint32_t number, std::uint16_t type = 0x88B5)
 {
     Bytes frame(60, std::byte{0});
@@ -75,7 +75,7 @@ std::vector<Arrival> sent_over(OneWay& sut, const LinkCondition& condition)
     return arrivals(sut);
 }
 
-/// Within five standard deviations of what a share of so many frames should give.
+/// Expects a count within five standard deviations of the share.
 void expect_share(std::uint64_t found, double share, double frames)
 {
     EXPECT_NEAR(static_cast<double>(found), share * frames,

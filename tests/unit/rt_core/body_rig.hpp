@@ -29,7 +29,7 @@ inline const Vec3 kHalf(0.03, 0.02, 0.01);
     return spec;
 }
 
-/// A proxy among objects; what it is told of them is found by trying all triangles.
+/// Proxy among objects, with contacts found by trying all triangles.
 class Rig : public Solids
 {
 public:
@@ -69,7 +69,7 @@ public:
         }
         return output;
     }
-    /// Of the core; zero when it meets a triangle.
+    /// Distance of the core; zero if it meets a triangle.
     [[nodiscard]] double distance() const { return distance_at(sut.place()); }
     [[nodiscard]] double distance_at(const Similarity& place) const
     {
@@ -83,13 +83,13 @@ public:
     }
 
     AnswerKind kind{AnswerKind::exact};
-    double clear{kInfinity}; ///< Of everything else.
-    double lower_share{1.0}; ///< Of the true distance, as the proxy is told.
+    double clear{kInfinity}; ///< Clearance of everything else.
+    double lower_share{1.0}; ///< Reported lower bound as a share of the true distance.
     bool tells_corners{true};
-    bool takes_steps{false};            ///< As a frame: several where the proxy would go on.
-    double reach_m{0.002};              ///< Beyond the radius.
-    std::uint32_t steps{0};             ///< Of the last frame.
-    std::vector<Similarity> stations{}; ///< Where each of its steps ended.
+    bool takes_steps{false}; ///< Takes several steps in a frame if the proxy would continue.
+    double reach_m{0.002};   ///< Reach beyond the radius.
+    std::uint32_t steps{0};  ///< Steps of the last frame.
+    std::vector<Similarity> stations{}; ///< Ends of its steps.
 
 private:
     ToolOutput step_once(const ToolGoal& hand, double clear_m)
@@ -144,7 +144,7 @@ private:
             for (const Vec3& corner : core.corners())
             {
                 const auto under = closest_point_on_triangle(corner, triangle);
-                if (under.feature == TriangleFeature::interior) // It stands over the face.
+                if (under.feature == TriangleFeature::interior) // It is above the face.
                 {
                     keep(corner, under.point, reach, under.feature, face, report.corners, nullptr);
                 }
@@ -152,7 +152,7 @@ private:
         }
         return least;
     }
-    /// As the query does: the nearest, and the ends of all.
+    /// Selection like the query's: the nearest, and the extremes of all.
     static void keep(const Vec3& on_tool, const Vec3& on_surface, double reach,
                      TriangleFeature feature, std::uint32_t face, ContactSet& set,
                      ContactEnds* ends)

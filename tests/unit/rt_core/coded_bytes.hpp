@@ -15,7 +15,7 @@
 namespace tactus::test
 {
 
-/// CRC-32C bit by bit, without a table: the writer's side shares no code with the reader's.
+/// CRC-32C bit by bit, without a table: the writer shares no code with the reader.
 [[nodiscard]] inline std::uint32_t bitwise_crc32c(std::span<const std::byte> bytes)
 {
     std::uint32_t state = 0xFFFF'FFFFU;
@@ -42,7 +42,7 @@ public:
         bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
         return *this;
     }
-    /// A field of bits, lowest first, behind the field before.
+    /// Appends a field of bits, lowest first, after the previous one.
     CodedBytes& bits(std::uint32_t count, std::uint32_t value)
     {
         for (std::uint32_t i = 0; i < count; ++i, ++bit_)
@@ -78,14 +78,14 @@ private:
     std::size_t bit_{0};
 };
 
-/// What a test varies of a header: the fixed fields, one box an index page, region bits.
+/// Variable parts of a header: the fixed fields, one box for each index page, region bits.
 struct HeaderParts
 {
     HeaderFields fields;
     std::vector<IndexPageEntry> entries;
     std::vector<std::uint8_t> region_bits;
 
-    /// Fills `header_bytes` in and writes the parts down.
+    /// Sets `header_bytes` and writes the parts.
     [[nodiscard]] std::vector<std::byte> write()
     {
         fields.header_bytes =
@@ -108,7 +108,7 @@ struct HeaderParts
     }
 };
 
-/// A sound header for `records` records over 4 base vertices and 4 base faces: 16 bits, quanta of
+/// Sound header for `records` records over 4 base vertices and 4 base faces: 16 bits, quanta of
 /// 2^-10 m, extents 1000 x 2000 x 3000, regions of 1024 quanta in a grid of 1 x 2 x 3.
 [[nodiscard]] inline HeaderParts sound_header(std::uint32_t records)
 {
@@ -137,7 +137,7 @@ struct HeaderParts
     return parts;
 }
 
-/// Parses what must be sound.
+/// Header that must be sound.
 [[nodiscard]] inline ModelHeader parsed(std::span<const std::byte> bytes)
 {
     return ModelHeader::parse(bytes).value();

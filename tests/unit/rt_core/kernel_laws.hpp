@@ -13,14 +13,15 @@
 namespace tactus::test
 {
 
-/// What bounds are measured by: a face and a probe in extended precision, in quanta.
+/// Truth for bounds: a face and a probe in extended precision, in quanta.
 struct FaceTruth
 {
     long double distance{0.0L};
     long double corner{0.0L}; ///< Distance to the nearest corner.
-    long double local{0.0L};  ///< The longest of edges and distances to the corners.
+    long double local{0.0L};  ///< Greatest of edges and distances to the corners.
     long double longest{0.0L};
-    long double aspect{0.0L}; ///< Longest edge squared by twice the area; huge without an area.
+    /// Longest edge squared divided by twice the area; huge without an area.
+    long double aspect{0.0L};
 
     FaceTruth(const KernelScene& scene, std::uint32_t lane)
     {
@@ -40,7 +41,7 @@ struct FaceTruth
         aspect = area_twice > 0.0L ? longest * longest / area_twice : 1e30L;
     }
 
-    /// Within rounding of the limit a face may count as either.
+    /// True if the face may count as thin, within rounding of the limit.
     [[nodiscard]] bool may_be_thin() const { return aspect > 0.999L * kThinAspectLimit; }
 
     static constexpr long double kThinAspectLimit = static_cast<long double>(kThinAspect);
@@ -73,7 +74,7 @@ private:
     }
 };
 
-/// The bounds of one face as a kernel set gave them, in quanta.
+/// Bounds of one face by a kernel set, in quanta.
 struct LaneAnswer
 {
     float lower{0.0F};
@@ -81,8 +82,8 @@ struct LaneAnswer
     float corner{0.0F};
 };
 
-/// Asks for one face alone: its upper bound is then the new limit. Its corner's bound it gets only
-/// as a coarse face.
+/// Asks for one face alone: its upper bound is then the new limit. The corner's bound applies only
+/// to a coarse face.
 [[nodiscard]] inline LaneAnswer ask_lane(const Kernels& kernels, const KernelScene& scene,
                                          std::uint32_t lane)
 {
@@ -97,8 +98,8 @@ struct LaneAnswer
     return {lower, limit, bounds.corner[lane]};
 }
 
-/// What the answer breaks of kernels.hpp's law, or nothing: bounds are on their side of the truth
-/// and not farther from it than stated.
+/// Violation of kernels.hpp's law, if any: bounds are on their side of the truth and within the
+/// stated distance.
 [[nodiscard]] inline std::string law_fault(const LaneAnswer& answer, const FaceTruth& truth,
                                            const KernelProbe& probe)
 {
@@ -112,7 +113,7 @@ struct LaneAnswer
     std::ostringstream text;
     const auto check = [&](bool holds, const char* what, long double bound)
     {
-        if (!holds) // Also of what is no number.
+        if (!holds) // Includes NaN.
         {
             text << what << " " << bound << "; distance " << truth.distance << ", corner "
                  << truth.corner << ", local length " << truth.local << ", aspect " << truth.aspect

@@ -19,11 +19,11 @@
 namespace tactus::test
 {
 
-/// A block of 16 faces, a node's boxes and a probe: what the kernels are given.
+/// Input of the kernels: a block of 16 faces, a node's boxes and a probe.
 struct KernelScene
 {
     const char* shape{nullptr};
-    const char* place{nullptr}; ///< Of the probe.
+    const char* place{nullptr}; ///< Place of the probe.
     float quantum_m{1.0F};
     BlockGeometry block;
     AabbVolume::Rows boxes;
@@ -35,10 +35,10 @@ struct KernelScene
     [[nodiscard]] const float* box_rows() const { return boxes.low.front().data(); }
 };
 
-/// Corners in quanta; `size` is the half edge of the cube that they lie in, more or less.
+/// Corners in quanta; `size` is roughly half the edge of their cube.
 using QuantaTriangle = std::array<Vec3, 3>;
 
-/// A share of the length that makes triangles of aspects from about 10 to above 1e8.
+/// Share of the length for triangles of aspects from about 10 to above 1e8.
 [[nodiscard]] inline double thin_share(Random& random)
 {
     return std::exp2(-random.between(3.0, 28.0));
@@ -90,7 +90,7 @@ struct FaceShape
           {
               Vec3 a = random.in_cube(size);
               Vec3 step = random.in_cube(size / 4.0);
-              for (int axis = 0; axis < 3; ++axis) // Whole numbers: exactly in line.
+              for (int axis = 0; axis < 3; ++axis) // Whole numbers: exactly collinear.
               {
                   a[axis] = std::round(a[axis]);
                   step[axis] = std::round(step[axis]);
@@ -100,7 +100,7 @@ struct FaceShape
     return shapes;
 }
 
-/// Where a probe is, relative to a face in metres.
+/// Place of a probe relative to a face, in metres.
 struct ProbePlace
 {
     const char* name;
@@ -142,8 +142,7 @@ struct ProbePlace
     return places;
 }
 
-/// Five faces of the shape, and eleven more over their 15 vertices; the 16th row is no number and
-/// no face's.
+/// Five faces of the shape, and eleven more over their 15 vertices; the 16th row is NaN and unused.
 [[nodiscard]] inline BlockGeometry block_of(Random& random, const FaceShape& shape, double size,
                                             bool whole, float quantum_m)
 {
@@ -156,8 +155,7 @@ struct ProbePlace
             for (std::size_t axis = 0; axis < 3; ++axis)
             {
                 const double at = face[corner][static_cast<Eigen::Index>(axis)];
-                // Never minus zero, as models have none: sets may differ in the sign of a zero
-                // bound.
+                // Minus zero is avoided, as in models: sets may differ in the sign of a zero bound.
                 block.coordinates[axis][row + corner] =
                     static_cast<float>(whole ? std::round(at) : at) * quantum_m + 0.0F;
             }
@@ -219,7 +217,7 @@ struct ProbePlace
     return scene;
 }
 
-/// So many of each shape and place.
+/// `rounds` scenes of each shape and place.
 [[nodiscard]] inline std::vector<KernelScene> scenes(Random& random, int rounds)
 {
     std::vector<KernelScene> all;
@@ -236,7 +234,8 @@ struct ProbePlace
     return all;
 }
 
-/// What `ask` says of every set of kernels is, to the last bit, what it says of the portable one.
+/// Expects the same result of `ask` for every set of kernels as for the portable one, to the last
+/// bit.
 template <typename Ask>
 void expect_same_of_every_set(const KernelScene& scene, const Ask& ask)
 {

@@ -23,7 +23,7 @@ inline constexpr WalkBudget kAmple{10'000'000, 100'000'000};
     return {{rotation, random.in_cube(0.6), random.between(0.5, 2.0)}, random.in_cube(0.5)};
 }
 
-/// Faces of a style, of which a third are coarse unless `exact_only`.
+/// Adds faces of a style, a third of them coarse unless `exact_only`.
 inline void fill(TreeRig& rig, Random& random, std::uint32_t count, bool exact_only)
 {
     const FaceStyle& style = face_styles()[random.below(5)];

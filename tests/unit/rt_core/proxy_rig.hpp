@@ -19,7 +19,7 @@ namespace tactus::test
 
 inline constexpr double kRadius = 0.01;
 inline constexpr double kStiffness = 500.0;
-/// What the proxy leaves between itself and the goal it could reach, relative to the radius.
+/// Remaining distance between the proxy and the reachable goal, relative to the radius.
 inline constexpr double kRest = 3e-3;
 
 [[nodiscard]] inline ToolSpec ball_tool()
@@ -31,7 +31,7 @@ inline constexpr double kRest = 3e-3;
     return spec;
 }
 
-/// A first goal: seen, the proxy begins there.
+/// First goal, at which the proxy begins.
 [[nodiscard]] inline ToolGoal goal_at(const Vec3& position_m,
                                       const Vec3& velocity_m_per_s = Vec3(0.0, 0.0, 0.0))
 {
@@ -52,7 +52,7 @@ inline constexpr double kRest = 3e-3;
     return placed;
 }
 
-/// A proxy among objects whose surfaces are certified as far as `certified` (model frame).
+/// Proxy among objects whose surfaces are certified within `certified` (model frame).
 class ProxyRig : public Solids
 {
 public:
@@ -76,7 +76,7 @@ public:
         carry(sut);
         return respond(hand, planes, false);
     }
-    /// A frame of several lists, each cut short at `certified`, as the frame has it.
+    /// Frame of several lists, each truncated at `certified`, as in a frame.
     ToolOutput step_on(const Vec3& goal, const Vec3& velocity)
     {
         ToolOutput output;
@@ -107,7 +107,7 @@ public:
         }
         return output;
     }
-    /// The first object's point that is nearest.
+    /// Nearest point of the first object.
     [[nodiscard]] Vec3 nearest(const Vec3& point) const
     {
         ClosestPoint best;
@@ -132,15 +132,15 @@ public:
         }
         return least;
     }
-    /// Of the first object.
+    /// Material of the first object.
     [[nodiscard]] Material& material() { return objects[0].material; }
 
     Proxy sut;
     double quantum{1e-6};
     double certified{0.05};
-    double clear{kInfinity};                    ///< Of everything else.
-    std::uint32_t planes{Vicinity::kUnlimited}; ///< That it may look at in a frame.
-    std::uint32_t lists{0};                     ///< Of the last step_on().
+    double clear{kInfinity};                    ///< Clearance of everything else.
+    std::uint32_t planes{Vicinity::kUnlimited}; ///< Planes that it may evaluate in a frame.
+    std::uint32_t lists{0};                     ///< Lists of the last step_on().
 
 private:
     ToolOutput respond(const ToolGoal& hand, std::uint32_t left, bool is_cut)
@@ -161,7 +161,7 @@ private:
     }
 };
 
-/// The cosine of the angle between two forces.
+/// Cosine of the angle between two forces.
 [[nodiscard]] inline double cosine(const Vec3& a, const Vec3& b)
 {
     return a.dot(b) / (a.norm() * b.norm());

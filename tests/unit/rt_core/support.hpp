@@ -13,7 +13,7 @@
 namespace tactus::test
 {
 
-/// Memory for an arena, on the boundary that it asks for.
+/// Aligned memory for an arena.
 class ArenaMemory
 {
 public:

@@ -25,7 +25,7 @@ namespace tactus::test
 
 using TriangleList = std::vector<std::array<Vec3f, 3>>;
 
-/// A square of two triangles, counter-clockwise from its first corner.
+/// Square of two triangles, counter-clockwise from its first corner.
 inline void add_square(TriangleList& list, const Vec3& a, const Vec3& b, const Vec3& c,
                        const Vec3& d)
 {
@@ -33,7 +33,7 @@ inline void add_square(TriangleList& list, const Vec3& a, const Vec3& b, const V
     list.push_back({to_float(a), to_float(c), to_float(d)});
 }
 
-/// The plane z = 0, 2 m wide.
+/// Plane z = 0, 2 m wide.
 [[nodiscard]] inline TriangleList plane()
 {
     TriangleList list;
@@ -41,7 +41,7 @@ inline void add_square(TriangleList& list, const Vec3& a, const Vec3& b, const V
     return list;
 }
 
-/// The surface of the cube of half edge `half` round the origin, seen from both sides.
+/// Surface of the cube of half edge `half` around the origin, seen from both sides.
 [[nodiscard]] inline TriangleList cube(double half)
 {
     TriangleList list;
@@ -63,7 +63,7 @@ inline void add_square(TriangleList& list, const Vec3& a, const Vec3& b, const V
     return list;
 }
 
-/// The nearest distance from a point to the triangles.
+/// Least distance from a point to the triangles.
 [[nodiscard]] inline double distance_to(const TriangleList& list, const Vec3& point)
 {
     double least = std::numeric_limits<double>::infinity();
@@ -75,7 +75,7 @@ inline void add_square(TriangleList& list, const Vec3& a, const Vec3& b, const V
     return least;
 }
 
-/// What a query at `center_m` would say of these triangles with everything in `certified_m` exact.
+/// Answer of a query at `center_m` for these triangles, with all in `certified_m` exact.
 [[nodiscard]] inline std::unique_ptr<OwnedSurface>
 surface_of(const TriangleList& list, const Vec3& center_m, double certified_m)
 {
@@ -101,7 +101,7 @@ surface_of(const TriangleList& list, const Vec3& center_m, double certified_m)
     return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
 }
 
-/// An axis times the angle of the turn about it.
+/// Axis times the angle of the rotation.
 [[nodiscard]] inline Vec3 turned_between(const Mat3& from, const Mat3& to)
 {
     const Eigen::AngleAxisd turned(to * from.transpose());
@@ -118,7 +118,7 @@ surface_of(const TriangleList& list, const Vec3& center_m, double certified_m)
     return hand;
 }
 
-/// An object as triangles, all of them exact.
+/// Object of triangles, all exact.
 struct Solid
 {
     TriangleList triangles;
@@ -126,7 +126,7 @@ struct Solid
     Material material{};
 };
 
-/// Objects, what a proxy remembers of each, and where they stood in the frame before.
+/// Objects, the proxy's memory of each, and their poses in the previous frame.
 struct Solids
 {
     explicit Solids(std::vector<Solid> solids)
@@ -135,7 +135,7 @@ struct Solids
         std::ranges::transform(objects, stood.begin(), &Solid::pose);
     }
 
-    /// Tells the proxy of all of them where one has moved since the last frame.
+    /// Informs the proxy if an object has moved since the last frame.
     template <typename AnyProxy>
     void carry(AnyProxy& proxy)
     {
@@ -160,7 +160,7 @@ struct Solids
     std::vector<ObjectPose> stood;
 };
 
-/// What force and torque did on a hand that went so many times once round a closed way.
+/// Work of force and torque on a hand in `rounds` rounds of a closed path.
 template <typename AnyRig, typename Hand>
 double work_of_rounds(AnyRig& rig, const Hand& hand_of, int round, int rounds = 2)
 {

@@ -21,7 +21,7 @@ Vec3f random_point(Random& random)
     return to_float(random.in_cube(10.0));
 }
 
-/// On the outer side of the exact bound, and the float next to it is not.
+/// Expects the bound on the outer side of the exact one, and the adjacent float inside.
 void expect_tight_outside(const Aabb& box, float margin)
 {
     const Aabb grown = box.inflated(margin);
@@ -80,8 +80,8 @@ TEST(Aabb, holds_exactly_the_extremes_of_its_points)
     }
 }
 
-/// Of any numbers, and of grid coordinates by a model's errors: codes up to 141 hold 2^27 quanta,
-/// more than the largest model. By nothing it changes nothing.
+/// Random numbers, and grid coordinates with a model's errors: codes up to 141 hold 2^27 quanta,
+/// more than the largest model. A zero margin changes nothing.
 TEST(Aabb, inflation_rounds_outward_by_no_more_than_one_float)
 {
     Random random(14);

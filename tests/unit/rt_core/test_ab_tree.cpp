@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// I6: boxes hold their faces inflated by e, and are those of a tree refitted from scratch.
+/// I6: boxes hold their faces inflated by e, and equal those of a tree refitted from scratch.
 
 #include "tests/unit/rt_core/tree_support.hpp"
 #include "tests/unit/rt_core/tree_volumes.hpp"
@@ -38,7 +38,7 @@ void run_random_changes(const FaceStyle& style, const TreeCapacities& capacities
     std::uint32_t fullness = 50;
     for (int batch = 0; batch < batches; ++batch)
     {
-        // The share of prims in use wanders, so that the tree grows and shrinks.
+        // The share of used prims varies, so that the tree grows and shrinks.
         fullness = batch % 10 == 0 ? random.below(101) : fullness;
         rig.offer_again();
         const std::uint32_t changes = 1 + random.below(60);
@@ -283,8 +283,8 @@ TYPED_TEST(AbTreeOfAnyVolume, removing_all_faces_gives_every_block_and_node_back
 
 TYPED_TEST(AbTreeOfAnyVolume, faces_whose_paths_differ_only_in_the_last_bit_are_told_apart)
 {
-    // Odd multiplier: ids 2^31 apart differ in the highest mixed bit only, ids picked by the
-    // inverse differ in the lowest only.
+    // Odd multiplier: ids 2^31 apart differ in the highest mixed bit only, ids chosen by the
+    // inverse in the lowest only.
     std::uint32_t inverse = 0x9E37'79B9U;
     for (int i = 0; i < 5; ++i)
     {

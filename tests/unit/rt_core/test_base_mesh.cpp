@@ -19,8 +19,8 @@ struct CodedFace
     std::uint8_t error{0};
 };
 
-/// A tetrahedron that fills the header's extent, and a vertex without faces: with five vertices an
-/// id has three bits, so that there are ids to refuse.
+/// Tetrahedron that fills the header's extent, and a vertex without faces: with five vertices an id
+/// has three bits, so that some ids are invalid.
 struct CodedBase
 {
     std::array<std::array<std::uint32_t, 3>, 5> vertices{
@@ -41,7 +41,7 @@ struct CodedBase
             {
                 bytes.bits(3, corner);
             }
-            bytes.bits(4, face.bucket).bits(8, face.error); // Ranks below 100, so buckets to 12.
+            bytes.bits(4, face.bucket).bits(8, face.error); // Ranks below 100, so buckets up to 12.
         }
         return bytes.with_checksum();
     }

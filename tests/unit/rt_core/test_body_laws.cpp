@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// What a ball's proxy and a body's promise alike: free flight, pressure, objects that move, and
-/// what an object's material does. The oracles are the laws of statics, a spring's, a damper's and
-/// Coulomb's, and a texture's energy.
+/// Common laws of sphere and rigid proxies: free flight, pressure, moving objects, and materials.
+/// The oracles are the laws of statics, of a spring, a damper and Coulomb, and a texture's energy.
 
 #include "rt_core/force/texture.hpp"
 #include "tests/unit/rt_core/body_rig.hpp"
@@ -23,7 +22,7 @@ namespace tactus::test
 namespace
 {
 
-/// A tool, and how high it lies on a plane.
+/// Tool with its height at rest on a plane.
 struct Kind
 {
     ToolSpec spec;
@@ -34,14 +33,15 @@ struct Ball
 {
     using Rig = ProxyRig;
     static constexpr double kRest_m = kRadius;
-    static constexpr double kPlace_m = kRest * kRadius; ///< That a proxy may lack of its place.
-    static constexpr double kBalance_m = 3.0 * kSlipShare * 5e-4; ///< The same, on bumps.
-    static constexpr double kRoom = 1e-5;      ///< That it may lack of its radius, relative to it.
-    static constexpr double kTurnOff_nm = 0.0; ///< That may be left of a torque.
-    static constexpr double kSlip_m = kSlipShare * kRadius; ///< A way that is not worth a step.
+    static constexpr double kPlace_m = kRest * kRadius; ///< Allowed error of the proxy's place.
+    /// Allowed error of the place on bumps.
+    static constexpr double kBalance_m = 3.0 * kSlipShare * 5e-4;
+    static constexpr double kRoom = 1e-5;      ///< Allowed penetration relative to the radius.
+    static constexpr double kTurnOff_nm = 0.0; ///< Allowed remaining torque.
+    static constexpr double kSlip_m = kSlipShare * kRadius; ///< Least displacement worth a step.
     static constexpr double kBumpDepth_m = 1.5e-3;
-    static constexpr double kPressed_n = 1e-3; ///< Error of a normal force while the body slides.
-    static constexpr double kLag_n = 2e-3;     ///< Error of the drag that lets go.
+    static constexpr double kPressed_n = 1e-3; ///< Error of a normal force while the tool slides.
+    static constexpr double kLag_n = 2e-3;     ///< Error of the drag on release.
     static constexpr double kSpring_n = 1e-9;  ///< Error of a spring's force at rest.
     static constexpr double kBump_n = 1e-4;    ///< Error of a texture's normal force.
     static constexpr double kAcross_n = 2e-4;  ///< Error of its tangential force.
@@ -49,7 +49,7 @@ struct Ball
     static constexpr bool kTurns = false;
 
     static std::vector<Kind> kinds() { return {{ball_tool(), kRest_m}}; }
-    /// Small beside bumps, so that what the proxy leaves of a step is small, too.
+    /// Tool small compared with bumps, so that the proxy's remainder of a step is small too.
     static Kind on_bumps()
     {
         ToolSpec pin = ball_tool();
@@ -127,7 +127,7 @@ protected:
     {
         return Body::over(std::move(solids), Body::kinds()[0].spec, Vec3(0, 0, 0.05));
     }
-    /// Just touching a plane, above the origin.
+    /// Rig that just touches a plane, above the origin.
     static Rig on_plane(const Material& material, const Kind& kind = Body::kinds()[0])
     {
         Rig rig = Body::over({{plane(), {}, material}}, kind.spec, Vec3(0, 0, 0.05));
@@ -153,15 +153,15 @@ protected:
     {
         return output.force_n.head<2>().norm() / output.force_n.z();
     }
-    /// How far it comes along the plane when the hand pulls as weight does on such a slope, and the
-    /// force at the end.
+    /// Displacement along the plane if the hand pulls like the weight on such a slope, and the
+    /// final force.
     static std::pair<double, ToolOutput> pull(const Material& material, double slope_rad,
                                               double heading_rad)
     {
         Rig rig = on_plane(material);
         constexpr double kDepth = 0.004;
         const Vec3 along(std::cos(heading_rad), std::sin(heading_rad), 0.0);
-        // The hand is pressed in first, then drawn along, no farther ahead than weight has it.
+        // The hand presses first, then moves along, no farther ahead than the weight's share.
         ToolOutput last = hold(rig, at(0, 0, kDepth), 50);
         const Vec3 start = place(rig);
         for (int i = 0; i < 400; ++i)
@@ -186,7 +186,7 @@ Material rubbing(double static_friction, double dynamic_friction)
 
 TYPED_TEST(BodyLaws, in_free_flight_is_where_the_hand_is_without_a_force)
 {
-    for (const double step_m : {0.002, 1.0}) // The longer steps where there is no object at all.
+    for (const double step_m : {0.002, 1.0}) // The longer steps need space without objects.
     {
         auto rig = this->over(step_m < 0.1 ? std::vector<Solid>{{plane()}} : std::vector<Solid>{});
         Random random(1);
@@ -305,7 +305,7 @@ TYPED_TEST(BodyLaws, squeezed_between_objects_says_so_and_stays)
     int squeezed = 0;
     for (int i = 0; i < 300; ++i)
     {
-        ceiling_m -= i < 70 ? 1e-4 : 0.0; // Down to a millimetre less than there has to be.
+        ceiling_m -= i < 70 ? 1e-4 : 0.0; // Down to a millimetre below the needed space.
         const ToolOutput output = rig.step(hand);
         ASSERT_TRUE(output.proxy_m.allFinite() && output.force_n.allFinite());
         ASSERT_LE(output.force_n.norm(), TypeParam::kinds()[0].spec.force_max_n) << i;
@@ -460,7 +460,7 @@ TYPED_TEST(BodyLaws, viscosity_drags_with_viscosity_times_speed_beside_friction_
                 EXPECT_NEAR(output.force_n.x(), -drag_n, 0.01 * drag_n + 1e-3)
                     << viscosity << ' ' << friction << ' ' << speed;
                 EXPECT_NEAR(output.force_n.z(), kStiffness * 0.002, TypeParam::kPressed_n);
-                // The hand stands: what was held is let go, without a push beyond.
+                // The hand rests: the stored force is released, without a push beyond.
                 for (int i = 0; i < 400; ++i)
                 {
                     output = TypeParam::step_on(rig, this->at(speed * kPeriod_s * 600, 0, 0.002),
@@ -481,7 +481,7 @@ TYPED_TEST(BodyLaws, viscosity_lets_go_of_a_hand_at_rest_as_spring_and_damper_do
     auto rig = this->on_plane(material);
     static_cast<void>(this->hold(rig, this->at(0, 0, 0.002), 20));
     double stretch_m = 0.001;
-    // Backward Euler of v = K s / c, as a damper in series with a spring has it.
+    // Backward Euler of v = K s / c, a damper in series with a spring.
     const double kept = 5.0 / (5.0 + kStiffness * kPeriod_s);
     for (int frame = 0; frame < 40; ++frame)
     {
@@ -509,7 +509,7 @@ TYPED_TEST(BodyLaws, viscosity_takes_a_resting_hand_along_with_a_surface_that_sl
     EXPECT_NEAR(output.force_n.x(), 0.4, 0.01);
 }
 
-/// Over the stiffness: e(d) h(p).
+/// Energy e(d) h(p) divided by the stiffness.
 double energy(const Material& material, const ObjectPose& pose, const Vec3& at_m, double depth_m)
 {
     const Vec3 there_m = pose.rotation.inverse() * (at_m - pose.translation_m);
@@ -555,7 +555,7 @@ TYPED_TEST(BodyLaws, a_texture_is_felt_where_spring_and_bumps_are_in_balance)
         const ToolOutput output = this->hold(rig, hand, 200);
         const auto e_at = [&](double x, double depth_m)
         { return energy(material, {}, Vec3(x, 0.0, output.proxy_m.z()), depth_m); };
-        double proxy_m = hand.x(); // Where the energy is least: by halving what is wrong.
+        double proxy_m = hand.x(); // Place of least energy, by bisection.
         for (int round = 0; round < 100; ++round)
         {
             const double slope =
@@ -583,12 +583,13 @@ TYPED_TEST(BodyLaws, a_texture_makes_no_energy_on_closed_ways_and_turns)
         const auto work_over = [&](const Material& material, const ObjectPose& pose)
         {
             Random random(seed);
-            // From bump to bump: in at a crest and out at a trough would show a false energy.
+            // The path is between bumps: entry at a crest and exit at a trough would show a false
+            // energy.
             const Vec3 wide_m{random.between(4e-4, 1e-3), random.between(4e-4, 1e-3), 0.0};
             const double dip_m = random.between(2e-4, 8e-4);
             const double phase = random.between(0.0, 6.0);
             const double tilt_rad = random.between(0.005, 0.02);
-            constexpr int kRound = 8'000; // In steps so short that what is held makes next to none.
+            constexpr int kRound = 8'000; // Steps so short that their energy is negligible.
             const auto hand_of = [&](int step)
             {
                 const double angle = 2.0 * std::numbers::pi * step / kRound;
@@ -664,7 +665,7 @@ TEST(Texture, is_the_derivative_of_its_energy_and_keeps_within_its_bounds)
     EXPECT_EQ(Texture::at(Material{}, {}, Vec3(1, 2, 3), 0.01).push_m, 0.0);
 }
 
-/// A material that fades away passes every height, denormal ones too; D is then beyond all numbers.
+/// A material that fades out passes every height, including denormal ones; D is then infinite.
 TEST(Texture, of_any_height_is_a_number_and_no_more_than_the_bumps)
 {
     Random random(2502);

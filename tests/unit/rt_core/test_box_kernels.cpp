@@ -15,7 +15,7 @@ namespace tactus::test
 namespace
 {
 
-/// An index page in some part of the space, and balls near it.
+/// Index page in some part of the space, with spheres near it.
 struct BoxScene
 {
     QuantumBox page_box;
@@ -61,7 +61,7 @@ struct BoxScene
         }
     }
 
-    /// Lets a ball end at a box, or all but.
+    /// Moves a sphere to a box so that they touch, or nearly.
     void touch(std::uint32_t chunk)
     {
         QuantumBall& ball = balls[0].ball;
@@ -69,7 +69,7 @@ struct BoxScene
         ball.radius = std::max(ball.radius + off, 0.0);
     }
 
-    /// The least of the balls' distances from a box, in extended precision; negative inside one.
+    /// Least distance of the spheres from a box, in extended precision; negative inside one.
     [[nodiscard]] long double gap_to(std::uint32_t chunk) const { return gap_to(chunk, balls); }
     [[nodiscard]] long double gap_to(std::uint32_t chunk, std::span<const WantedBall> from) const
     {

@@ -18,7 +18,7 @@ namespace tactus::test
 namespace
 {
 
-/// A broad phase with its memory, and every ball in it once more.
+/// Broad phase with its memory, and a copy of every sphere.
 class Crowd
 {
 public:
@@ -43,7 +43,7 @@ public:
         const auto near = sut.near(tool);
         return {near.begin(), near.end()};
     }
-    /// Of the nearest ball that is not on the tool's list, in long double.
+    /// Distance of the nearest sphere that is not on the tool's list, in long double.
     [[nodiscard]] long double nearest_other(std::uint32_t tool, const Vec3& center) const
     {
         long double least = std::numeric_limits<long double>::infinity();
@@ -86,7 +86,7 @@ private:
     std::vector<Line> memory_;
 };
 
-/// Objects and tools that go about, come and go, in a world so large.
+/// Moves, adds and removes objects and tools in a world of this size, and checks the clearances.
 void expect_proofs(std::uint64_t seed, std::uint32_t objects, std::uint32_t tools, double world_m,
                    double radius_m)
 {
@@ -156,7 +156,7 @@ void expect_proofs(std::uint64_t seed, std::uint32_t objects, std::uint32_t tool
             }
             ASSERT_LE(crowd.sut.clear_m(i), crowd.nearest_other(i, centers[i]))
                 << "tool " << i << ", frame " << frame;
-            // What is asked for is proven, or waits for no longer than its turn takes.
+            // A requested clearance is proven, or waits no longer than its turn.
             const bool is_full = near.size() == kMaxNear;
             unproven[i] = crowd.sut.clear_m(i) < near_m && !is_full ? unproven[i] + 1 : 0;
             ASSERT_LE(unproven[i], (tools + kBroadWalks - 1) / kBroadWalks + 8);
@@ -173,7 +173,7 @@ TEST(BroadPhase, names_what_is_near_and_proves_that_nothing_else_is)
     }
     expect_proofs(seed_of(720), 1, 1, 1.0, 0.5);
     expect_proofs(seed_of(721), 65, 2, 2e4, 1.0);          // At the limit of places.
-    expect_proofs(seed_of(722), 300, kMaxTools, 1.0, 0.5); // Round every tool.
+    expect_proofs(seed_of(722), 300, kMaxTools, 1.0, 0.5); // Around every tool.
     expect_proofs(seed_of(723), kMaxObjects, 3, 1.0, 0.001);
 }
 
@@ -211,7 +211,7 @@ TEST(BroadPhase, at_rest_walks_once_and_lists_the_nearest_however_far)
         ASSERT_EQ(crowd.sut.walks(), 0U);
         ASSERT_EQ(crowd.sut.looked_at(), 0U);
     }
-    crowd.remove(0); // So that there is a nearest one, it looks again.
+    crowd.remove(0); // A new search is needed for the nearest one.
     crowd.sut.walk();
     EXPECT_EQ(crowd.near(0), std::vector<std::uint32_t>{1});
 }
@@ -248,7 +248,7 @@ TEST(BroadPhase, with_more_round_a_tool_than_fits_lists_the_nearest_and_is_clear
             continue;
         }
         EXPECT_NEAR(crowd.sut.clear_m(0), 0.01 * kMaxNear - 0.001, 1e-12);
-        // Another walk would find the same: not in every frame.
+        // Another walk would find the same, so it does not happen in every frame.
         std::uint32_t walks = 0;
         for (int i = 0; i < 80; ++i)
         {

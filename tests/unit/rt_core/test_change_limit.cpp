@@ -34,7 +34,7 @@ public:
         return limits;
     }
 
-    /// The force that goes out where this one is wanted.
+    /// Output force for this input.
     Vec3 step(Vec3 wanted_n, const Vec3& wanted_nm = Vec3(0.0, 0.0, 0.0))
     {
         last = {};
@@ -47,7 +47,7 @@ public:
         sut.follow(last, own_n, Vec3(0.0, 0.0, 0.0));
         return last.push.force_n;
     }
-    /// Until this force goes out, without the hand.
+    /// Steps until this force is output, with a resting hand.
     void bring_in(const Vec3& force_n)
     {
         for (int i = 0; i < 1'000 && step(force_n) != force_n; ++i)
@@ -140,7 +140,7 @@ TEST(ChangeLimit, a_force_doesnt_turn_round_at_once)
     LimitedChange tool;
     tool.bring_in(Vec3(4.0, 0.0, 0.0));
     EXPECT_LT((tool.step(Vec3(-4.0, 0.0, 0.0)) - Vec3(4.0 - kSlew_n, 0.0, 0.0)).norm(), kTight);
-    tool.period.is_touching = false; // Through zero, where it may fall.
+    tool.period.is_touching = false; // The force crosses zero, which is a permitted decrease.
     EXPECT_LT((tool.step(Vec3(-4.0, 0.0, 0.0)) - Vec3(-kSlew_n, 0.0, 0.0)).norm(), kTight);
 }
 

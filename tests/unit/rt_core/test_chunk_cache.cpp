@@ -18,22 +18,22 @@ namespace tactus::test
 namespace
 {
 
-/// Eight chunks in a row along x: chunk i's influence box is 100 i .. 100 i + 50 quanta in x and
-/// 0 .. 50 in y and z. The index page's box starts at -10, so its steps are of one quantum.
+/// Eight chunks in a row along x: chunk i's influence box is 100 i .. 100 i + 50 quanta in x and 0
+/// .. 50 in y and z. The index page's box starts at -10, so its steps are of one quantum.
 constexpr std::uint32_t kChunks = 8;
 constexpr double kQuantum = 0x1p-10;
 
-/// A ball round a place on the row, in quanta.
+/// Sphere around a place on the row, in quanta.
 RankedRegion ball(double x, double radius, std::int64_t lead_ns = 0)
 {
     return {ModelId{0}, Vec3(x, 25.0, 25.0) * kQuantum, radius * kQuantum, lead_ns};
 }
 
-/// A cache with its table and inbox, and the transport thread's part played by the test.
+/// Cache with its table and inbox; the test acts as the transport thread.
 class CacheRig
 {
 public:
-    /// A second index page's row of chunks begins here, in quanta.
+    /// Start of a second index page's row of chunks, in quanta.
     static constexpr std::int32_t kPageDistance = 100'000;
 
     CacheRig(std::uint32_t pages, std::uint32_t index_pages, std::uint32_t records,
@@ -61,7 +61,7 @@ public:
         }
     }
 
-    /// One frame; returns the pieces asked for, in order.
+    /// One frame; returns the requested pieces in order.
     std::vector<ContentKey> ask(std::initializer_list<RankedRegion> regions)
     {
         faults = FrameFault::none;
@@ -100,7 +100,7 @@ public:
         free_pages_.pop_front();
         ASSERT_TRUE(pool_->door.arrived.try_push({{ContentKind::chunk, chunk}, slot_of[chunk]}));
     }
-    /// One frame in which the whole model is asked for.
+    /// One frame that requests the whole model.
     std::vector<ContentKey> fill()
     {
         ask({});
@@ -121,7 +121,7 @@ public:
         }
         ASSERT_TRUE(pool_->door.arrived.try_push({{ContentKind::index_page, page}, slot}));
     }
-    /// Asks and delivers until nothing is asked for any more.
+    /// Requests and delivers until there are no further requests.
     void load(std::initializer_list<RankedRegion> regions)
     {
         for (auto keys = ask(regions); !keys.empty(); keys = ask(regions))
@@ -140,8 +140,8 @@ public:
     [[nodiscard]] std::size_t free_pages() const { return free_pages_.size(); }
     PageTable& table() { return *table_; }
     CachePool& pool() { return *pool_; }
-    /// Another model of the same pieces in the same pool, all of whose pages but `kept` anybody may
-    /// have.
+    /// Another model of the same pieces in the same pool, with all pages but `kept` available to
+    /// others.
     struct Neighbour
     {
         Neighbour(CacheRig& rig, std::uint32_t owner, std::uint32_t kept)
@@ -152,7 +152,7 @@ public:
         PageTable table;
         ChunkCache cache;
     };
-    /// A piece of a model comes, which nobody may have asked for.
+    /// Delivers a piece of a model, possibly an unrequested one.
     void bring(ContentKey key, std::uint8_t owner)
     {
         auto& free = key.kind == ContentKind::chunk ? free_pages_ : free_index_;
@@ -354,7 +354,7 @@ TEST(ChunkCache, present_need_takes_the_place_of_what_was_only_predicted)
     CacheRig rig = one_index_page(2);
     rig.load({ball(25, 10), ball(725, 10, 15'000'000)});
     ASSERT_TRUE(rig.has(0) && rig.has(7));
-    // Adoption counts as a use; after as many frames only the present counts.
+    // Adoption counts as a use; after this many frames only the present counts.
     rig.frame += 2'000;
 
     Chunks asked;
@@ -390,14 +390,14 @@ TEST(ChunkCache, late_arrivals_never_let_more_be_asked_for_than_there_are_slots)
     rig.ask({ball(25, 10)});
     rig.deliver_index_page(0);
     ASSERT_EQ(rig.ask_chunks({ball(125, 120)}), (Chunks{0, 1, 2}));
-    // The network stalls until all three wishes have run out; then two others are wanted.
+    // The network stalls until all three requests have expired; then two others are wanted.
     rig.frame += kWishTimeoutFrames + 1;
     for (int i = 0; i < 4; ++i)
     {
         ASSERT_TRUE(rig.ask({}).empty());
     }
     ASSERT_EQ(rig.ask_chunks({ball(575, 50)}), (Chunks{5, 6}));
-    // Two of the first three come after all: one slot is left for two wishes.
+    // Two of the first three arrive after all: one slot is left for two requests.
     rig.deliver_chunk(0);
     rig.deliver_chunk(1);
     rig.ask({});
@@ -417,7 +417,7 @@ TEST(ChunkCache, asks_for_what_comes_into_a_ball_however_slowly_it_moves)
     sut.load({ball(20, 10)});
     Chunks asked;
 
-    // From chunk 0 to chunk 1, each frame within what was searched for shortly before.
+    // The path is from chunk 0 to chunk 1, each frame within a recent search.
     for (int i = 0; i <= 800; ++i)
     {
         const double x = 20.0 + 0.1 * i;
@@ -533,14 +533,14 @@ TEST(ChunkCache, has_no_more_wishes_under_way_for_a_whole_model_than_the_limit)
 
 TEST(ChunkCache, has_no_more_wishes_under_way_than_the_transport_side_remembers)
 {
-    constexpr std::uint32_t kPages = 40; // With eight chunks each that the ball meets.
+    constexpr std::uint32_t kPages = 40; // The sphere meets eight chunks of each.
     constexpr std::uint32_t kSlots = SlotDoor::kOpenWishes + 32;
     CacheRig rig(kSlots, kPages, kPages * kChunksPerIndexPage * kRecordsPerChunk);
     rig.budgets.requests = kSlots;
     for (std::uint32_t page = 0; page < kPages; ++page)
     {
         rig.deliver_index_page(page);
-        rig.ask({}); // It was not asked for: it is to be here before it is missed.
+        rig.ask({}); // It was prefetched before it is needed.
     }
     const RankedRegion everything = ball(0, kPages * CacheRig::kPageDistance);
     const auto ask_for_long = [&]
@@ -617,7 +617,7 @@ TEST(ChunkCache, in_a_large_pool_looks_at_some_pages_a_wish_and_refuses_after_al
         {
             sut.ask({});
         }
-        constexpr std::uint32_t kFree = kPages - 5; // Of the last ones that are looked at.
+        constexpr std::uint32_t kFree = kPages - 5; // Of the last pages in the search.
         for (std::uint32_t chunk = 0; chunk < kPages; ++chunk)
         {
             if (chunk != kFree || !is_one_free)

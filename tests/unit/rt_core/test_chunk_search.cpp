@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// What a cache asks for, frame by frame, held against a search of all boxes of the model.
+/// Requests of a cache, frame by frame, compared with a search of all boxes of the model.
 
 #include "rt_core/cache/chunk_cache.hpp"
 #include "tests/unit/rt_core/coded_bytes.hpp"
@@ -25,10 +25,10 @@ namespace
 constexpr std::uint32_t kModelChunks = 11 * 64 + 13; ///< The last of twelve index pages is short.
 constexpr std::uint32_t kModelPages = 12;
 constexpr double kModelQuantum = 0x1p-10;
-constexpr double kModelSide = 100'000.0; ///< The model's side, in quanta.
+constexpr double kModelSide = 100'000.0; ///< Side of the model in quanta.
 constexpr std::uint32_t kMovingTools = 3;
 
-/// A tool as it moves in the world, in quanta of a model that is not scaled.
+/// Moving tool in the world, in quanta of an unscaled model.
 struct MovingTool
 {
     Vec3 center{0.0, 0.0, 0.0};
@@ -38,7 +38,7 @@ struct MovingTool
     bool looks_ahead{true};
 };
 
-/// Where the model stands.
+/// Position of the model.
 struct MovingModel
 {
     Vec3 at{0.0, 0.0, 0.0};
@@ -51,7 +51,7 @@ struct SearchCase
     const char* name;
     std::uint32_t page_slots{kModelChunks};
     std::uint32_t index_slots{kModelPages};
-    std::uint32_t lost_in_100{0}; ///< Wishes that are never answered.
+    std::uint32_t lost_in_100{0}; ///< Percentage of requests without an answer.
     Budgets budgets;
 };
 
@@ -73,7 +73,7 @@ double distance_to(const Vec3& place, const std::array<Vec3, 2>& box)
 
 using AskedKeys = std::vector<ContentKey>;
 
-/// A model of random boxes, the tools on their ways, and the transport thread's part.
+/// Model of random boxes with moving tools and the transport thread's part.
 class ChunkSearchRig
 {
 public:
@@ -85,7 +85,7 @@ public:
         const ModelHeader header = parsed(bytes_);
         slots_ = PageSlots::take(arena_, header.counts(), case_.page_slots, case_.index_slots);
         pool_.emplace(arena_, case_.page_slots, case_.index_slots, 1);
-        pool_->set_period(10'000'000); // A wish is lost after 25 frames.
+        pool_->set_period(10'000'000); // A request is lost after 25 frames.
         table_.emplace(pool_->pages, 0, slots_);
         sut.emplace(*pool_, ChunkCache::Kept{}, header, slots_, *table_, kernels);
         for (std::uint32_t slot = 0; slot < case_.page_slots; ++slot)
@@ -102,7 +102,7 @@ public:
         }
     }
 
-    /// One frame; what it asked for.
+    /// One frame; returns its requests.
     AskedKeys step(bool moves)
     {
         ++frame;
@@ -126,7 +126,7 @@ public:
         return take_wishes();
     }
 
-    /// The least level at which each chunk is met, of those whose index page is here or of all.
+    /// Least level of each met chunk, of resident index pages or of all.
     [[nodiscard]] std::map<std::uint32_t, std::uint32_t> met(bool of_all = false) const
     {
         std::map<std::uint32_t, std::uint32_t> levels;
@@ -162,7 +162,7 @@ public:
         return table_->find({chunk}) != IdTable::kAbsent;
     }
     [[nodiscard]] bool had_chunk(std::uint32_t chunk) const { return before_.contains(chunk); }
-    /// It was asked for, and neither came nor may have been given up.
+    /// True if it was requested, has not arrived and may not have been dropped.
     [[nodiscard]] bool may_be_under_way(ContentKey key) const
     {
         const auto found = asked_.find({key.kind, key.number});
@@ -188,7 +188,7 @@ public:
 private:
     using AskedKey = std::pair<ContentKind, std::uint32_t>;
 
-    /// Each index page's chunks lie in one part of the model, more or less near each other.
+    /// Boxes of each index page in one part of the model, at random distances.
     void make_boxes()
     {
         for (std::uint32_t page = 0; page < kModelPages; ++page)
@@ -213,7 +213,7 @@ private:
             }
         }
     }
-    /// Within its page's box, near that place in it.
+    /// Box within its page's box, near that place in it.
     InfluenceBox random_box(const QuantumBox& page, Vec3& near)
     {
         InfluenceBox box;
@@ -228,7 +228,7 @@ private:
         }
         return box;
     }
-    /// The least whole number of quanta of which 65,535 span the page.
+    /// Least whole number of quanta of which 65,535 span the page.
     static double step_of(const QuantumBox& page, std::size_t axis)
     {
         return std::floor((page.high[axis] - page.low[axis]) / 65'535.0) + 1.0;
@@ -297,7 +297,7 @@ private:
         model_.velocity *= random_.one_in(30) ? 0.0 : 1.0;
     }
 
-    /// In the order of pairs, each with the balls where its tool will be.
+    /// Spheres in the order of pairs, at the tools' predicted places.
     [[nodiscard]] RegionRanking balls()
     {
         RegionRanking ranking;
@@ -420,7 +420,7 @@ private:
     std::deque<std::uint32_t> free_chunks_;
     std::deque<std::uint32_t> free_index_;
     std::map<std::uint32_t, std::uint32_t> slot_of_index_;
-    std::map<AskedKey, std::uint32_t> asked_; ///< In which frame, what hasn't come.
+    std::map<AskedKey, std::uint32_t> asked_; ///< Frame of each request that is still open.
     std::vector<std::pair<ContentKey, std::uint32_t>> coming_;
     std::set<std::uint32_t> before_;
     std::array<MovingTool, kMovingTools> tools_;
@@ -443,7 +443,7 @@ class ChunkSearch : public testing::TestWithParam<SearchCase>
 {
 };
 
-/// Frames from a wish to what it brings, or to asking again, and as many to search twice.
+/// Frames from a request to its answer or repetition, and as many for two searches.
 constexpr std::uint32_t kSettledFrames = 400;
 
 TEST_P(ChunkSearch, asks_in_each_frame_for_what_a_search_of_all_boxes_asks_for)

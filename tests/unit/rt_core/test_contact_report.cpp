@@ -24,7 +24,7 @@ namespace
 
 using Mesh = std::vector<std::array<Vec3f, 3>>;
 
-/// A grid closed in both directions, so every vertex has six faces.
+/// Grid closed in both directions, so that every vertex has six faces.
 Mesh torus(std::uint32_t around, std::uint32_t across)
 {
     const auto vertex = [&](std::uint32_t i, std::uint32_t j)
@@ -46,7 +46,7 @@ Mesh torus(std::uint32_t around, std::uint32_t across)
     return faces;
 }
 
-/// An octahedron, its corners moved along their axes by any lengths: sharp ones, all star-shaped.
+/// Octahedron with corners moved along their axes: sharp, always star-shaped.
 Mesh spiked(Random& random)
 {
     std::array<Vec3f, 6> corners;
@@ -67,7 +67,7 @@ Mesh spiked(Random& random)
     return faces;
 }
 
-/// A step: concave edges, and a vertex whose faces bend both ways.
+/// Step with concave edges, and a vertex whose faces bend both ways.
 Mesh step()
 {
     const std::array<std::array<float, 2>, 6> outline{
@@ -89,8 +89,8 @@ Mesh step()
     return faces;
 }
 
-/// How often a closed mesh goes round a point: the sum of its faces' solid angles (van Oosterom and
-/// Strackee 1983).
+/// Winding number of a closed mesh about a point: the sum of its faces' solid angles (van Oosterom
+/// and Strackee 1983).
 long double winding_number(const Mesh& mesh, const Vec3& point)
 {
     long double sum = 0;
@@ -112,7 +112,7 @@ long double winding_number(const Mesh& mesh, const Vec3& point)
     return sum / (4 * std::numbers::pi_v<long double>);
 }
 
-/// A mesh in a tree, all exact, in an order of its own.
+/// Mesh in a tree, all exact, in a random order.
 struct Placed
 {
     Placed(const Mesh& mesh, Random& random)
@@ -154,7 +154,7 @@ PlacedCore point_at(const Vec3& at)
     return {PointCore{}, {Mat3::Identity(), at, 1.0}};
 }
 
-/// Near a corner, an edge or anywhere.
+/// Point near a corner, an edge or anywhere.
 Vec3 point_near(const Mesh& mesh, Random& random)
 {
     const auto& face = mesh[random.below(static_cast<std::uint32_t>(mesh.size()))];
@@ -185,7 +185,7 @@ TEST(ContactReport, sides_agree_with_the_winding_number)
             const DistanceAnswer& answer = sut.surface->answer;
             if (!(answer.lower_m > 1e-12))
             {
-                continue; // On the surface neither can tell.
+                continue; // Neither can decide on the surface.
             }
             ASSERT_EQ(report.side, winding > 0.5L ? Side::inside : Side::outside)
                 << "at " << at.transpose() << ", winding " << static_cast<double>(winding);
@@ -220,7 +220,7 @@ TEST(ContactReport, where_faces_are_missing_there_is_no_side_even_if_the_mesh_is
     Mesh mesh = step();
     mesh.erase(mesh.begin()); // One of the first side's.
     Placed sut(mesh, random);
-    // Nearest to the edge that the lost face left open, and to its corner.
+    // Nearest to the edge that the removed face left open, and to its corner.
     EXPECT_EQ(sut.report(point_at(Vec3(0.4, -0.01, -0.2)), 0.0, true).side,
               Side::unsigned_distance);
     EXPECT_EQ(sut.report(point_at(Vec3(1.01, -0.01, -0.01)), 0.0, true).side,
@@ -238,7 +238,7 @@ TEST(ContactReport, beyond_what_is_certified_there_is_no_normal)
     EXPECT_EQ(report.contacts.size(), 0U);
 }
 
-/// A disc of so many faces round a vertex at the origin.
+/// Disc of `faces` faces around a vertex at the origin.
 Mesh fan(std::uint32_t faces)
 {
     const auto rim = [faces](std::uint32_t i)
@@ -330,7 +330,7 @@ TEST(ContactReport, contacts_are_the_faces_within_the_radius_nearest_first)
     EXPECT_GT(most, kMaxContacts);
 }
 
-/// ContactEnds' directions, of unit length.
+/// Directions of ContactEnds, of unit length.
 std::vector<Vec3> end_directions()
 {
     std::vector<Vec3> directions;

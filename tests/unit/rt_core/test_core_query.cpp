@@ -40,7 +40,7 @@ PlacedCore random_core(Random& random)
                : PlacedCore(Box{{size, size * random.between(0.0, 1.0), 0.3 * size}}, place);
 }
 
-/// The answer by measuring every face, with the kernel that PlacedCore's own tests hold.
+/// Answer by measuring every face, with the kernel that PlacedCore's tests check.
 struct CoreTruth
 {
     double lower{kInfinity};
@@ -152,7 +152,7 @@ TEST(CoreQuery, brackets_the_distance_and_finds_what_measuring_every_face_finds)
             ASSERT_LE(answer.lower_m, truth.lower + 1e-14);
             ASSERT_LE(answer.certified_radius_m, reach);
             ASSERT_LE(answer.certified_radius_m, std::max(0.0, truth.coarse_lower));
-            // Within the certified distance everything is listed; nothing beyond reach is.
+            // Everything within the certified distance is listed; nothing beyond the reach is.
             const auto listed = faces_of(*rig.sut, *asked.surface);
             ASSERT_TRUE(std::includes(truth.in_reach.begin(), truth.in_reach.end(), listed.begin(),
                                       listed.end()));
@@ -160,7 +160,7 @@ TEST(CoreQuery, brackets_the_distance_and_finds_what_measuring_every_face_finds)
             {
                 ASSERT_EQ(listed, truth.in_reach);
             }
-            // What is coarse counts as far away as measuring says, and no nearer.
+            // Coarse faces count with their measured distance, and no less.
             if (truth.coarse_lower > 0.0)
             {
                 ASSERT_GE(answer.certified_radius_m, std::min(reach, truth.coarse_lower) - 1e-12);

@@ -26,7 +26,7 @@ constexpr double kRounding = 1e-12;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-/// 10 N at most.
+/// Device of at most 10 N.
 ConditionerSetup plain_setup()
 {
     ConditionerSetup setup;
@@ -37,7 +37,7 @@ ConditionerSetup plain_setup()
     return setup;
 }
 
-/// A wall's and a program's force together, as one tool's.
+/// Force of a wall and of a program together, for one tool.
 ToolForce with_own(const ForceWish& wish, const OwnForce& own)
 {
     ToolForce both;
@@ -71,7 +71,7 @@ TEST(OwnForce, two_springs_hold_together_what_each_holds)
     constexpr double kOwn = 300.0;
     for (const double own_n : {2.0, -1.0, 0.5})
     {
-        for (const double over_m : {0.0, 0.004}) // The wall's force may be cut short.
+        for (const double over_m : {0.0, 0.004}) // The wall's force may be clamped.
         {
             ForceWish wish = force(3.0);
             wish.stiffness_n_per_m = kWall;
@@ -107,7 +107,7 @@ TEST(OwnForce, without_one_the_wish_is_as_it_was_and_in_the_air_its_spring_is_al
     EXPECT_NEAR(torque.stretch_m, 0.1, kRounding);
 }
 
-/// A hand goes to and fro across a spring of the program's own. One that comes late makes energy.
+/// A hand moves across a spring of the program's own. A delayed one generates energy.
 TEST(OwnForce, that_is_a_spring_is_not_damped_and_one_that_makes_energy_is)
 {
     for (const int late : {0, 40})
@@ -267,12 +267,12 @@ TEST(ForceConditioner, a_force_that_a_gain_lets_in_slowly_comes_from_somewhere)
         }
         const SpringForce out = condition(sut, wish);
         EXPECT_EQ(out.force_n, wish.force_n);
-        // Without a ramp it is what the wall holds that nobody pressed.
+        // Without a ramp it is the wall's energy that the hand did not supply.
         EXPECT_NEAR(out.surplus_j, is_ramp ? 0.0 : 0.5 * 4.0 * 4.0 / 1'000.0, kRounding);
     }
 }
 
-/// A wall that is moved does work on a hand that goes along; that is theirs who move it.
+/// A moved wall does work on a hand that it carries; that work is its mover's.
 TEST(ForceConditioner, takes_no_work_of_those_who_move_a_wall_for_the_walls)
 {
     for (const bool is_carried : {true, false})
@@ -305,7 +305,7 @@ TEST(ForceConditioner, counts_the_work_of_a_force_held_through_a_stall)
     EXPECT_NEAR(condition(sut, wish).work_j, 0.01, kRounding);
     wish.position_m = Vec3(0.0, 0.02, 0);
     EXPECT_NEAR(condition(sut, wish).work_j, 0.01 - 0.005, kRounding);
-    wish.elapsed_periods = 0; // Counts as one; 10 m/s is as fast as devices get.
+    wish.elapsed_periods = 0; // Counts as one; 10 m/s is the greatest speed of a device.
     wish.position_m = Vec3(0.02, 0.02, 0);
     EXPECT_EQ(condition(sut, wish).actions, ForceAction::blind);
 }
@@ -337,7 +337,7 @@ TEST(ForceConditioner, says_that_it_sees_wrongly_what_a_long_delay_hides)
 
 TEST(ForceConditioner, adds_no_damping_that_makes_less_force_than_the_least)
 {
-    // A force that leaves with the device gives energy away: 0.1 N over `way` in the second frame.
+    // A force along the device's motion generates energy: 0.1 N over `way` in the second frame.
     const auto damped_n = [](double way_m)
     {
         ConditionerSetup setup = plain_setup();
@@ -366,7 +366,7 @@ TEST(ForceConditioner, damps_what_came_from_nowhere_and_never_pulls)
     std::uint32_t damped = 0;
     double speed = 0.0;
     double x = 0.0;
-    std::array<double, 3> places{}; // A wall that is two frames late gives energy away.
+    std::array<double, 3> places{}; // A wall with two frames of delay generates energy.
     for (int i = 0; i < 5'000; ++i)
     {
         speed = std::clamp(speed + random.between(-0.02, 0.02) - x, -0.3, 0.3);
@@ -406,7 +406,7 @@ TEST(ForceConditioner, takes_the_same_bits_to_the_same_bits)
 namespace
 {
 
-/// Of 10 N and 0.5 N m, with caps of 3,600 N/m and 1.8 N m/rad, no more.
+/// Device of 10 N and 0.5 N m, with limits of exactly 3,600 N/m and 1.8 N m/rad.
 ConditionerSetup turning_setup()
 {
     ConditionerSetup setup = plain_setup();
@@ -427,7 +427,7 @@ WrenchWish wrench(const Vec3& force_n, const Vec3& torque_nm, double stiffness =
             {torque_nm, Vec3(0, 0, 0), angular, 0.0, 1}};
 }
 
-/// What is left of each, which is to be one gain.
+/// Expects the same gain of force and torque.
 void expect_gain(const WrenchWish& wish, double gain, ForceAction on_force, ForceAction on_torque)
 {
     WrenchConditioner sut(turning_setup());
@@ -468,8 +468,8 @@ TEST(WrenchConditioner, caps_by_the_damping_of_what_is_touched_and_of_nothing_el
         return condition(sut, wish).push.force_n.x();
     };
     EXPECT_NEAR(force_of(0.0), 1.0, kRounding);
-    // There and back within the time that a material takes to change, step by step; in free air at
-    // once.
+    // The force changes there and back within the time of a material change, step by step; in free
+    // air at once.
     double before = 1.0;
     for (int ms = 1; ms <= 100; ++ms)
     {
@@ -491,7 +491,8 @@ TEST(WrenchConditioner, takes_of_the_damping_what_its_lever_makes_of_it_and_half
 {
     ConditionerSetup setup = turning_setup();
     setup.lever_max_m = 0.02;
-    // Of 1e-3 N m s/rad: 1.8 N m/rad less 0.9 x 2 x 4e-4 / T, and half of it for all that is more.
+    // Damping of 1e-3 N m s/rad: 1.8 N m/rad minus 0.9 x 2 x 4e-4 / T, and half of it for all
+    // higher values.
     for (const auto& [damping, cap_nm_per_rad] : {std::pair(1.0, 1.08), std::pair(1.9, 0.9)})
     {
         WrenchConditioner sut(setup);

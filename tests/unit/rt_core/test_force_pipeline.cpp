@@ -27,7 +27,7 @@ namespace
 constexpr double kHandSpeed_m_per_s = 0.8;
 constexpr double kObjectSpeed_m_per_s = 0.5;
 
-/// A ball, or a box of 1 cm, on this device.
+/// Sphere, or a box of 1 cm, on this device.
 PipelineSetup piped(const DeviceLimits& device, bool is_box = false)
 {
     ToolSpec tool;
@@ -64,7 +64,7 @@ public:
             static_cast<void>(step());
         }
     }
-    /// The surface is at the height 0, and the hand so far below it.
+    /// Places the surface at height 0 and the hand below it.
     void press(double depth_m)
     {
         state.position_m = Vec3(0.0, 0.0, -depth_m);
@@ -81,7 +81,7 @@ public:
     PeriodContext context;
 };
 
-/// Least distance from `now` to a point between `from` and `to`, found by trying.
+/// Least distance from `now` to a point between `from` and `to`, by trial.
 double beside(const Vec3& from, const Vec3& to, const Vec3& now)
 {
     double low = 0.0;
@@ -102,8 +102,8 @@ double beside(const Vec3& from, const Vec3& to, const Vec3& now)
     return off(0.5 * (low + high));
 }
 
-/// A tool to which everything happens at random: what the frame says, the program, the device, the
-/// loop and those who move objects.
+/// Tool with random events of all kinds: of the frame, the program, the device, the loop and moving
+/// objects.
 class WildTool
 {
 public:
@@ -112,7 +112,7 @@ public:
     {
     }
 
-    /// The next period, in which the law is to hold.
+    /// Next period, in which the law must hold.
     void step(std::uint32_t frame)
     {
         const Vec3 last_n = tool_.sut.force().push.force_n;
@@ -220,7 +220,7 @@ private:
         tool_.state.rotation = orthonormalised(turned_by(turn, tool_.state.rotation));
         tool_.output.proxy_m = tool_.state.position_m + random_.in_cube(0.002);
     }
-    /// Causes of the loop, of the device and of the frame's own numbers.
+    /// Sets causes of the loop, of the device and of invalid numbers in the frame.
     void spoil()
     {
         constexpr std::array kCauses{ForceOff::stale, ForceOff::host, ForceOff::jump,
@@ -262,7 +262,7 @@ TEST(ForcePipeline, gives_no_force_to_a_hand_whose_rotation_is_none)
     {
         for (const bool is_box : {false, true})
         {
-            for (const bool is_held : {false, true}) // The device's own word, beside the tool's.
+            for (const bool is_held : {false, true}) // The device's own flag, besides the tool's.
             {
                 PipedTool tool(piped(kOmegaClass, is_box));
                 tool.press(0.004);
@@ -310,7 +310,7 @@ TEST(ForcePipeline, holds_the_law_on_change_in_every_pair_of_periods_whatever_ha
     }
 }
 
-/// The touch of a wall within what the device may have.
+/// Touch of a wall within the device's limits.
 TEST(ForcePipeline, lets_an_honest_touch_through_as_it_is)
 {
     for (const auto& [device, stiffness, speed] :
@@ -319,7 +319,7 @@ TEST(ForcePipeline, lets_an_honest_touch_through_as_it_is)
     {
         PipedTool tool(piped(device));
         tool.output.in_contact = false;
-        tool.steps(200); // Until the gain is whole.
+        tool.steps(200); // Steps until the gain is one.
         tool.output.stiffness_n_per_m = stiffness;
         const double way_m = speed * kPeriod_s;
         const auto depth_m = [way_m](int i) { return way_m * std::min(i, 60 - i); };
@@ -331,7 +331,7 @@ TEST(ForcePipeline, lets_an_honest_touch_through_as_it_is)
             const ToolForce& force = tool.step();
             ASSERT_FALSE(has_action(force.push.actions, ForceAction::change_limited)) << i;
             ASSERT_EQ(force.causes, ForceOff::none) << i;
-            // The passivity controller damps what the wall makes in the period of its entry.
+            // The passivity controller damps the energy of the entry's period.
             ASSERT_LE((force.push.force_n - tool.output.force_n).norm(),
                       force.push.damping_n_s_per_m * speed + 1e-9)
                 << i;
@@ -343,7 +343,7 @@ TEST(ForcePipeline, lets_an_honest_touch_through_as_it_is)
     }
 }
 
-/// 12 to 25 mm of spring at once, in a hand that rests.
+/// 12 to 25 mm of spring at once, in a resting hand.
 TEST(ForcePipeline, a_strike_rises_from_zero_and_is_told)
 {
     for (const auto& [device, stiffness, most_n] :
@@ -376,7 +376,7 @@ TEST(ForcePipeline, a_strike_rises_from_zero_and_is_told)
     }
 }
 
-/// Every 60 ms another material: its stiffness, or a damping that takes the wall from the device.
+/// Another material every 60 ms: its stiffness, or a damping that removes the wall.
 TEST(ForcePipeline, materials_that_change_make_no_step_of_the_force)
 {
     for (const bool is_damping : {true, false})
@@ -394,7 +394,7 @@ TEST(ForcePipeline, materials_that_change_make_no_step_of_the_force)
         {
             const bool is_other = i / 60 % 2 == 1;
             tool.context.surface_damping_n_s_per_m = is_damping && is_other ? 20.0 : 0.0;
-            // As MaterialGlide does.
+            // The change is that of MaterialGlide.
             stiffness += std::clamp((is_other ? 50.0 : 3'000.0) - stiffness, -59.0, 59.0);
             tool.output.stiffness_n_per_m = is_damping ? 3'000.0 : stiffness;
             tool.press(0.002);
@@ -418,7 +418,7 @@ TEST(ForcePipeline, materials_that_change_make_no_step_of_the_force)
     }
 }
 
-/// The hand goes with an object at 0.45 m/s, which presses and lets go a little all the time.
+/// The hand moves with an object at 0.45 m/s, which constantly presses and releases slightly.
 TEST(ForcePipeline, an_object_that_carries_a_hand_makes_no_step_of_the_force)
 {
     for (const bool is_told : {true, false})
@@ -443,7 +443,7 @@ TEST(ForcePipeline, an_object_that_carries_a_hand_makes_no_step_of_the_force)
         }
         std::printf("an object of 0.45 m/s%s: %.3f N a period, damped in %u of 400\n",
                     is_told ? "" : " that the frame says nothing of", growth_n, damped);
-        // Without a word of the object the hand's whole way counts, with its swing.
+        // Without the object's motion the hand's whole displacement counts, with its swing.
         EXPECT_LE(growth_n, is_told ? 0.35 : 500.0 * 0.6e-3 + 0.12);
         EXPECT_EQ(damped > 200, !is_told);
     }
@@ -472,7 +472,7 @@ TEST(ForcePipeline, a_force_that_the_last_stage_holds_back_fades_from_what_went_
     }
 }
 
-/// The damping of a fade grows no faster than the law lets it, and adds nothing up.
+/// The damping of a fade grows no faster than the law permits, and does not accumulate.
 TEST(ForcePipeline, a_fast_hand_fades_its_force_and_gets_none_for_its_speed)
 {
     PipedTool tool(piped(kOmegaClass));
@@ -523,7 +523,7 @@ TEST(ForcePipeline, beside_a_load_the_force_is_within_the_device_and_holds_the_l
         const ToolForce& force = tool.step();
         EXPECT_LE((force.push.force_n + force.load_n).norm(), 12.0 + 1e-9) << i;
         const double moved_m = i % 100 == 0 ? kHandSpeed_m_per_s * kPeriod_s : 0.0;
-        // While the load comes in what is left beside it goes with its ramp.
+        // While the payload force rises, the rest falls with its ramp.
         const double load_n = weight_n * kPeriod_s / kRiseTime_s;
         EXPECT_LE((force.push.force_n - last_n).norm(), 500.0 * moved_m + 0.12 + load_n + 1e-9)
             << i;

@@ -14,7 +14,7 @@ namespace tactus::test
 namespace
 {
 
-/// So many of each, all of model 0, whose header is empty.
+/// Refusal for these numbers, all of model 0, whose header is empty.
 std::optional<FrameRefusal> refusal_of(std::size_t tools, std::size_t objects, std::size_t models,
                                        const SceneCapacities& capacities = {})
 {
@@ -34,14 +34,14 @@ std::optional<FrameRefusal> refusal_of(std::size_t tools, std::size_t objects, s
 
 TEST(FrameSetup, takes_as_many_tools_objects_and_models_as_the_limits_and_refuses_none_or_more)
 {
-    const FrameRefusal counts_are_fine = FrameRefusal::header_refused; // It is looked at later.
+    const FrameRefusal counts_are_fine = FrameRefusal::header_refused; // It is checked later.
     EXPECT_EQ(refusal_of(1, 1, 1), counts_are_fine);
     EXPECT_EQ(refusal_of(kMaxTools, kMaxObjects, kMaxModels), counts_are_fine);
     EXPECT_EQ(refusal_of(kMaxTools + 1, 1, 1), FrameRefusal::too_many);
     EXPECT_EQ(refusal_of(1, kMaxObjects + 1, 1), FrameRefusal::too_many);
     EXPECT_EQ(refusal_of(1, 1, kMaxModels + 1), FrameRefusal::too_many);
     EXPECT_EQ(refusal_of(0, 1, 1), FrameRefusal::too_many);
-    EXPECT_EQ(refusal_of(1, 0, 1), counts_are_fine); // They may come later.
+    EXPECT_EQ(refusal_of(1, 0, 1), counts_are_fine); // They may be added later.
     EXPECT_EQ(refusal_of(1, 1, 0), FrameRefusal::too_many);
     EXPECT_EQ(refusal_of(1, 2, 1, {2, kMaxPairs}), counts_are_fine);
     EXPECT_EQ(refusal_of(1, 2, 1, {kMaxObjects, 1}), counts_are_fine);
@@ -60,7 +60,7 @@ TEST(FrameSetup, takes_as_many_faces_of_all_models_as_the_limit)
     setup.objects = objects;
     setup.tools = tools;
     models[1].capacities.faces = kMaxPoolFaces;
-    EXPECT_EQ(find_refusal(setup), FrameRefusal::header_refused); // It is looked at later.
+    EXPECT_EQ(find_refusal(setup), FrameRefusal::header_refused); // It is checked later.
     models[0].capacities.faces = 1;
     EXPECT_EQ(find_refusal(setup), FrameRefusal::too_many_faces);
 }
@@ -75,7 +75,8 @@ TEST(FrameSetup, takes_a_force_tolerance_up_to_the_limit)
     for (const double taken : {0.0, kForceToleranceUsual_n, kForceToleranceMax_n})
     {
         setup.force_tolerance_n = taken;
-        EXPECT_EQ(find_refusal(setup), FrameRefusal::header_refused) << taken; // Looked at later.
+        // It is checked later.
+        EXPECT_EQ(find_refusal(setup), FrameRefusal::header_refused) << taken;
     }
     for (const double refused :
          {-1e-9, 1.01 * kForceToleranceMax_n, std::numeric_limits<double>::quiet_NaN(),

@@ -21,7 +21,7 @@ constexpr double kCarryRounding = 1e-12;
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 constexpr WrenchLimits kCarrier{8.0, 0.5};
 
-/// 1.96 N, and 0.098 N m where its centre is level.
+/// 1.96 N, and 0.098 N m if its centre is level.
 ToolLoad hammer_load()
 {
     return {0.2, Vec3(0.05, 0.0, 0.0), Vec3(0.0, 0.0, -1.0)};
@@ -149,7 +149,7 @@ TEST(GravityCompensation, garbage_neither_pushes_nor_turns)
     }
 }
 
-/// A sample that nobody knew to be wrong.
+/// The wrong sample is not detected as such.
 TEST(GravityCompensation, a_rotation_that_jumps_turns_the_torque_no_faster_than_a_hand)
 {
     GravityCompensation sut = carrying(hammer_load());

@@ -38,8 +38,7 @@ Motion<N> unit(Random& random)
     return in_cube<N>(random).normalized();
 }
 
-/// The nearest motion by trying all subsets of planes, in extended precision; none when there is
-/// no allowed one.
+/// Nearest motion by trying all subsets of planes, in extended precision; empty if none is allowed.
 template <int N>
 class SubsetOracle
 {
@@ -109,8 +108,8 @@ private:
     long double distance_{0.0L};
 };
 
-/// The conditions of Karush, Kuhn and Tucker, which only the nearest motion meets. Planes may be
-/// violated by `tolerance` of the lengths.
+/// Karush-Kuhn-Tucker conditions, which only the nearest motion satisfies. Planes may be violated
+/// by `tolerance` of the lengths.
 template <int N>
 void expect_nearest(const Planes<N>& planes, const Motion<N>& wanted, const NearestMotion<N>& sut,
                     double tolerance)
@@ -141,7 +140,7 @@ NearestMotion<N> nearest(const Planes<N>& planes, const Motion<N>& wanted)
     return nearest_motion<N>(std::span<const HalfSpace<N>>(planes), wanted);
 }
 
-/// Planes that all allow one motion, with much in common: equal ones, turned by 10^turn or more,
+/// Planes that all permit one motion, nearly degenerate: equal ones, rotated by 10^turn or more,
 /// opposite, of a pencil through one axis, through one point.
 template <int N>
 Planes<N> awkward_planes(Random& random, std::size_t count, double turn_log10)
@@ -252,7 +251,7 @@ void expect_squeezing_planes_refused(std::uint64_t own_seed)
     Random random(own_seed);
     for (int round = 0; round < 2'000; ++round)
     {
-        // Positive shares of the normals sum up to zero, those of the offsets to more.
+        // Positive combinations of the normals are zero, those of the offsets positive.
         const std::size_t count = 2 + random.below(static_cast<std::size_t>(N));
         Planes<N> planes;
         Motion<N> last = Motion<N>::Zero();

@@ -22,7 +22,7 @@ namespace
 
 constexpr std::uint32_t kTwoPages = 64 * 64 + 1;
 
-/// Why the header is refused once `change` was made and sizes and checksum were made to match.
+/// Refusal of the header after `change`, with sizes and checksum corrected.
 SpmRefusal refusal_after(const std::function<void(HeaderFields&)>& change)
 {
     HeaderParts parts = sound_header(kTwoPages);
@@ -118,7 +118,7 @@ TEST(ModelHeader, values_out_of_range_are_refused)
         [](HeaderFields& f) { f.region_cell_quanta = 1'025; },
         [](HeaderFields& f) { f.occupied_regions = 0; },
         [](HeaderFields& f) { f.occupied_regions = 7; },
-        [](HeaderFields& f) { f.occupied_regions ^= 1U; }, // Not what the bits say.
+        [](HeaderFields& f) { f.occupied_regions ^= 1U; }, // Contradicts the bits.
     };
     for (std::size_t i = 0; i < changes.size(); ++i)
     {
@@ -206,7 +206,7 @@ TEST(ModelHeader, a_point_lies_in_the_region_that_division_gives)
     HeaderParts parts = sound_header(1);
     const auto bytes = parts.write();
     const ModelHeader sut = parsed(bytes);
-    // Cells of 1024 quanta of 2^-10 m: one metre. The grid is 1 x 2 x 3, x running fastest.
+    // Cells of 1024 quanta of 2^-10 m: one metre. The grid is 1 x 2 x 3, x first.
     Random random(5);
     for (int i = 0; i < 10'000; ++i)
     {

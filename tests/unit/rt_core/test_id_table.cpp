@@ -13,7 +13,7 @@ namespace tactus::test
 namespace
 {
 
-/// The id whose mixed bits are `mixed`: chosen so that ids collide or sit at the table's end.
+/// Id whose mixed bits are `mixed`, for collisions and ids at the table's end.
 std::uint32_t id_mixed_to(std::uint32_t mixed)
 {
     std::uint32_t inverse = 0x9E37'79B9U; // Newton's iteration doubles the right bits.
@@ -71,7 +71,7 @@ TEST_F(IdTableTest, random_operations_match_a_map)
         std::vector<std::uint32_t> ids;
         for (std::uint32_t i = 0; i < 3 * capacity; ++i)
         {
-            // A third each: anywhere, all at home in the first slot, all in the last.
+            // One third each: random, all in the first slot, all in the last.
             ids.push_back(i % 3 == 0   ? static_cast<std::uint32_t>(random.bits() >> 33U)
                           : i % 3 == 1 ? id_mixed_to(i)
                                        : id_mixed_to(0xFFFF'FFFFU - i));

@@ -25,7 +25,7 @@ struct Entry
     std::uint8_t hash{0};
 };
 
-/// The second index page, which holds three chunks.
+/// Second index page, with three chunks.
 std::vector<std::byte> write_page(std::uint32_t number, std::span<const Entry> entries)
 {
     CodedBytes bytes;
@@ -99,7 +99,7 @@ TEST_F(IndexPageTest, a_box_inside_out_or_an_impossible_size_is_refused)
     EXPECT_EQ(parse(write_page(1, entries)).error(), SpmRefusal::value_out_of_range);
 }
 
-/// In doubles, which hold all of it exactly enough.
+/// Gap in doubles, which are exact enough.
 double gap_of(const QuantumBox& page, const InfluenceBox& box, const QuantumBall& ball)
 {
     double sum = 0.0;

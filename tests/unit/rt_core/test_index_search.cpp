@@ -21,7 +21,7 @@ IndexSearch::Balls one_ball(double x, double radius = 10.0, std::uint32_t level 
     return balls;
 }
 
-/// A small box there.
+/// Point box at x.
 QuantumBox box_at(std::int32_t x)
 {
     return {{x, 0, 0}, {x, 0, 0}};
@@ -29,7 +29,7 @@ QuantumBox box_at(std::int32_t x)
 
 using Pages = std::vector<std::uint32_t>;
 
-/// Frames in which so many pages are looked at. The search looks at the balls until the next frame.
+/// Frames in which `pages` pages are checked. The search uses the balls until the next frame.
 class SearchRig
 {
 public:
@@ -46,7 +46,7 @@ public:
         }
         return looked;
     }
-    /// One more page on the list, with the same certificate for all of its groups.
+    /// Adds a page to the list, with the same certificate for all of its groups.
     void list(std::uint32_t page, double gap)
     {
         IndexSearch::NearPage& near = sut.add({page});
@@ -110,7 +110,7 @@ TEST(IndexSearch, has_a_margin_for_a_rest_at_the_balls_speed)
 {
     SearchRig rig;
     rig.look(one_ball(0));
-    rig.look(one_ball(1.5)); // A round, whose margin is for 16 frames, and no more than the radius.
+    rig.look(one_ball(1.5)); // One round, whose margin is for 16 frames, at most the radius.
     std::uint32_t rests = 0;
     for (double x = 2.0; rig.look(one_ball(x)).empty(); x += 0.5)
     {

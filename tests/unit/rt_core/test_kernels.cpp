@@ -17,7 +17,7 @@ std::string name_of(const KernelScene& scene)
     return std::string(scene.shape) + ", probe " + scene.place;
 }
 
-/// What face_bounds() answers: the faces, the limit and the bounds' bits of the lanes in `mask`.
+/// Answer of face_bounds(): the faces, the limit and the bounds' bits of the lanes in `mask`.
 std::vector<std::uint32_t> face_bits(const Kernels& kernels, const KernelScene& scene,
                                      std::uint32_t mask, std::uint32_t exact, float floor,
                                      float limit)
@@ -35,7 +35,7 @@ std::vector<std::uint32_t> face_bits(const Kernels& kernels, const KernelScene& 
     return bits;
 }
 
-/// The same of child_gaps() and of both boxes.
+/// Answer of child_gaps() and of both boxes.
 std::vector<std::uint32_t> box_bits(const Kernels& kernels, const KernelScene& scene,
                                     std::uint32_t vertices, std::uint32_t children, float bound)
 {
@@ -58,7 +58,7 @@ std::vector<std::uint32_t> box_bits(const Kernels& kernels, const KernelScene& s
     return bits;
 }
 
-/// A bound near the scene's distances, so that some lanes are near and others not; or none.
+/// Bound near the scene's distances, so that some lanes are near and others not; or none.
 float random_bound(Random& random, const KernelScene& scene)
 {
     const FaceTruth truth(scene, random.below(16));
@@ -167,7 +167,7 @@ TEST(Kernels, name_the_faces_whose_lower_bound_is_within_limit_or_floor)
         const std::uint32_t exact = random_mask(random, 16);
         const float floor = random.one_in(2) ? 0.0F : random_bound(random, scene);
         float limit = random_bound(random, scene);
-        // Once a face was looked at there is a limit, if only the greatest float.
+        // After any face there is a limit, at most the greatest float.
         float expected_limit =
             mask == 0 ? limit : std::min(limit, std::numeric_limits<float>::max());
         std::uint32_t expected = 0;

@@ -16,7 +16,7 @@ namespace tactus
 namespace
 {
 
-/// A size that fills no whole number of words.
+/// Letter whose size is not a whole number of words.
 struct Letter
 {
     std::array<std::uint32_t, 19> words{};
@@ -53,8 +53,8 @@ TEST(Mailbox, gives_the_newest_value_again_and_again)
     }
 }
 
-/// The writer goes on until every reader has seen enough different letters, so that reads and
-/// writes do meet.
+/// The writer continues until every reader has read enough different letters, so that reads and
+/// writes do interleave.
 TEST(Mailbox, never_mixes_two_letters_and_never_goes_back)
 {
     constexpr int kLetters = 1'000;
@@ -70,7 +70,7 @@ TEST(Mailbox, never_mixes_two_letters_and_never_goes_back)
             Letter letter;
             if (!sut.try_read(letter))
             {
-                std::this_thread::yield(); // The writer is in the middle of one, perhaps here.
+                std::this_thread::yield(); // The writer may be within one here.
                 continue;
             }
             const std::uint32_t number = letter.words[0];
@@ -90,8 +90,7 @@ TEST(Mailbox, never_mixes_two_letters_and_never_goes_back)
     for (std::uint32_t number = 1; reading > 0; ++number)
     {
         sut.write(letter_of(number));
-        if (number % 8 ==
-            0) // So that readers get in between; where there is one processor, at all.
+        if (number % 8 == 0) // Readers can interleave, even on one processor.
         {
             std::this_thread::yield();
         }

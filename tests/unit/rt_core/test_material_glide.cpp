@@ -58,7 +58,7 @@ TEST(MaterialGlide, takes_its_time_in_even_steps_and_ends_at_what_is_wanted)
         EXPECT_NEAR(sut.felt().static_friction, 0.5 * i / frames, 1e-12);
         before = sut.felt().stiffness_n_per_m;
     }
-    // Rounding of the time may cost one frame more.
+    // Rounding of the time may take one frame more.
     (void)sut.step(firm, kTool, kPeriod_s);
     EXPECT_EQ(sut.felt(), firm);
     EXPECT_FALSE(sut.step(firm, kTool, kPeriod_s));
@@ -76,7 +76,7 @@ TEST(MaterialGlide, is_sound_and_continuous_between_any_two_however_often_they_c
         (void)sut.step(wanted, kTool, kPeriod_s);
         const Material& felt = sut.felt();
         ASSERT_TRUE(is_sound(felt)) << i;
-        // From a soft wall to the tool's own stiffness, or from one that is stiffer than that.
+        // From a soft wall to the tool's own stiffness, or from a stiffer one.
         const double share = kPeriod_s / kMaterialGlide_s;
         EXPECT_LE(std::abs(stiffness_felt(felt) - stiffness_felt(before)), 3'000.0 * 1.01 * share);
         EXPECT_LE(std::abs(felt.static_friction - before.static_friction), 2.0 * 1.01 * share);

@@ -24,7 +24,7 @@ namespace tactus::test
 namespace
 {
 
-/// A tool and an object of so many faces, or of as many as chance has it.
+/// Tool and object with this many faces, or a random number.
 struct Meshes
 {
     TreeRig tool{{80, 200, 200}};
@@ -42,7 +42,7 @@ struct Meshes
     }
 };
 
-/// Lifted by up to so much.
+/// Random placement, lifted by up to `most`.
 MeshPlacement lifted_placement(Random& random, double most)
 {
     MeshPlacement place = random_placement(random);
@@ -65,7 +65,7 @@ double error_of(const ChangedFace& face)
     return static_cast<double>(error_in_quanta(face.error)) * static_cast<double>(kTreeQuantum);
 }
 
-/// All pairs, one by one, with the kernels that their own tests hold.
+/// All pairs, one by one, with the kernels that their own tests check.
 struct AllPairs
 {
     double lower{kInfinity};
@@ -73,7 +73,7 @@ struct AllPairs
     double coarse_lower{kInfinity};
     std::set<MeetingFaces> meeting;
     std::set<MeetingFaces> in_contact;
-    std::vector<std::tuple<double, FaceId, FaceId>> contacts; ///< In no order.
+    std::vector<std::tuple<double, FaceId, FaceId>> contacts; ///< Contacts in no order.
 
     AllPairs(std::span<const ChangedFace> tool, std::span<const ChangedFace> object,
              const MeshPlacement& place, double contact)
@@ -130,7 +130,7 @@ struct Asked
     WalkBudget budget;
 };
 
-/// Until `enough` pairs are found to meet.
+/// Runs a query until `enough` meeting pairs are found.
 Asked ask_for(std::uint32_t enough, const TreeRig& tool, const TreeRig& object,
               const MeshPlacement& place, double reach, double contact, MeshMemory& memory,
               const WalkBudget& budget = kAmple, double certified = 0.0,
@@ -159,7 +159,7 @@ Asked ask_without_pairs(const TreeRig& tool, const TreeRig& object, const MeshPl
                    memory);
 }
 
-/// Up to `enough` pairs that meet.
+/// Query of up to `enough` meeting pairs.
 Asked ask_meeting(const TreeRig& tool, const TreeRig& object, const MeshPlacement& place,
                   std::uint32_t enough, MeshMemory& memory, const WalkBudget& budget = kAmple)
 {
@@ -169,7 +169,7 @@ Asked ask_meeting(const TreeRig& tool, const TreeRig& object, const MeshPlacemen
     return asked;
 }
 
-/// The least distance.
+/// Query of the least distance.
 Asked ask_nearest(const TreeRig& tool, const TreeRig& object, const MeshPlacement& place,
                   MeshMemory& memory, const WalkBudget& budget = kAmple)
 {
@@ -200,8 +200,7 @@ std::set<MeetingFaces> as_set(const Faces& faces)
 
 } // namespace
 
-/// The least distance from a face of the tool to any of the object, less both errors, in the tool's
-/// frame.
+/// Least distance from a face of the tool to the object, minus both errors, in the tool frame.
 double gap_of(const ChangedFace& own, std::span<const ChangedFace> object,
               const MeshPlacement& place)
 {
@@ -216,7 +215,7 @@ double gap_of(const ChangedFace& own, std::span<const ChangedFace> object,
     return gap;
 }
 
-/// What is told of a lane: infinity when it is beyond the bound.
+/// Reported gap of a lane; infinity beyond the bound.
 double told_gap(const NearFaces& near, std::uint32_t block, std::uint32_t lane)
 {
     for (const NearFaces::Block& found : near.blocks())
@@ -229,7 +228,7 @@ double told_gap(const NearFaces& near, std::uint32_t block, std::uint32_t lane)
     return kInfinity;
 }
 
-/// Faces of the tool as a star has them, not more than there is room for.
+/// Faces of the tool in the form of a star, within its capacity.
 struct LooseStar
 {
     BlockGeometry geometry;
@@ -248,7 +247,7 @@ struct LooseStar
     }
 };
 
-/// A lower bound, and not far below; of what may meet already no more is told.
+/// Expects a tight lower bound; nothing more is reported for faces that may already meet.
 void expect_told(double told, double truth, double bound)
 {
     ASSERT_TRUE(told < kInfinity || truth > bound);
@@ -309,7 +308,7 @@ TEST(NearFaces, are_all_coarse_ones_within_the_bound_with_their_gaps)
     EXPECT_GT(far_ones, 500);
 }
 
-/// Of all coarse faces of the tool something is told that is not above the truth.
+/// Expects for every coarse face of the tool a report not above the truth.
 void expect_nothing_missed(const NearFaces& near, const TreeRig& tool, const TreeRig& object,
                            const MeshPlacement& place, double bound)
 {
@@ -332,12 +331,12 @@ TEST(NearFaces, are_left_where_a_budget_ends_the_search_or_a_face_may_be_anywher
         const bool lacks_room = round % 4 == 0;
         TreeRig tool({80, 200, 200});
         TreeRig object({60, lacks_room ? 4U : 200U, lacks_room ? 2U : 200U});
-        const bool is_one_block = round % 2 == 1; // Each: nothing else is left then.
+        const bool is_one_block = round % 2 == 1; // One block each, with nothing else.
         fill(tool, random, 1 + random.below(is_one_block ? 5 : 80), false);
         fill(object, random, is_one_block ? 5 : 60, false);
         const MeshPlacement place = random_placement(random);
         const std::uint32_t share = random.below(is_one_block ? 20 : 300);
-        // Of nodes or, so that it ends between two blocks, of triangles.
+        // The budget is of nodes or, to end between two blocks, of triangles.
         const WalkBudget budget =
             is_one_block ? WalkBudget{10'000, share} : WalkBudget{share, 10 * share};
         OtherSurface other(*object.sut, place, budget);
@@ -351,7 +350,7 @@ TEST(NearFaces, are_left_where_a_budget_ends_the_search_or_a_face_may_be_anywher
     EXPECT_GT(cut_short, 5);
 }
 
-/// The least of all coarse faces.
+/// Least gap of all coarse faces.
 double least_gap(const TreeRig& tool, const TreeRig& object, const MeshPlacement& place)
 {
     const auto faces = object.present();
@@ -398,7 +397,7 @@ TEST(NearFaces, of_a_search_that_was_cut_are_left_to_those_that_go_on_with_it)
             if (parts == 3 && round % 4 == 0 && !unfinished.left.empty())
             {
                 fill(object, random, 3, round % 8 == 0);
-                moved = 0.0; // It begins again.
+                moved = 0.0; // It starts again.
                 ++changed;
             }
         } while (!unfinished.left.empty() && parts < 200);
@@ -540,7 +539,7 @@ TEST(MeshQuery, finds_what_measuring_all_pairs_finds)
             ASSERT_LE(answer.lower_m, truth.lower + 1e-14) << round << " " << query;
             ASSERT_GE(answer.upper_m, truth.lower) << round << " " << query;
             ASSERT_LE(answer.lower_m, answer.upper_m);
-            // Meetings are found wherever both faces are exact, whatever else is not.
+            // Meetings of exact faces are found, independent of all others.
             ASSERT_EQ(as_set(asked.report.meeting), truth.meeting) << round << " " << query;
             ASSERT_TRUE(std::is_sorted(asked.report.meeting.begin(), asked.report.meeting.end()));
             ASSERT_EQ(asked.report.is_complete, truth.coarse_lower > 0.0);
@@ -595,7 +594,7 @@ TEST(MeshQuery, that_wants_no_pairs_ends_with_the_first_and_is_else_the_same)
             if (truth.meeting.empty())
             {
                 ++apart;
-                // Beyond the reach brackets hang on what is remembered.
+                // Bounds beyond the reach depend on the memory.
                 ASSERT_TRUE(again == 1 || sut.answer.lower_m == all.answer.lower_m);
                 ASSERT_TRUE(again == 1 || sut.answer.upper_m == all.answer.upper_m);
                 ASSERT_EQ(sut.answer.kind, all.answer.kind);
@@ -622,7 +621,7 @@ TEST(MeshQuery, that_wants_no_pairs_ends_with_the_first_and_is_else_the_same)
     EXPECT_GT(apart, 40);
 }
 
-/// The coarse faces of a rig moved away from all else.
+/// Moves the coarse faces of a rig away from all others.
 void part_coarse(TreeRig& rig, float by)
 {
     for (ChangedFace face : rig.present())
@@ -741,7 +740,7 @@ TEST(MeetingFaces, end_with_the_first_and_say_so)
             {
                 ++met;
                 ASSERT_TRUE(truth.meeting.contains(any.report.meeting[0]));
-                // What met last is looked at first.
+                // The last meeting pair is tried first.
                 ASSERT_TRUE(again == 0 || any.budget.nodes_visited == 1);
             }
         }
@@ -862,7 +861,7 @@ TEST(NearestFaces, are_bracketed_where_the_budget_ends_the_search)
 
 TEST(NearestFaces, are_not_told_by_faces_that_are_gone)
 {
-    // A tree that changes between two questions: what is remembered is measured anew.
+    // The tree changes between two questions, so remembered pairs are measured again.
     Random random(85);
     for (int round = 0; round < 8; ++round)
     {
@@ -877,7 +876,7 @@ TEST(NearestFaces, are_not_told_by_faces_that_are_gone)
             ASSERT_NEAR(asked.answer.upper_m, truth.upper, 1e-13 * (1.0 + truth.upper));
             ASSERT_EQ(ask_meeting(tool, object, place, 1, memory).report.intersection,
                       truth.intersection());
-            // The face of the object that was the nearest goes.
+            // The nearest face of the object is removed.
             for (const ChangedFace& face : object.present())
             {
                 if (face.face == asked.answer.nearest_face)
@@ -892,8 +891,8 @@ TEST(NearestFaces, are_not_told_by_faces_that_are_gone)
 
 TEST(MeshQuery, faces_that_only_touch_meet)
 {
-    // A mesh on itself: all that shares a corner, an edge or a plane meets, with nothing to spare
-    // for the filters.
+    // A mesh on itself: all faces with a common corner, edge or plane meet, without a margin for
+    // the filters.
     Random random(80);
     int met = 0;
     for (int round = 0; round < 40; ++round)
@@ -914,7 +913,7 @@ TEST(MeshQuery, faces_that_only_touch_meet)
 
         const Asked asked = ask(tool, object, place, 0.0, -1.0, memory);
         EXPECT_EQ(as_set(asked.report.meeting), truth.meeting);
-        // Each pair that is decided counts.
+        // Each decided pair counts.
         EXPECT_GE(asked.budget.triangles_tested, truth.meeting.size());
         EXPECT_EQ(as_set(ask_meeting(tool, object, place, 1'000'000, memory).report.meeting),
                   truth.meeting);
@@ -1054,7 +1053,7 @@ TEST(MeshQuery, keeps_the_nearest_contacts_whatever_met_before)
         {
             MeshMemory memory{{random.below(10), random.below(10)},
                               was_crowded,
-                              random.between(-0.1, 1.0) * reach}; // Whatever was found before.
+                              random.between(-0.1, 1.0) * reach}; // Any earlier result.
             ContactEnds ends;
             const Asked asked = ask(tool, object, place, reach, reach, memory, kAmple, 0.0, &ends);
 
@@ -1250,7 +1249,7 @@ TEST(MeshQuery, looks_at_no_coarse_face_where_more_is_certified_than_it_asks_for
         {
             continue;
         }
-        // Nearer than any face: what is asked for ends there, however far the nearest is.
+        // The reach is below any face's distance, so the search ends there.
         const double reach = random.between(0.0, 0.9) * truth.coarse_lower;
         MeshMemory free_memory;
         free_memory.share = 0.3;

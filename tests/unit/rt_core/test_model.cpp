@@ -14,7 +14,7 @@ namespace tactus::test
 namespace
 {
 
-/// Index pages that a model with so many keeps in so much memory.
+/// Index pages that a model with this number keeps in this memory.
 std::uint32_t index_pages_kept(std::uint32_t index_pages, std::size_t bytes)
 {
     HeaderParts parts = sound_header(index_pages * kChunksPerIndexPage * kRecordsPerChunk);
@@ -22,7 +22,7 @@ std::uint32_t index_pages_kept(std::uint32_t index_pages, std::size_t bytes)
     return plan_capacities(parsed(coded), bytes, 0).index_pages;
 }
 
-/// The plan for so many models of so many records in so much memory; empty where there is none.
+/// Plan for these models in this memory; empty if there is none.
 std::vector<ModelCapacities> plan_of(std::uint32_t records, std::size_t models, std::size_t bytes)
 {
     HeaderParts parts = sound_header(records);

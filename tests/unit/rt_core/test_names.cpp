@@ -26,7 +26,8 @@ std::string text_of(const char* name)
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// The names stand beside the enumerators' numbers, no two alike, and on the page of reports.
+/// Expects names in the order of the enumerators' numbers, all different, and on the page of
+/// reports.
 template <typename Names>
 void expect_names(const Names& names, const char* header, const char* enumeration)
 {
@@ -39,7 +40,7 @@ void expect_names(const Names& names, const char* header, const char* enumeratio
     std::istringstream lines(source);
     for (std::string line; std::getline(lines, line);)
     {
-        // An enumerator is indented by four, and a comma or its bit follows.
+        // An enumerator is indented by four, followed by a comma or its bit.
         const std::size_t end =
             std::min(line.find_first_not_of("abcdefghijklmnopqrstuvwxyz_", 4), line.size());
         const bool has_bit = line.compare(end, shift.size(), shift) == 0;
@@ -69,7 +70,7 @@ TEST(Names, every_stage_is_explained_on_the_page_of_architecture)
     const std::string architecture = text_of("docs/architecture.md");
     for (const std::string name : kStageNames)
     {
-        // A heading of its own, or behind the steps that make up the stage.
+        // A stage has its own heading, or is named after its steps.
         const bool has_heading = architecture.find("\n### " + name + "\n") != std::string::npos ||
                                  architecture.find(": *" + name + "*\n") != std::string::npos;
         EXPECT_TRUE(has_heading) << name;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The three words of the 3DIM 2005 paper over the life of a node, the links that lead up from it,
-/// and the index list that leads down to it.
+/// The 3DIM 2005 paper's three states over the life of a node, the links up from it, and the index
+/// list down to it.
 
 #include "tests/unit/rt_core/tree_support.hpp"
 
@@ -60,7 +60,7 @@ TEST(NodeStatus, of_a_block_goes_from_inactive_over_active_and_deformed_and_back
         blocks.insert(block_ref(*rig.sut, prim).value);
     }
     ChangedFace lone = spread_face(50);
-    lone.bucket = 0x7000'0000U; // Far from all others in path space: a block of its own.
+    lone.bucket = 0x7000'0000U; // Far from all others in path space: a separate block.
 
     rig.put(lone);
     const TreeRef sut = block_ref(*rig.sut, 50);
@@ -106,7 +106,7 @@ TEST(NodeStatus, of_an_inner_node_goes_from_inactive_over_active_and_deformed_an
     rig.sut->refit();
     EXPECT_EQ(rig.sut->status(sut), NodeStatus::active);
 
-    // A node that loses or exchanges a child is deformed; one that goes is inactive.
+    // A node that loses or exchanges a child is deformed; a removed one is inactive.
     bool was_deformed = false;
     for (std::uint32_t prim = 39; prim > 0; --prim)
     {

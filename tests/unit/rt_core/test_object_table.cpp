@@ -117,7 +117,7 @@ TEST_F(ObjectTableTest, refuses_poses_that_are_not_rigid_or_out_of_range)
 {
     using Change = std::function<void(ObjectPose&)>;
     const std::vector<Change> wrong{[](ObjectPose& p) { p.rotation(1, 1) = 1.0 + 1e-5; },
-                                    [](ObjectPose& p) { p.rotation(2, 2) = -1.0; }, // A mirror.
+                                    [](ObjectPose& p) { p.rotation(2, 2) = -1.0; }, // Mirror.
                                     [](ObjectPose& p) { p.rotation.setZero(); },
                                     [](ObjectPose& p) { p.rotation(0, 2) = kNotANumber; },
                                     [](ObjectPose& p) { p.translation_m.y() = kNotANumber; },
@@ -140,7 +140,7 @@ TEST_F(ObjectTableTest, refuses_poses_that_are_not_rigid_or_out_of_range)
         wrong[i](object.pose);
         EXPECT_EQ(change(object), ChangeRefusal::bad_pose);
         EXPECT_EQ(sut[1].pose.scale, 1.0);
-        object.kind = SceneChangeKind::object_goes; // Nobody looks at the pose of what goes.
+        object.kind = SceneChangeKind::object_goes; // The pose of a removed object is ignored.
         EXPECT_EQ(sut.find_refusal(object, kShown), std::nullopt);
     }
     EXPECT_FALSE(sut[0].is_here);
@@ -165,7 +165,7 @@ TEST_F(ObjectTableTest, refuses_materials_out_of_range)
         [](Material& m) { m.damping_n_s_per_m = 1.001 * kDampingMax_n_s_per_m; },
         [](Material& m) { m.viscosity_n_s_per_m = -1.0; },
         [](Material& m) { m.viscosity_n_s_per_m = 1.001 * kDampingMax_n_s_per_m; },
-        [](Material& m) { m.texture_height_m = 1e-6; }, // Of no length.
+        [](Material& m) { m.texture_height_m = 1e-6; }, // Without a length.
         [](Material& m) { m.texture_length_m = kNotANumber; },
         [](Material& m) { m.texture_length_m = 1.001 * kTextureLengthMax_m; },
         [](Material& m)
@@ -205,7 +205,7 @@ TEST_F(ObjectTableTest, refuses_materials_out_of_range)
     edge.generation = 9;
     EXPECT_EQ(change(edge), ChangeRefusal::old_generation);
     edge.generation = 0;
-    edge.pose.scale = kNotANumber; // Nobody looks at the pose of what only feels otherwise.
+    edge.pose.scale = kNotANumber; // The pose of a material change is ignored.
     EXPECT_EQ(change(edge), std::nullopt);
     EXPECT_EQ(sut[1].spec.material, edge.object.material);
     EXPECT_EQ(sut[1].pose.scale, 1.0);

@@ -14,7 +14,7 @@ namespace tactus::test
 namespace
 {
 
-/// The distance to a unit sphere round the model's origin: truth by formula.
+/// Distance to a unit sphere around the model's origin, by formula.
 double to_sphere(const Vec3& point)
 {
     return std::abs(point.norm() - 1.0);
@@ -30,7 +30,7 @@ DistanceAnswer exact_answer(double distance)
     return answer;
 }
 
-/// A sphere that looks from here, without an approach.
+/// Updates with a sphere at this position, without an approach.
 void look(Outlook& sut, const Vec3& position_m, double reach_m, const ObjectPose& pose = {})
 {
     sut.look(ToolSpec{}, {{Mat3::Identity(), position_m, 1.0}, reach_m, Vec3(0, 0, 0)}, pose);
@@ -152,7 +152,7 @@ TEST(PoseRounding, bounds_what_a_models_place_is_off_by_because_its_pose_is_its_
     {
         ObjectPose pose = any_pose(random);
         const Vec3 origin = random.in_cube(1e6);
-        pose.translation_m = -pose.scale * (pose.rotation * origin); // Back to where the hand is.
+        pose.translation_m = -pose.scale * (pose.rotation * origin); // Back to the hand's position.
         const Exact place =
             pose.translation_m.cast<long double>() +
             pose.scale * (pose.rotation.cast<long double>() * origin.cast<long double>());

@@ -130,9 +130,9 @@ TEST_F(PageTableTest, all_slots_can_be_used)
 namespace
 {
 
-constexpr std::uint32_t kShownSlots = 130; // Two words of marks, and some.
+constexpr std::uint32_t kShownSlots = 130; // Two words of marks, and a few.
 
-/// Pages of two models that come, are split and merged, and go, at random.
+/// Pages of two models that are added, split, merged and removed at random.
 class ChangingSlots
 {
 public:
@@ -144,7 +144,7 @@ public:
         const PageMeta& meta = pool_.metas[slot];
         if (meta.chunk.is_none())
         {
-            const ChunkId chunk{chunks_++}; // Never one that is here.
+            const ChunkId chunk{chunks_++}; // Never a resident one.
             tables_[random_.below(2U)].adopt(chunk, slot, 0, ~std::uint64_t{0});
             return;
         }
@@ -163,7 +163,7 @@ public:
             table.set_refined(record, !table.is_refined(record));
         }
     }
-    /// Changes that nobody sees.
+    /// Changes that are not visible.
     void use(std::uint32_t frame)
     {
         for (std::uint32_t slot = 0; slot < kShownSlots; ++slot)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// A front changes how much is looked at, and no answer: beside each query that goes on from the
-/// last one stands the same query from the roots, and all pairs measured one by one.
+/// A front changes the work but no answer: each query that continues from the last one is compared
+/// with the same query from the roots, and with all pairs measured one by one.
 
 #include "rt_core/geometry/crossing.hpp"
 #include "rt_core/geometry/triangle_triangle.hpp"
@@ -28,7 +28,7 @@ namespace
 
 constexpr std::uint32_t kAllOfThem = std::numeric_limits<std::uint32_t>::max();
 
-/// Some faces go, come or move.
+/// Adds, moves or removes some faces.
 void change(TreeRig& rig, Random& random, std::uint32_t count, bool exact_only)
 {
     const FaceStyle& style = face_styles()[random.below(5)];
@@ -63,7 +63,7 @@ enum class Kind : std::uint8_t
     nearest,
 };
 
-/// One of a tool's queries of an object, with a memory of its own.
+/// Query of a tool at an object, with its own memory.
 struct Asker
 {
     const TreeRig& tool;
@@ -98,7 +98,7 @@ struct Asker
     }
 };
 
-/// What measuring all pairs finds, by kernels that their own tests hold.
+/// Result of measuring all pairs, by kernels that their own tests check.
 struct Truth
 {
     double upper{kInfinity};
@@ -143,8 +143,8 @@ private:
     }
 };
 
-/// The same to the last bit, but for which pair of several was the first, and for how wide a
-/// bracket is beyond the reach.
+/// Expects equality to the last bit, except for the order of meeting pairs and the width of bounds
+/// beyond the reach.
 void expect_same(const Answers& one, const Answers& other, Kind kind)
 {
     ASSERT_EQ(one.report.intersection, other.report.intersection);
@@ -174,7 +174,7 @@ void expect_same(const Answers& one, const Answers& other, Kind kind)
     }
 }
 
-/// A tool's way: it drifts, rests, goes back and forth, and jumps now and then.
+/// Motion of a tool that drifts, rests, reverses, and sometimes jumps.
 class Motion
 {
 public:
@@ -184,7 +184,7 @@ public:
     {
         if (random_.one_in(12))
         {
-            const double scale = place_.place.scale; // A tool keeps it, but for one that doesn't.
+            const double scale = place_.place.scale; // Tools keep their scale, with one exception.
             place_ = random_placement(random_);
             place_.place.scale = random_.one_in(4) ? place_.place.scale : scale;
             place_.place.translation_m.y() += random_.between(0.0, 2.0);
@@ -321,7 +321,7 @@ TEST(PairFront, leaves_little_to_look_at_while_the_tool_goes_slowly_and_nothing_
         const Answers rested = sut.ask(Kind::meeting, place, 0.0, 0.0);
         EXPECT_LE(rested.budget.nodes_visited, moved.budget.nodes_visited);
     }
-    EXPECT_LT(4 * with, 3 * without); // What meets is looked at each time.
+    EXPECT_LT(4 * with, 3 * without); // Meeting pairs are always evaluated.
     EXPECT_GT(without, 1'000U);
 }
 

@@ -47,7 +47,7 @@ Aabb random_box(Random& random, double size)
     return box;
 }
 
-/// A point of the box, often a corner, an edge's or a side's.
+/// Point of the box, often at a corner, an edge or a side.
 Vec3 point_in(Random& random, const Aabb& box)
 {
     Vec3 point(0.0, 0.0, 0.0);
@@ -61,7 +61,7 @@ Vec3 point_in(Random& random, const Aabb& box)
     return point;
 }
 
-/// A node's boxes, and a turned box that a known distance parts from one of them at most.
+/// Boxes of a node, and a rotated box within a known distance of one of them.
 struct BoxScene
 {
     AabbVolume::Rows boxes;
@@ -69,7 +69,7 @@ struct BoxScene
     MeshPlacement place;
     double units_per_m{1.0};
     std::uint32_t touched{0};
-    double apart_units{0.0}; ///< From the touched box, at most.
+    double apart_units{0.0}; ///< Upper bound of the distance from the touched box.
 
     explicit BoxScene(Random& random)
     {
@@ -96,7 +96,7 @@ struct BoxScene
         apart_units = gap * units_per_m;
     }
 
-    /// What placing may round.
+    /// Rounding of the placement.
     [[nodiscard]] double slack_units() const
     {
         return units_per_m * (place.place.translation_m.norm() + 1e3) * 1e-13;
@@ -107,7 +107,7 @@ struct BoxScene
     }
 };
 
-/// Least and greatest of a box's corners along a direction, placed.
+/// Least and greatest projection of a placed box's corners on a direction.
 std::array<double, 2> extent(const Aabb& box, const MeshPlacement& place, const Vec3& direction)
 {
     std::array<double, 2> ends{1e300, -1e300};
@@ -125,7 +125,7 @@ std::array<double, 2> extent(const Aabb& box, const MeshPlacement& place, const 
     return ends;
 }
 
-/// Along the widest of six directions.
+/// Greatest separation along six directions.
 double separation(const BoxScene& scene, std::uint32_t child)
 {
     double widest = 0.0;
@@ -154,14 +154,14 @@ Aabb box_of(const BlockGeometry& block, std::uint32_t lanes)
     return box;
 }
 
-/// A block of the object, and one of the tool, turned and placed near it.
+/// Block of the object with a rotated and placed block of the tool near it.
 struct BlocksScene
 {
     KernelScene object;
     BlockGeometry tool;
     MeshPlacement place;
     KernelBox tool_box{};
-    std::array<float, kBlockFaces> errors{}; ///< Of the tool's faces, in quanta.
+    std::array<float, kBlockFaces> errors{}; ///< Errors of the tool's faces, in quanta.
     PlacedBlock placed;
     VertexRows rows;
     float slack{0.0F};
@@ -179,7 +179,7 @@ struct BlocksScene
         place.place.scale = random.one_in(2) ? 1.0 : random.between(0.5, 2.0);
         place.place.translation_m =
             random.in_cube(size * quantum * std::exp2(random.between(-8.0, 1.0)));
-        if (is_whole && random.one_in(2)) // Much that only touches.
+        if (is_whole && random.one_in(2)) // Many faces only touch.
         {
             place = {};
         }
@@ -196,7 +196,7 @@ struct BlocksScene
 
     [[nodiscard]] double units_per_m() const { return 1.0 / static_cast<double>(object.quantum_m); }
 
-    /// As PlacedBlocks does.
+    /// Places the blocks like PlacedBlocks.
     void look(const Kernels& kernels)
     {
         const Aabb own = box_of(tool, 0xFFFF);
@@ -233,7 +233,7 @@ struct BlocksScene
     {
         return to_triangle(block_triangle(object.block, lane));
     }
-    /// Between two faces, in quanta.
+    /// Distance between two faces, in quanta.
     [[nodiscard]] double apart(std::uint32_t tool_lane, std::uint32_t lane) const
     {
         const ClosestPoints closest = closest_points(tool_face(tool_lane), face(lane));
@@ -257,7 +257,7 @@ std::vector<BlocksScene> pairs_of_shapes(Random& random, int rounds)
     return all;
 }
 
-/// Not longer than 1.
+/// Direction of length at most 1.
 Vec3f random_way(Random& random)
 {
     return to_float((1.0 - 0x1p-20) * random.in_cube(1.0).normalized());
@@ -268,7 +268,7 @@ std::array<float, 6> ends_of(const Aabb& box)
     return {box.low[0], box.low[1], box.low[2], box.high[0], box.high[1], box.high[2]};
 }
 
-/// Of all rows but those of vertices that are no face's.
+/// Bits of all rows that a face uses.
 std::vector<std::uint32_t> row_bits(const BlocksScene& scene)
 {
     const TriangleRows& rows = scene.placed.rows;
@@ -323,7 +323,7 @@ FacePairQueue queue_of(Random& random, const BlocksScene& scene)
     return queue;
 }
 
-/// A face that comes near another one in one of the ways that are hard to decide, all but a little.
+/// Face close to another one in one of the configurations that are hard to decide.
 Triangle near_tie(Random& random, const Triangle& face, double size)
 {
     // A corner, the middle of an edge, or a place in the face.
@@ -342,13 +342,13 @@ Triangle near_tie(Random& random, const Triangle& face, double size)
     case 0: // An edge through the place.
         other = {at + way, at - random.between(0.1, 1.0) * way, at + across};
         break;
-    case 1: // The plane, the place inside.
+    case 1: // The plane, with the place inside.
         other = {at + way, at + across, at - 0.7 * (way + across)};
         break;
     case 2: // All in one plane.
         other[2] = point_of();
         break;
-    default: // By two corners.
+    default: // Two corners.
         break;
     }
     const double off = random.one_in(3) ? 0.0 : size * std::exp2(-random.between(8.0, 30.0));
@@ -461,7 +461,7 @@ TEST(PairKernels, bound_the_distance_of_turned_boxes_from_below_and_closely)
         const KernelBox box = scene.seen();
         static_cast<void>(portable_kernels().box_gaps(scene.boxes.low.front().data(), box, 0xFF,
                                                       kUnlimited, gaps.data()));
-        // Two points are known that are so far apart.
+        // Two points at this distance are known.
         ASSERT_LE(static_cast<double>(gaps[scene.touched]), scene.apart_units + scene.slack_units())
             << round;
         for (std::uint32_t child = 0; child < kNodeChildren; ++child)
@@ -608,7 +608,7 @@ TEST(PairKernels, leave_out_no_pair_of_faces_within_the_bound)
                                      scene.tool_box, 0xFFFF, round_up_to_float(apart), rows) &
                       mask,
                   0U);
-        // The way between the two, any other, and none.
+        // The direction between the two, any other, and none.
         const ClosestPoints closest = closest_points(scene.tool_face(tool_lane), scene.face(lane));
         const Vec3 between = -(1.0 - 0x1p-20) * closest.gap.normalized();
         const Vec3f along = to_float(closest.distance > 0.0 ? between : Vec3(0.0, 0.0, 0.0));
@@ -653,7 +653,7 @@ TEST(PairKernels, decide_no_pair_otherwise_than_exact_arithmetic)
 TEST(PairKernels, decide_and_bound_near_ties_needles_and_faces_in_one_plane)
 {
     Random random(88);
-    std::array<std::uint32_t, 3> count{}; // Open, apart, meeting.
+    std::array<std::uint32_t, 3> count{}; // Open, separate, meeting.
     for (int round = 0; round < 40'000; ++round)
     {
         const FaceShape& shape = face_shapes()[random.below(6)];

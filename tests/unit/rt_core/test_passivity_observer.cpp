@@ -89,7 +89,8 @@ TEST(SentForces, know_a_delay_of_all_periods_but_the_newest_and_no_longer_one)
 TEST(PassivityObserver, sees_no_surplus_in_a_spring_that_gives_back_what_it_got)
 {
     PassivityObserver sut(lossless(), kPeriod_s);
-    // In and out by steps whose mean force is the ideal spring's: 1,000 N/m to 1 mm.
+    // The motion goes in and out by steps whose mean force is the ideal spring's: 1,000 N/m to 1
+    // mm.
     double depth = 0.0;
     for (int i = 0; i < 20; ++i)
     {

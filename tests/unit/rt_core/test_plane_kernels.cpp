@@ -17,10 +17,10 @@ namespace
 {
 
 constexpr float kEverything = 0x1p90F;
-constexpr std::uint32_t kFaces = 16; ///< Of a scene.
+constexpr std::uint32_t kFaces = 16; ///< Faces of a scene.
 constexpr std::uint32_t kBatches = kFaces / kPlaneLanes;
 
-/// A scene's faces as a table around its probe, known by their distances from there only.
+/// Table of a scene's faces around its probe, known only by their distances from there.
 class PlaneRig
 {
 public:
@@ -69,7 +69,7 @@ public:
     {
         return kernels.least_height(table_, question(place, 0.0F));
     }
-    /// The true one, in quanta.
+    /// True distance, in quanta.
     [[nodiscard]] long double distance_at(const std::array<float, 3>& place,
                                           std::uint32_t face) const
     {
@@ -80,7 +80,7 @@ public:
         return DistanceOracle::distance(at, to_triangle(block_triangle(scene_.block, face))) /
                static_cast<long double>(quantum);
     }
-    /// What the oracle's own place may be off by.
+    /// Possible error of the oracle's own place.
     [[nodiscard]] long double off() const { return static_cast<long double>(scene_.probe.slack); }
     [[nodiscard]] std::vector<std::uint32_t> bits() const
     {
@@ -129,7 +129,7 @@ private:
     std::uint32_t stand_number_{1};
 };
 
-/// Places as far round the probe as the faces are, more or less, and some on the probe.
+/// Places roughly as far from the probe as the faces, and some on the probe.
 std::array<float, 3> random_place(Random& random, const PlaneRig& rig)
 {
     const auto far = static_cast<double>(rig.distance_at({0.0F, 0.0F, 0.0F}, random.below(kFaces)));
@@ -199,7 +199,7 @@ TEST(PlaneKernels, leave_out_no_face_that_is_entered_on_the_way)
         for (int step = 0; step < 3; ++step)
         {
             const auto place = random_place(random, sut);
-            // Near-ties, too: as far as a face is at an end, but for some roundings.
+            // Near-ties are included: the distance of a face at an end, except for some roundings.
             const std::uint32_t face = random.below(kFaces);
             const long double distance = sut.distance_at(random.one_in(2) ? stand : place, face);
             const auto least = static_cast<float>(

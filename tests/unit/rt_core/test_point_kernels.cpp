@@ -21,7 +21,7 @@ namespace
 
 constexpr float kNoLimit = std::numeric_limits<float>::infinity();
 constexpr std::uint32_t kNoRef = 0xFFFF'FFFFU;
-/// Faces that are thinner may have looser bounds.
+/// Limit of the aspect; thinner faces may have looser bounds.
 constexpr long double kTightAspect = 8.0L;
 
 std::string name_of(const Kernels& kernels, const KernelScene& scene)
@@ -29,7 +29,7 @@ std::string name_of(const Kernels& kernels, const KernelScene& scene)
     return std::string(kernels.name) + ": " + scene.shape + ", probe " + scene.place;
 }
 
-/// What a node's children may be.
+/// Children of a node.
 struct ChildRefs
 {
     std::array<std::uint32_t, kNodeChildren> refs{};
@@ -52,7 +52,7 @@ struct ChildRefs
     }
 };
 
-/// A frontier and a batch that hold so many items each.
+/// Frontier and batch with this number of items each.
 struct Found
 {
     std::unique_ptr<Frontier> frontier{std::make_unique<Frontier>()};
@@ -74,7 +74,7 @@ Found enter(const Kernels& kernels, const KernelScene& scene, const ChildRefs& c
     return found;
 }
 
-/// Of the lanes that hold a face: bits of all bounds, and what is near.
+/// Bits of all bounds and near flags, of lanes with a face.
 std::vector<std::uint32_t> bits_of_batch(const BlockBatch& batch,
                                          const std::vector<BlockGeometry>& blocks, float limit)
 {
@@ -91,7 +91,7 @@ std::vector<std::uint32_t> bits_of_batch(const BlockBatch& batch,
     return bits;
 }
 
-/// The scene's block with the faces in `masks`, one block each.
+/// Blocks of the scene with the faces in `masks`, one block each.
 std::vector<BlockGeometry> blocks_with(const KernelScene& scene,
                                        const std::vector<std::uint32_t>& masks)
 {
@@ -104,7 +104,7 @@ std::vector<BlockGeometry> blocks_with(const KernelScene& scene,
     return blocks;
 }
 
-/// All blocks in a batch, with a way towards them that is the boxes'.
+/// Batch of all blocks, with the boxes' direction towards them.
 std::unique_ptr<BlockBatch> batch_of(const std::vector<BlockGeometry>& blocks, const Vec3& toward)
 {
     auto batch = std::make_unique<BlockBatch>();
@@ -121,7 +121,7 @@ std::unique_ptr<BlockBatch> batch_of(const std::vector<BlockGeometry>& blocks, c
     return batch;
 }
 
-/// The block's middle seen from the probe, in quanta, and sometimes another way.
+/// Direction from the probe to the block's middle, in quanta, sometimes another one.
 Vec3 random_way(Random& random, const KernelScene& scene)
 {
     Vec3 middle(0.0, 0.0, 0.0);
@@ -241,7 +241,7 @@ TEST(PointKernels, sort_out_only_blocks_whose_faces_are_all_beyond_and_the_known
         {
             nearest = std::min(nearest, FaceTruth(scene, lane).distance);
         }
-        // Near-ties, too: bounds a few roundings beside the distance.
+        // Near-ties are included: bounds a few roundings beside the distance.
         const auto bound = static_cast<float>(
             nearest * (random.one_in(2)
                            ? 1.0L + static_cast<long double>(random.between(-1e-6, 1e-6))

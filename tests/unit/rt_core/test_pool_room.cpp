@@ -59,7 +59,8 @@ TEST(PoolRoom, one_owner_cant_take_what_is_kept_for_another)
     }
     EXPECT_EQ(sut.left_for(modest), 0U);
     EXPECT_EQ(sut.left_for(greedy), 0U);
-    // What it gives back is kept for it again; what the greedy one gives back is for both.
+    // Memory returned by the modest one is reserved for it again; that of the greedy one is for
+    // both.
     sut.give_back(modest);
     EXPECT_EQ(sut.left_for(greedy), 0U);
     EXPECT_EQ(sut.left_for(modest), 1U);
@@ -74,8 +75,8 @@ TEST(PoolRoom, what_cant_be_refused_is_missing_for_everybody_until_as_much_has_c
     PoolShare one = sut.promise(0);
     PoolShare other = sut.promise(1);
     sut.take(one);
-    sut.take_unasked(one); // That was kept for the other,
-    sut.take_unasked(one); // and that was not there.
+    sut.take_unasked(one); // It was reserved for the other.
+    sut.take_unasked(one); // It was not available.
 
     EXPECT_EQ(sut.left_for(one), 0U);
     EXPECT_EQ(sut.left_for(other), 0U);

@@ -20,7 +20,7 @@ namespace tactus::test
 namespace
 {
 
-/// A room's corner: three planes that meet at the origin, free where all coordinates are positive.
+/// Corner of a room: three planes that meet at the origin, free at positive coordinates.
 TriangleList room_corner()
 {
     TriangleList list;
@@ -62,7 +62,7 @@ TEST(Proxy, goes_round_a_convex_edge_and_never_into_the_cube)
     Vec3 goal(0, 0, 0.08);
     for (int i = 0; i < 6'000; ++i)
     {
-        // A wandering hand that often goes through the cube.
+        // The hand wanders and often crosses the cube.
         goal = i % 500 == 0 ? random.in_cube(0.09) : Vec3(goal + random.in_cube(0.004));
         goal = goal.cwiseMax(-0.1).cwiseMin(0.1);
         const ToolOutput output = rig.step(goal);
@@ -175,7 +175,7 @@ TEST(Proxy, at_rest_comes_as_far_in_a_frame_as_is_known)
 
 TEST(Proxy, among_more_faces_than_fit_goes_as_far_as_those_that_do_and_on_in_the_next_frame)
 {
-    // A floor of small squares, as four objects that lie beside one another.
+    // The floor has small squares, as four adjacent objects.
     constexpr int kSquares = 22;
     constexpr double kEdge = 0.1 * kRadius;
     std::vector<Solid> floor(4);
@@ -206,7 +206,7 @@ TEST(Proxy, among_more_faces_than_fit_goes_as_far_as_those_that_do_and_on_in_the
     EXPECT_NEAR(output.proxy_m.x(), goal.x(), 1e-3 * kRadius);
 }
 
-/// What a proxy at the origin is told that came here from far away.
+/// Step of a proxy at the origin that came from far away.
 ToolOutput leap_among(const TriangleList& triangles, const Vec3& goal, Proxy& sut)
 {
     const ObjectPose pose;
@@ -219,7 +219,7 @@ ToolOutput leap_among(const TriangleList& triangles, const Vec3& goal, Proxy& su
     return sut.respond(goal_at(goal), {&placed, 1}, kInfinity);
 }
 
-/// The bent top of a prism with `faces` sides on a quarter of a circle of 2 m; a ball lies on its
+/// Bent top of a prism with `faces` sides on a quarter of a circle of 2 m; a sphere lies on its
 /// first edge.
 TriangleList bent_top(int faces)
 {
@@ -256,7 +256,7 @@ TEST(Proxy, among_more_faces_than_a_step_has_rounds_enters_none_and_comes_to_res
     Random random(77);
     for (int scene = 0; scene < 200; ++scene)
     {
-        TriangleList points; // A bowl below and round the ball, of any widths.
+        TriangleList points; // Bowl below and around the sphere, of any width.
         const double width = random.between(0.05, 1.0);
         while (points.size() < std::size_t{8} * kStepRounds)
         {
@@ -320,7 +320,7 @@ TEST(Proxy, of_few_planes_a_frame_gets_to_the_same_place_later_and_says_so)
     }
 }
 
-/// Waves, three tenths of the radius high, in squares of a fifth of it; along x.
+/// Waves along x, three tenths of the radius high, in squares of a fifth of it.
 TriangleList waves()
 {
     constexpr int kHalf = 12;
@@ -340,8 +340,8 @@ TriangleList waves()
     return list;
 }
 
-/// What a hand wants is far beyond what a list lets the proxy go. Were it asked what the whole way
-/// enters, a proxy that is behind would look at ever more, and fall behind by ever more.
+/// The goal is far beyond the list's permitted motion. A query for the whole path would cost a
+/// lagging proxy ever more time.
 TEST(Proxy, behind_a_fast_hand_asks_no_farther_than_it_may_go)
 {
     ProxyRig rig(waves(), Vec3(0, 0, kRadius));
@@ -542,7 +542,7 @@ TEST(Proxy, a_point_with_no_surface_near_goes_as_far_as_everything_is_clear)
     }
 }
 
-/// Both sides of a gap that is narrower than the ball, or of a plate that is thinner than that.
+/// Both sides of a gap narrower than the sphere, or of a thinner plate.
 TEST(Proxy, without_room_rests_and_moves_exactly_along_the_walls_with_friction_and_without)
 {
     constexpr std::array<double, 4> kRoom_m{-1e-4, 0.0, 1e-4, 1.1 * kRadius};
@@ -578,7 +578,7 @@ TEST(Proxy, without_room_rests_and_moves_exactly_along_the_walls_with_friction_a
     }
 }
 
-/// A server may say of an object that it has no stiffness to speak of.
+/// A server may report an object with almost no stiffness.
 TEST(Proxy, a_push_too_weak_for_a_direction_leaves_the_last_one)
 {
     ProxyRig rig(plane(), Vec3(0.1, 0.0, 0.02));
@@ -596,7 +596,7 @@ TEST(Proxy, a_push_too_weak_for_a_direction_leaves_the_last_one)
 
 TEST(Proxy, friction_rounds_a_ball_as_well)
 {
-    // A fan of thin faces: the bent top of a cylinder of radius 0.1 along y.
+    // Fan of thin faces: the bent top of a cylinder of radius 0.1 along y.
     TriangleList list;
     const auto on_top = [](int i, double y)
     { return Vec3(0.1 * std::sin(0.01 * i), y, 0.1 * std::cos(0.01 * i)); };
@@ -619,7 +619,7 @@ TEST(Proxy, friction_rounds_a_ball_as_well)
         ASSERT_LE(along, 0.4 * across * (1.0 + 1e-9)) << i;
         sum += i > 100 ? along / across : 0.0;
     }
-    EXPECT_GT(sum / 200.0, 0.36); // Over an edge it rolls a little farther than on a face.
+    EXPECT_GT(sum / 200.0, 0.36); // It rolls slightly farther over an edge than on a face.
 }
 
 TEST(Proxy, on_a_viscous_surface_makes_no_energy_however_the_hand_goes)
@@ -635,13 +635,13 @@ TEST(Proxy, on_a_viscous_surface_makes_no_energy_however_the_hand_goes)
         for (int step = 0; step < 4'000; ++step)
         {
             Vec3 next = hand + random.in_cube(5e-4);
-            next.z() = hand.z(); // Along the surface alone: there is no other spring to ask.
+            next.z() = hand.z(); // Along the surface only: there is no other spring to test.
             next *= std::min(1.0, 0.05 / next.norm());
             next.z() = hand.z();
             const ToolOutput now = rig.step(next);
             work_j += now.force_n.dot(next - hand);
             const double stretch_m = (now.proxy_m - next).head<2>().norm();
-            // Never more than the spring has: what it holds was given to it.
+            // Never more than the spring's energy, which was supplied to it.
             EXPECT_LE(work_j + 0.5 * kStiffness * stretch_m * stretch_m, 1e-5) << seed;
             hand = next;
         }
@@ -662,7 +662,7 @@ TEST(Proxy, a_pull_across_a_frozen_surface_does_not_turn_the_force)
 
 TEST(Proxy, crosses_many_small_triangles_in_one_frame)
 {
-    // A strip of thin faces: the bent top of a cylinder of radius 0.1 along y.
+    // Strip of thin faces: the bent top of a cylinder of radius 0.1 along y.
     TriangleList list;
     const auto on_top = [](int i, double y)
     { return Vec3(0.1 * std::sin(0.002 * i), y, 0.1 * std::cos(0.002 * i)); };
@@ -681,7 +681,7 @@ TEST(Proxy, crosses_many_small_triangles_in_one_frame)
             const ToolOutput output = rig.step(goal);
             ASSERT_GE(rig.clearance(), kRadius * (1.0 - 2e-6));
             ASSERT_TRUE(output.in_contact) << way << " m at " << x;
-            // Of facets 0.2 mm wide: the arc's sagitta and half an edge's angle.
+            // Facets 0.2 mm wide: the arc's sagitta and half an edge's angle.
             expect_vector(output.force_n, kStiffness * 0.002 * goal.normalized(), 0.02);
         }
     }
@@ -699,7 +699,7 @@ TEST(Proxy, of_a_fast_hand_goes_on_with_further_lists_of_the_same_frame)
     EXPECT_NEAR(there.proxy_m.x(), kRadius, 1e-6 * kRadius);
     EXPECT_FALSE(there.under_way);
     EXPECT_EQ(there.lag_m, 0.0);
-    // Of one frame: from where it began.
+    // The path of one frame begins at its start.
     EXPECT_EQ(rig.sut.path_m().front(), start);
     EXPECT_EQ(rig.sut.path_m().back(), rig.sut.position_m());
 
@@ -748,7 +748,7 @@ TEST(Proxy, behind_a_fast_hand_is_never_without_force_and_on_it_again_when_that_
 {
     ProxyRig rig(plane(), Vec3(0, 0, kRadius));
     rig.settle(Vec3(0, 0, 0.5 * kRadius));
-    rig.certified = 1.06 * kRadius; // 0.6 mm a list
+    rig.certified = 1.06 * kRadius; // 0.6 mm a list.
     Vec3 goal(0, 0, 0.5 * kRadius);
     double lag_m = 0.0;
     for (int frame = 0; frame < 100; ++frame)

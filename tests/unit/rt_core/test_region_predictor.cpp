@@ -18,7 +18,7 @@ namespace
 
 constexpr double kLead_s = 0.02;
 constexpr double kSpeedMax_m_per_s = 10.0;
-/// One where the tool is, and one for each quarter of the lead.
+/// One ball at the tool, and one for each quarter of the horizon.
 constexpr std::size_t kBalls = 5;
 constexpr std::size_t kHalfway = 2;
 constexpr std::size_t kLast = 4;
@@ -43,7 +43,7 @@ PairMotion motion_to(const Vec3& center_m)
     return motion;
 }
 
-/// Follows a path, a place for each frame.
+/// Observes a path, one place for each frame.
 void follow(RegionPredictor& sut, const std::function<Vec3(double)>& place_at, int frames)
 {
     for (int i = 0; i <= frames; ++i)
@@ -168,7 +168,7 @@ TEST(RegionPredictor, distance_query_does_not_go_through_the_surface)
     EXPECT_NEAR(held.x(), straight.x(), 1e-9);
 }
 
-/// A tool that waits for data behind its hand comes after it, at its own speed.
+/// A tool that waits for data follows its hand at its own speed.
 TEST(RegionPredictor, a_tool_behind_its_hand_is_expected_on_the_way_to_it)
 {
     RegionPredictor sut;

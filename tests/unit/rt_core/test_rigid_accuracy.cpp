@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// Force and torque of rigid tools at rest, beside what statics says of the ideal shapes: within
-/// (facet angle) x force, and for a torque times its lever. The triangles here are exact, so there
-/// is no quantum.
+/// Force and torque of rigid tools at rest, compared with statics of the ideal shapes: within
+/// (facet angle) x force, and for a torque times its lever. The triangles are exact, so there is no
+/// quantum.
 
 #include "tests/unit/rt_core/body_rig.hpp"
 
@@ -20,8 +20,8 @@ namespace
 
 constexpr double kPi = std::numbers::pi;
 
-/// A cylinder's wall of so many facets round the z axis, each with its middle at the radius and cut
-/// into so many pieces.
+/// Wall of a cylinder around the z axis, with `facets` facets whose middles are at the radius, each
+/// in `rings` pieces.
 TriangleList tube(double radius_m, double half_m, int facets, int rings = 1)
 {
     TriangleList list;
@@ -47,7 +47,7 @@ TriangleList tube(double radius_m, double half_m, int facets, int rings = 1)
 
 TEST(RigidAccuracy, a_box_on_an_edge_is_pushed_along_the_edges_normal_through_where_it_touches)
 {
-    // A ridge along y, steep on both sides; the box's bottom lies across it, off its middle.
+    // Ridge along y, steep on both sides; the box's bottom lies across it, off its middle.
     TriangleList ridge;
     add_square(ridge, {0, -0.1, 0}, {0.1, -0.1, -0.2}, {0.1, 0.1, -0.2}, {0, 0.1, 0});
     add_square(ridge, {0, -0.1, 0}, {-0.1, -0.1, -0.2}, {-0.1, 0.1, -0.2}, {0, 0.1, 0});
@@ -59,7 +59,7 @@ TEST(RigidAccuracy, a_box_on_an_edge_is_pushed_along_the_edges_normal_through_wh
 
     const ToolOutput output = rig.settle(hand, Mat3::Identity(), 3'000);
 
-    // The box turns until torque and force are those of one line along the box's normal.
+    // The box rotates until torque and force are those of one line along its normal.
     const Vec3 normal = output.proxy_rotation.col(2);
     EXPECT_LE((output.force_n.normalized() - normal).norm(), 2e-3);
     const Vec3 lever = Vec3(0, 0, 0) - output.proxy_m;
@@ -79,7 +79,7 @@ TEST(RigidAccuracy, a_peg_with_a_fifth_of_a_millimetre_of_room_is_centred_by_its
     constexpr int kFacets = 96;
     constexpr double kPeg = 0.01;
     constexpr double kRoom = 0.0002;
-    // The capsule's axis is the peg's, its radius the peg's.
+    // Axis and radius of the capsule are the peg's.
     Rig rig(tool_of(Segment{{0, 0, -0.02}, {0, 0, 0.02}}, kPeg),
             {{tube(kPeg + kRoom, 0.06, kFacets), {}}});
     rig.settle(Vec3(0, 0, 0), Mat3::Identity(), 20);
@@ -88,7 +88,7 @@ TEST(RigidAccuracy, a_peg_with_a_fifth_of_a_millimetre_of_room_is_centred_by_its
         const Vec3 aside = 0.003 * Vec3(std::cos(heading), std::sin(heading), 0.0);
         const ToolOutput output = rig.settle(aside, Mat3::Identity(), 600);
 
-        // Held a clearance off the axis: the hand is 3 mm away, the peg 0.2 mm.
+        // The peg is one clearance off the axis: the hand is 3 mm away, the peg 0.2 mm.
         const double force_n = kBodyStiffness * (0.003 - kRoom);
         const double facet = 2.0 * kPi / kFacets;
         EXPECT_LE((output.force_n + force_n * aside.normalized()).norm(), facet * force_n)
@@ -96,7 +96,7 @@ TEST(RigidAccuracy, a_peg_with_a_fifth_of_a_millimetre_of_room_is_centred_by_its
         EXPECT_LE(output.torque_nm.norm(), facet * force_n * 0.02);
         EXPECT_NEAR(output.force_n.norm(), force_n, facet * force_n);
     }
-    // Tilted, it touches on both sides: as far as room and length let it turn.
+    // A tilted peg touches on both sides: clearance and length limit the rotation.
     const Mat3 tilted = turn(Vec3(0, 1, 0), 0.1);
     const ToolOutput output = rig.settle(Vec3(0, 0, 0), tilted, 600);
     const double most_rad = kRoom / 0.02;
@@ -120,8 +120,8 @@ TEST(RigidAccuracy, a_cylinder_across_a_cylinder_is_pushed_from_axis_to_axis)
 
         const ToolOutput output = rig.settle(Vec3(0, off, 0.025), Mat3::Identity(), 2'000);
 
-        // The tool lies along y on a cylinder along x: it touches where its own line is the
-        // nearest, straight above the axis, and is tilted by what the lever makes of the force.
+        // The tool is along y on a cylinder along x: it touches at the point of its line nearest to
+        // the axis, straight above it, tilted by the lever of the force.
         const Vec3 axis = output.proxy_rotation.col(1);
         const Vec3 up = Vec3(1, 0, 0).cross(axis).normalized();
         EXPECT_LE((output.force_n.normalized() - (up.z() > 0 ? up : Vec3(-up))).norm(), facet)
@@ -138,7 +138,7 @@ TEST(RigidAccuracy, a_cylinder_across_a_cylinder_is_pushed_from_axis_to_axis)
 
 TEST(RigidAccuracy, force_and_torque_change_by_no_more_than_the_stiffness_times_the_motion)
 {
-    // Over a cylinder of facets, pressed and turned by a hand that never stops.
+    // The box moves over a cylinder of facets, pressed and rotated by a hand that never stops.
     constexpr int kFacets = 48;
     ToolSpec spec = tool_of(Box{kHalf});
     Rig rig(spec, {{tube(0.05, 0.06, kFacets, 12), {}}});
@@ -166,7 +166,7 @@ TEST(RigidAccuracy, force_and_torque_change_by_no_more_than_the_stiffness_times_
             const double moved = length(hand - last_hand, last_turn, turned) +
                                  length(place.translation_m - last_place.translation_m,
                                         last_place.rotation, place.rotation);
-            // From one facet to the next: its angle, and the lever that goes on by its width.
+            // Between facets: its angle, and the lever that changes by its width.
             const double facet_n = facet * output.force_n.norm();
             ASSERT_LE((output.force_n - last.force_n).norm(), kBodyStiffness * moved + facet_n)
                 << i;

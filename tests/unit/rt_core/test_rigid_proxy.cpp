@@ -19,7 +19,7 @@ namespace tactus::test
 namespace
 {
 
-/// What a query says that found all there is.
+/// Answer of a complete query.
 std::unique_ptr<OwnedSurface> exact_surface()
 {
     auto surface = std::make_unique<OwnedSurface>();
@@ -27,7 +27,8 @@ std::unique_ptr<OwnedSurface> exact_surface()
     return surface;
 }
 
-/// Distance of the core on its way here: its centre goes straight while it turns round one axis.
+/// Least distance of the core on its path: its centre moves straight while it rotates about one
+/// axis.
 double least_on_way(const Rig& rig, const ToolCore& core, const Similarity& from)
 {
     const Similarity& to = rig.sut.place();
@@ -46,7 +47,7 @@ double least_on_way(const Rig& rig, const ToolCore& core, const Similarity& from
     return least;
 }
 
-/// A flat square of 0.2 m in cells, each of two triangles. Corners within it are moved along it.
+/// Flat square of 0.2 m in cells of two triangles each, with inner corners displaced in its plane.
 TriangleList flat_mesh(double cell_m)
 {
     const int cells = static_cast<int>(0.2 / cell_m);
@@ -67,7 +68,7 @@ TriangleList flat_mesh(double cell_m)
     return triangles;
 }
 
-/// A box at rest on a plane, just touching it.
+/// Box at rest on a plane, just touching it.
 Rig box_on_plane(const Material& material)
 {
     Rig rig = on_plane(Box{kHalf}, material);
@@ -135,7 +136,7 @@ TEST(RigidProxy, pressed_at_an_angle_turns_back_what_the_surface_turns)
 
         const ToolOutput output = rig.settle(Vec3(0, 0, -0.01), tilted);
 
-        // Pushed by points below it only: along z, and with a lever no longer than it is.
+        // Contacts below only: a force along z, and a lever no longer than the tool.
         EXPECT_TRUE(output.in_contact);
         EXPECT_GT(output.force_n.z(), 0.0);
         EXPECT_LE(Vec3(output.force_n.x(), output.force_n.y(), 0.0).norm(), 1e-3);
@@ -144,7 +145,7 @@ TEST(RigidProxy, pressed_at_an_angle_turns_back_what_the_surface_turns)
         EXPECT_LE(std::abs(output.torque_nm.y()),
                   output.force_n.z() * (kHalf.x() + kHalf.z()) + 1e-6);
         EXPECT_NEAR(rig.distance(), kBodyRadius, 1e-3 * kBodyRadius);
-        // Of the coupling's two springs: torque and force say where the proxy is.
+        // The coupling's two springs: torque and force determine the proxy's pose.
         const double arm = kHalf.norm() + kBodyRadius;
         const Eigen::AngleAxisd held(output.proxy_rotation * tilted.transpose());
         const Vec3 torque = kBodyStiffness * arm * arm * held.angle() * held.axis();
@@ -274,7 +275,7 @@ TEST(RigidProxy, is_not_run_over_by_an_object_that_turns_and_leaps)
             ASSERT_FALSE(output.frozen) << i;
             ASSERT_FALSE(output.squeezed) << i;
             ASSERT_GT(rig.distance(), 0.0) << i;
-            ASSERT_GT(to_model(pose, output.proxy_m).z(), 0.0) << i; // On the side that it was on.
+            ASSERT_GT(to_model(pose, output.proxy_m).z(), 0.0) << i; // On its previous side.
         }
     }
 }
@@ -315,7 +316,7 @@ TEST(RigidProxy, that_an_object_came_over_is_given_up_when_its_force_has_faded)
     EXPECT_EQ(output.force_n, Vec3(0, 0, 0));
 }
 
-/// A ball's proxy at the origin that is told of contacts with one object.
+/// Sphere's proxy at the origin with given contacts with one object.
 class ToldBall
 {
 public:
@@ -334,7 +335,7 @@ public:
         sut.see(hand_at(goal));
         return sut.respond(hand_at(goal), {&placed, 1}, kInfinity);
     }
-    /// Where the ball's core is, with a surface so far away.
+    /// Contact of the sphere's core with a surface at this distance.
     [[nodiscard]] Contact contact(const Vec3& normal, double distance) const
     {
         const Vec3 at = sut.place().translation_m;
@@ -350,10 +351,10 @@ private:
 public:
     RigidProxy sut{tool_of(Segment{{0, 0, -0.01}, {0, 0, 0.01}}), planes_};
     bool is_truncated{false};
-    double lower_m{kBodyRadius}; ///< Of everything, as it is told.
+    double lower_m{kBodyRadius}; ///< Reported lower bound of all distances.
 };
 
-/// The i-th of `count` directions on a cone, none of which lies between others.
+/// Direction i of `count` on a cone, none between others.
 Vec3 on_cone(std::size_t i, std::size_t count)
 {
     const double angle =
@@ -386,7 +387,8 @@ TEST(RigidProxy, takes_as_many_planes_as_the_limit_and_says_when_it_leaves_one_o
         {
             contacts.push_back(ball.contact(on_cone(i, count), 1.5 * kBodyRadius));
         }
-        // What holds is kept, wherever it is told of: only then one more is added from what held.
+        // Holding contacts are kept in any order of reports: then only one more is added from those
+        // that held.
         static_cast<void>(
             ball.step({ball.contact(on_cone(0, count), kBodyRadius)},
                       ball.sut.place().translation_m - kBodyRadius * on_cone(0, count)));
@@ -442,7 +444,7 @@ TEST(RigidProxy, of_two_objects_each_pushes_by_its_own_stiffness)
 {
     Material soft;
     soft.stiffness_n_per_m = 100.0;
-    // A corner of two walls; the hand is as deep behind each of them.
+    // Corner of two walls; the hand is equally deep behind each of them.
     Rig rig(tool_of(Segment{{0, 0, -0.01}, {0, 0, 0.01}}), {{plane(), {}}, {plane(), {}, soft}});
     rig.objects[1].pose.rotation = turn(Vec3(0, 1, 0), std::numbers::pi / 2.0);
     rig.settle(Vec3(0.03, 0, 0.05));
@@ -491,7 +493,7 @@ TEST(RigidProxy, damping_brakes_a_turn_and_an_object_that_comes_nearer)
     ToolGoal hand = hand_at(Vec3(0, 0, 0.008));
     rig.settle(hand.position_m);
     const double still_n = rig.step(hand).force_n.z();
-    // Turning, one side comes in as fast as the other one goes out; what rests on both is braked.
+    // A rotation moves one side in as fast as the other one out; contact on both is damped.
     hand.spin_rad_per_s = Vec3(0, 1.0, 0);
     EXPECT_LT(rig.step(hand).torque_nm.y(), -1e-4);
     hand.spin_rad_per_s = Vec3(0, 0, 0);
@@ -507,7 +509,7 @@ TEST(RigidProxy, a_twist_about_the_normal_sticks_and_slides_by_its_torque)
     Rig rig = box_on_plane(material);
     const Vec3 hand(0, 0, kHalf.z() + kBodyRadius - 0.004);
     rig.settle(hand, Mat3::Identity(), 100);
-    // Of four corners that carry the same the friction's torque is at most this.
+    // The friction's torque of four equally loaded corners is at most this.
     const double lever = std::hypot(kHalf.x(), kHalf.y());
     const double most_nm = 0.4 * kBodyStiffness * 0.004 * lever;
     const double arm = kHalf.norm() + kBodyRadius;
@@ -572,8 +574,8 @@ TEST(RigidProxy, friction_never_drives_the_tool)
 
             const ToolOutput output = rig.step(goal, rotation);
 
-            // The hand's springs are stretched by what the force says at most: what holds back
-            // never sends the tool the other way.
+            // The hand's springs are stretched at most by the force: the constraints never push the
+            // tool backwards.
             ASSERT_GT(rig.distance(), 0.0) << i;
             const double pulled =
                 output.force_n.dot(ahead) + output.torque_nm.dot(turned.angle() * turned.axis());

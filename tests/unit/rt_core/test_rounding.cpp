@@ -16,7 +16,7 @@ namespace
 
 constexpr float kFloatInfinity = std::numeric_limits<float>::infinity();
 
-/// Any finite float, each bit pattern as likely.
+/// Random finite float, uniform over bit patterns.
 float any_float(Random& random)
 {
     for (;;)
@@ -50,7 +50,7 @@ void expect_next(float value)
     ASSERT_EQ(next_down(value), std::nextafter(value, -kFloatInfinity)) << value;
 }
 
-/// The rounded values are neighbours of the double and on its right sides.
+/// Expects rounded values that are neighbours of the double on the right sides.
 void expect_rounded(double value)
 {
     const float up = round_up_to_float(value);

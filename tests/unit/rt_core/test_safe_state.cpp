@@ -23,14 +23,14 @@ namespace
 constexpr double kForceMax_n = 8.0;
 constexpr double kRounding_n = 1e-9;
 
-/// A period, and the frame's force and torque in it.
+/// Period with the frame's force and torque.
 struct GuardedPeriod : ToolPeriod
 {
     Vec3 force_n{0.0, 0.0, 0.0};
     Vec3 torque_nm{0.0, 0.0, 0.0};
 };
 
-/// What went out in it.
+/// Output of a period.
 struct LetOut
 {
     Vec3 force_n{0.0, 0.0, 0.0};
@@ -39,7 +39,7 @@ struct LetOut
     ForceOff causes{ForceOff::none};
 };
 
-/// One tool with a force on it, frame by frame.
+/// One tool with a force, frame by frame.
 class GuardedTool
 {
 public:
@@ -62,7 +62,7 @@ public:
         sut.fade(force, kPeriod_s, cause);
         return keep(force);
     }
-    /// Until the whole force goes out.
+    /// Steps until the force is at full gain.
     void warm_up()
     {
         for (int i = 0; i < 200; ++i)
@@ -88,7 +88,7 @@ private:
     }
 };
 
-/// What goes wrong, how it is called, and how the input says so.
+/// Cause with its name and the input that sets it.
 struct Cause
 {
     const char* name;
@@ -116,7 +116,7 @@ constexpr Cause faulty(const char* name, ForceOff cause)
             [](GuardedPeriod& input) { input.faults = FrameFault::none; }};
 }
 
-/// Causes that last until they are ended; the lost force and the stall have tests of their own.
+/// Causes that last until they end; the lost force and the stall have separate tests.
 const Cause kCauses[] = {
     known<ForceOff::software>("software"),
     known<ForceOff::disconnect>("disconnect"),
@@ -148,7 +148,7 @@ const Cause kCauses[] = {
 class SafeStateCause : public testing::TestWithParam<Cause>
 {
 protected:
-    /// The most that the damping may make.
+    /// Greatest force of the damping.
     static double damping_max_n(const GuardedPeriod& input)
     {
         return std::min(GuardedTool::kLimits.damping_n_s_per_m * input.velocity_m_per_s.norm(),
@@ -176,7 +176,7 @@ TEST_P(SafeStateCause, fades_the_last_force_from_the_first_frame_and_names_itsel
         EXPECT_LE((out.force_n - ramp_n).norm(), damping_n + kRounding_n) << elapsed_s;
         EXPECT_LE(out.force_n.norm(), before_n + damping_n + kRounding_n);
     }
-    tool.step(); // The last one, but for rounding.
+    tool.step(); // The last one, except for rounding.
     EXPECT_EQ(tool.last.force_n.norm(), 0.0);
     for (int i = 0; i < 100; ++i)
     {
@@ -224,7 +224,7 @@ TEST(SafeState, fades_the_present_force_of_a_proxy_that_is_held_and_goes_on_with
         tool.input.faults = held;
         for (int frame = 1; frame <= 20; ++frame)
         {
-            tool.input.force_n = GuardedTool::kForce_n * (1.0 - 0.02 * frame); // It draws back.
+            tool.input.force_n = GuardedTool::kForce_n * (1.0 - 0.02 * frame); // The hand retreats.
             const double gain = 1.0 - frame * kPeriod_s / kFadeTime_s;
             EXPECT_EQ(tool.step().state, SafetyState::brake);
             EXPECT_NEAR((tool.last.force_n - gain * tool.input.force_n).norm(), 0.0, kRounding_n);
@@ -286,7 +286,7 @@ TEST(SafeState, finds_how_fast_a_device_turns_that_does_not_tell_it)
         GuardedTool tool;
         tool.sut = SafeState(limits);
         tool.warm_up();
-        for (const std::uint32_t periods : {1U, 4U}) // By the true time after a stall.
+        for (const std::uint32_t periods : {1U, 4U}) // Real time after a stall.
         {
             tool.input.turned_rad.z() += turning * kPeriod_s * periods;
             const ForceOff causes = tool.step(periods).causes;
@@ -337,7 +337,7 @@ TEST(SafeState, a_torque_goes_as_the_force_goes)
     EXPECT_EQ(tool.step().causes, ForceOff::garbage);
 }
 
-/// As the stages behind it do where they hold a force back.
+/// Input of the later stages when they limit a force.
 TEST(SafeState, what_went_out_in_its_place_is_what_fades)
 {
     GuardedTool tool;
@@ -406,7 +406,7 @@ TEST(SafeState, goes_on_from_what_the_device_has_left_of_the_force)
     tool.input.force_left = 0.7;
     EXPECT_EQ(tool.step().causes, ForceOff::watchdog);
     EXPECT_NEAR(tool.sut.gain(), 0.7, 1e-12);
-    tool.input.force_left = 0.999; // Its own fall is the steeper one.
+    tool.input.force_left = 0.999; // Its own decrease is steeper.
     tool.step();
     EXPECT_NEAR(tool.sut.gain(), 0.7 - kPeriod_s / kFadeTime_s, 1e-12);
     tool.input.force_left = 1.0;
@@ -484,13 +484,13 @@ TEST(SafeState, finds_the_speed_of_a_device_that_does_not_tell_it)
     {
         GuardedTool tool;
         tool.step();
-        for (const std::uint32_t periods : {1U, 4U}) // By the true time after a stall.
+        for (const std::uint32_t periods : {1U, 4U}) // Real time after a stall.
         {
             tool.input.hand_m += Vec3(speed * kPeriod_s * periods, 0.0, 0.0);
             EXPECT_EQ(has_cause(tool.step(periods).causes, ForceOff::velocity), speed > 1.0);
         }
     }
-    // A slow device repeats its sample: neither standing still nor leaping in between.
+    // A slow device repeats its sample: the hand neither rests nor jumps meanwhile.
     GuardedTool tool;
     tool.step();
     for (int i = 0; i < 12; ++i)
@@ -559,8 +559,8 @@ TEST(SafeState, damps_nothing_on_the_way_back_where_nothing_is_felt)
     }
 }
 
-/// Causes at any time and of any length, stalls among them, and a force that wanders: the law of
-/// the header holds in every frame. The hand is still, so nothing is damped.
+/// Random causes at any time and of any length, with stalls, and a varying force: the header's law
+/// holds in every frame. The hand rests, so nothing is damped.
 TEST(SafeState, never_steps_farther_than_its_law)
 {
     Random random(71);

@@ -16,9 +16,9 @@ namespace tactus::test
 namespace
 {
 
-constexpr double kRounding_s = 1e-9; ///< Of sums of frames.
+constexpr double kRounding_s = 1e-9; ///< Rounding of sums of frames.
 
-/// A watch, the goal that it lets through, and a tool that is not in contact.
+/// Watch with its accepted goal, and a tool without contact.
 class WatchedTool
 {
 public:
@@ -37,13 +37,13 @@ public:
         }
         return verdict;
     }
-    /// Where it was, turned.
+    /// Sample at the same place, rotated.
     SampleWatch::Verdict turn_to(double angle_rad)
     {
         rotation = Eigen::AngleAxisd(angle_rad, Vec3(0.6, 0.0, 0.8)).toRotationMatrix();
         return give(goal.position_m, 0);
     }
-    /// What is wrong once the proxy is there.
+    /// Fault with the proxy at this place.
     [[nodiscard]] FrameFault fault_with(const Vec3& proxy_m)
     {
         ToolOutput output;
@@ -57,8 +57,8 @@ public:
     SampleWatch sut;
     ToolSpec spec{0.002, 500.0, 8.0, 1.0};
     ToolGoal goal;
-    Mat3 rotation{Mat3::Identity()};       ///< That the device says.
-    Mat3 proxy_rotation{Mat3::Identity()}; ///< Of the tool as surfaces hold it.
+    Mat3 rotation{Mat3::Identity()};       ///< Rotation by the device.
+    Mat3 proxy_rotation{Mat3::Identity()}; ///< Rotation of the tool in contact.
 };
 
 const Vec3 kHere(0.1, 0.0, 0.0);
@@ -143,7 +143,7 @@ TEST(SampleWatch, a_slow_device_is_not_stuck_and_a_stuck_one_is)
 {
     WatchedTool tool;
     std::int64_t time_ns = 1'000;
-    for (int frame = 0; frame < 40; ++frame) // A new sample in every fourth frame.
+    for (int frame = 0; frame < 40; ++frame) // New sample in every fourth frame.
     {
         const SampleWatch::Verdict verdict = tool.give(kHere, time_ns + frame / 4);
         EXPECT_EQ(verdict.is_taken, frame % 4 == 0);
@@ -197,7 +197,7 @@ TEST(SampleWatch, a_jump_is_told_until_the_goal_is_near_the_proxy)
 
 TEST(SampleWatch, a_goal_has_jumped_that_is_so_many_times_too_fast)
 {
-    for (const double speed_max : {0.1, 1.0, 3.0}) // Taken for at least 1 m/s.
+    for (const double speed_max : {0.1, 1.0, 3.0}) // The least value used is 1 m/s.
     {
         const double limit_m = kJumpSpeeds * std::max(speed_max, 1.0) * kPeriod_s;
         for (const double share : {0.999, 1.001})
@@ -256,7 +256,7 @@ TEST(SampleWatch, a_gap_in_the_samples_is_no_jump)
     {
         static_cast<void>(tool.give(kHere, 0, false));
     }
-    // At 50 m/s for 20 frames.
+    // The speed is 50 m/s for 20 frames.
     EXPECT_EQ(tool.give(kHere + Vec3(1.0, 0.0, 0.0), 0).fault, FrameFault::none);
     EXPECT_EQ(tool.give(kHere, 0).fault, FrameFault::tool_jumped);
 }
@@ -274,9 +274,9 @@ TEST(SampleWatch, says_what_is_wrong_until_it_is_not)
     static_cast<void>(tool.give(elsewhere, 0));
     EXPECT_EQ(tool.sut.fault(), FrameFault::tool_jumped);
     static_cast<void>(tool.fault_with(kHere));
-    static_cast<void>(tool.give(elsewhere, 0)); // Itself no jump, but the place is still lost.
+    static_cast<void>(tool.give(elsewhere, 0)); // Not a jump itself, but the place is still lost.
     EXPECT_EQ(tool.sut.fault(), FrameFault::tool_jumped);
-    static_cast<void>(tool.fault_with(elsewhere)); // The proxy has come after it.
+    static_cast<void>(tool.fault_with(elsewhere)); // The proxy has followed.
     static_cast<void>(tool.give(elsewhere, 0));
     EXPECT_EQ(tool.sut.fault(), FrameFault::none);
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// Smooth normals are what their energy says, make none, and take steps away. The oracle is that
-/// energy, written down here once more with other distances, and derived by differences.
+/// Force shading equals the gradient of its energy, generates none, and removes steps. The oracle
+/// is that energy, implemented again with other distances, and differentiated numerically.
 
 #include "rt_core/force/smooth_normals.hpp"
 #include "rt_core/limits.hpp"
@@ -34,7 +34,7 @@ Point<double> plain(const Vec3& v)
     return {v.x(), v.y(), v.z()};
 }
 
-/// A sphere of 8 n^2 faces.
+/// Sphere of 8 n^2 faces.
 TriangleList sphere(double radius_m, int n)
 {
     TriangleList list;
@@ -65,7 +65,7 @@ TriangleList sphere(double radius_m, int n)
     return list;
 }
 
-/// A field of hills `high_m` high in cells of 4 mm, 12 x 12 of them round the origin.
+/// Field of hills `high_m` high in 12 x 12 cells of 4 mm around the origin.
 TriangleList hills(double high_m, Random& random)
 {
     constexpr std::size_t kCells = 12;
@@ -92,7 +92,7 @@ TriangleList hills(double high_m, Random& random)
     return list;
 }
 
-/// h(p) where all faces look the same way.
+/// h(p) if all faces have the same orientation.
 double rise_at(const TriangleList& list, const Vec3& place, double radius_m, double width_m)
 {
     double weights = 0.02;
@@ -126,11 +126,11 @@ ToolSpec smooth_ball(double width_m)
     return spec;
 }
 
-/// How the force goes over the sphere of some 5,000 faces, 0.1 mm a frame.
+/// Changes of the force over a sphere of about 5,000 faces, 0.1 mm a frame.
 struct Ride
 {
     double largest_step_n{0.0};
-    double worst_angle{0.0}; ///< To the sphere's own normal.
+    double worst_angle{0.0}; ///< Angle to the sphere's normal.
     double least_gap_m{kInfinity};
 };
 Ride ride(const TriangleList& list, double radius_m, double depth_m, double width_m)
@@ -145,7 +145,7 @@ Ride ride(const TriangleList& list, double radius_m, double depth_m, double widt
         return Vec3(out_m * (std::cos(angle) * u + std::sin(angle) * v));
     };
     constexpr int kSteps = 250;
-    TriangleList near; // What is in reach of the way; the rest would only take time.
+    TriangleList near; // Triangles in reach of the path; the rest would only take time.
     for (const auto& corners : list)
     {
         const Vec3 middle = hand_on(kSteps / 2);
@@ -173,7 +173,7 @@ Ride ride(const TriangleList& list, double radius_m, double depth_m, double widt
     return result;
 }
 
-/// What a hand gets out of twice round a closed way, in and out of the hills.
+/// Work on a hand in two rounds of a closed path, in and out of the hills.
 double work_over(const TriangleList& list, double width_m, double friction, std::uint64_t seed)
 {
     Random random = Random::seeded(seed);
@@ -264,7 +264,7 @@ TEST(SmoothNormals, look_at_no_more_faces_than_they_may_in_the_widest_and_the_na
             .looks;
     };
     EXPECT_LE(looks(kSmoothWidthMin_m), 8U);
-    // Faces that share their nearest corner are as far as each other: either all of them or none.
+    // Faces with a common nearest corner are equally far: all of them or none.
     std::vector<double> distances;
     for (const auto& corners : list)
     {

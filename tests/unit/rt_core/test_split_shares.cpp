@@ -53,12 +53,12 @@ TEST(Urgency, orders_by_class_and_then_by_time)
     EXPECT_FALSE(touching < touching);
 }
 
-/// One frame in which everybody takes all that it may, or nothing.
+/// One frame in which every request takes its whole share, or nothing.
 struct SharedFrame
 {
     std::uint32_t splits{0};
-    std::uint32_t saved{0};                               ///< By each.
-    std::array<std::vector<bool>, kUrgencyClasses> takes; ///< By class and request.
+    std::uint32_t saved{0};                               ///< Savings of each.
+    std::array<std::vector<bool>, kUrgencyClasses> takes; ///< Takers by class and request.
     std::array<std::vector<std::uint32_t>, kUrgencyClasses> got;
 
     std::uint32_t run()
@@ -152,7 +152,7 @@ TEST(SplitShares, what_is_left_is_saved_and_what_is_used_beyond_is_paid)
     EXPECT_EQ(sut.save_all(0), 8U);
 }
 
-/// Whatever the others do: never more than all, and every class that waits gets its eighth while
+/// For any behaviour of the others: never more than all, and every waiting class gets its eighth if
 /// there are at least eight splits, one split for each of its first requests if it has more.
 TEST(SplitShares, no_class_is_starved_and_no_budget_overdrawn)
 {
@@ -194,12 +194,12 @@ struct WaitingRequest
     std::uint32_t waited{0};
     std::uint32_t longest{0};
 
-    /// The least comes first.
+    /// Order of service; the least is first.
     [[nodiscard]] auto turn() const { return std::tuple(of, ~waited, ~saved); }
 };
 
-/// Requests that all wait, frame after frame, each in its class. Those go first for which nothing
-/// was left longest, then those that saved most, as Refinement has it; or always the first ones.
+/// Requests that all wait, frame after frame, each in its class. Those that got nothing for the
+/// longest time are first, then those with most savings, like Refinement; or always the first ones.
 class WaitingRequests
 {
 public:
@@ -210,7 +210,7 @@ public:
     {
         return static_cast<std::uint32_t>(std::ranges::count(requests_, of, &WaitingRequest::of));
     }
-    /// Frames on end in which nothing was left for one of a class, at most.
+    /// Longest sequence of frames that left nothing for one request of a class.
     [[nodiscard]] std::uint32_t longest_wait(UrgencyClass of) const
     {
         std::uint32_t longest = 0;
@@ -238,7 +238,7 @@ public:
         {
             const auto share = sut.take(request.of, request.saved, done);
             const std::uint32_t most = share.limit - done;
-            // Most take all that they may.
+            // Most requests take their whole share.
             const std::uint32_t used = random_.one_in(4) ? random_.below(most + 1) : most;
             request.saved = sut.save(request.saved, share.equal, used);
             request.waited = share.equal == 0 ? request.waited + 1 : 0;
@@ -259,7 +259,7 @@ std::uint32_t share_up(std::uint32_t count, std::uint32_t parts)
     return (count + parts - 1) / parts;
 }
 
-/// The stated bound: of n requests of a class each may take one in ceil(n / ceil(K / 8)) frames.
+/// Stated bound: each of n requests of a class may take one in ceil(n / ceil(K / 8)) frames.
 TEST(SplitShares, each_of_64_waiting_requests_has_its_turn_within_the_stated_number_of_frames)
 {
     const std::uint64_t seed = seed_of(2'301);
@@ -292,7 +292,7 @@ TEST(SplitShares, each_of_64_waiting_requests_has_its_turn_within_the_stated_num
     }
 }
 
-/// Without that order the last ones never have one: what the bound rests on.
+/// Without that order the last ones never get a split, which shows that the bound depends on it.
 TEST(SplitShares, leave_nothing_for_the_last_of_64_whose_turn_never_changes)
 {
     WaitingRequests requests(16, Random::seeded(1));

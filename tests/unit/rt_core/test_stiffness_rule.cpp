@@ -29,9 +29,9 @@ DeviceLimits some_device()
     return device;
 }
 
-/// The largest share of K v^2, averaged over time, that a spring gives away when its force, held
-/// for a period of 1, comes `delay` late: of all motions with a phase from period to period, piece
-/// by piece constant. Half the spectral radius of "x(t) - x at the time of the sample in force".
+/// Greatest share of K v^2, averaged over time, that a spring generates when its force, held for a
+/// period of 1, is delayed by `delay`: over all piecewise constant motions with a phase between
+/// periods. Half the spectral radius of "x(t) - x at the time of the sample in force".
 double largest_share_given_away(double delay)
 {
     constexpr int kPieces = 24;
@@ -112,7 +112,7 @@ TEST(StiffnessRule, is_exact_for_whole_periods_of_delay_and_within_its_margin_fo
         EXPECT_LT(ratio * kStiffnessMargin, 1.0) << delay;
         worst = std::max(worst, ratio);
     }
-    EXPECT_GT(worst, 1.05); // Or the margin's reason in limits.hpp is wrong.
+    EXPECT_GT(worst, 1.05); // Otherwise the margin's reason in limits.hpp is wrong.
 }
 
 TEST(StiffnessRule, names_the_value_that_is_out_of_range)

@@ -24,22 +24,22 @@ namespace
 {
 
 constexpr float kInfiniteQuanta = std::numeric_limits<float>::infinity();
-/// What long double leaves of the distance of a thin triangle 10 m away; the law is far below.
+/// Error of long double for a thin triangle 10 m away; the law is far below.
 constexpr double kSlack = 1e-9;
-/// The kernels' margin: 2 x 4e-5 of 6 m, and 1/256 of an edge of 0.8 m on thin faces.
+/// Margin of the kernels: 2 x 4e-5 of 6 m, and 1/256 of an edge of 0.8 m on thin faces.
 constexpr double kFilterSlack = 4e-3;
 
-/// The answer by looking at every face.
+/// Answer by measuring every face.
 struct PointTruth
 {
     double lower{kInfinity};           ///< Least d - e.
     double upper{kInfinity};           ///< Least exact d or coarse corner's distance.
-    double exact_lower{kInfinity};     ///< Least d of exact faces,
-    double tolerated_lower{kInfinity}; ///< least d - e of those within the tolerance,
-    double coarse_lower{kInfinity};    ///< and of the others.
-    /// d - e of faces of the surface, by place in the list; else infinite.
+    double exact_lower{kInfinity};     ///< Least d of exact faces.
+    double tolerated_lower{kInfinity}; ///< Least d - e of those within the tolerance.
+    double coarse_lower{kInfinity};    ///< Least d - e of the others.
+    /// d - e of the surface's faces by place in the list; otherwise infinite.
     std::vector<double> surface;
-    FaceId nearest{}; ///< Lowest id of the nearest faces of the surface, in the kernel's bits.
+    FaceId nearest{}; ///< Lowest id of the surface's nearest faces, in the kernel's bits.
 
     PointTruth(std::span<const ChangedFace> faces, const Vec3& center, ErrorCode tolerance = 0)
     {
@@ -99,7 +99,7 @@ PointAnswer ask(const AbTree& tree, const Vec3& center, double reach,
     return asked;
 }
 
-/// Everything of the surface within the certified radius is listed, and nothing coarse reaches into
+/// Expects all faces of the surface within the certified radius in the list, and no coarse face in
 /// it.
 void expect_certified(const AbTree& tree, const LocalSurface& surface,
                       std::span<const ChangedFace> faces, const PointTruth& truth)
@@ -122,7 +122,7 @@ void expect_certified(const AbTree& tree, const LocalSurface& surface,
 void fill(TreeRig& rig, Random& random, const FaceStyle& style, std::uint32_t count,
           bool exact_only)
 {
-    const std::uint32_t step = count % 37 == 0 ? 41 : 37; // Coprime: each face comes once.
+    const std::uint32_t step = count % 37 == 0 ? 41 : 37; // Coprime: each face occurs once.
     for (std::uint32_t prim = 0; prim < count; ++prim)
     {
         ChangedFace face = random_face(random, style, prim, (prim * step) % count);
@@ -168,7 +168,7 @@ TEST(SurfaceQuery, equals_brute_force_in_every_style)
                 const PointTruth truth(faces, center);
                 const PointAnswer asked = ask(*rig.sut, center, reach);
                 const DistanceAnswer& answer = asked.surface->answer;
-                // Beyond the reach, and of coarse faces, single precision's bounds will do.
+                // Single precision's bounds suffice beyond the reach, and for coarse faces.
                 const bool is_exact = answer.kind == AnswerKind::exact;
                 const double slack = is_exact ? kSlack : kFilterSlack;
                 const double proven = truth.upper > reach
@@ -230,7 +230,7 @@ TEST(SurfaceQuery, takes_faces_within_the_tolerance_for_the_surface)
                 ASSERT_LE(answer.tolerated_m, tolerance_m);
                 ASSERT_NO_FATAL_FAILURE(expect_certified(*rig.sut, *asked.surface, faces, truth));
                 const double known = std::min(truth.exact_lower, truth.tolerated_lower);
-                // Without room less is known, and that is true.
+                // A full list reduces the known range, which is still true.
                 if (!asked.surface->truncated && known > 0.0 &&
                     known < std::min(truth.coarse_lower, reach) - kFilterSlack)
                 {
@@ -283,7 +283,7 @@ TEST(SurfaceQuery, a_nearest_exact_face_is_given_its_lowest_id_among_equals)
     TreeRig rig({20, 64, 64});
     for (std::uint32_t prim = 0; prim < 20; ++prim)
     {
-        // All the same triangle; ids fall as prims rise, buckets are far apart.
+        // All faces are the same triangle; ids fall as prims rise, buckets are far apart.
         rig.put({PrimId{prim},
                  FaceId{100 - prim},
                  prim << 27U,
@@ -400,7 +400,7 @@ TEST(SurfaceQuery, more_triangles_than_fit_keep_the_nearest_and_shrink_the_certi
     }
 }
 
-/// A list with little room, filled with the distances; what is in it is known by its prim.
+/// Short list filled with the distances, with elements known by prim.
 struct ShortList
 {
     ShortList(std::size_t places, const std::vector<double>& distances_m)
@@ -456,7 +456,7 @@ TEST(NearestTriangles, are_kept_in_their_order_and_all_that_are_nearer_than_one_
     }
 }
 
-/// A small face across the way from the origin, about a metre off.
+/// Small face perpendicular to the direction from the origin, about a metre away.
 ChangedFace face_around_origin(Random& random, std::uint32_t prim, bool exact_only)
 {
     ChangedFace face{PrimId{prim}, FaceId{prim}, prim / 8, 0, {}};
@@ -470,7 +470,7 @@ ChangedFace face_around_origin(Random& random, std::uint32_t prim, bool exact_on
     return face;
 }
 
-/// The even bits of a number, beside one another.
+/// Even bits of a number, adjacent.
 std::uint32_t even_bits(std::uint32_t number)
 {
     std::uint32_t bits = 0;
@@ -481,7 +481,7 @@ std::uint32_t even_bits(std::uint32_t number)
     return bits;
 }
 
-/// A sheet of small exact faces around the origin, 2 m wide; near ones are near in the tree.
+/// Sheet of small exact faces around the origin, 2 m wide; near ones are near in the tree.
 constexpr std::uint32_t kSheetSide = 128;
 constexpr std::uint32_t kSheetFaces = kSheetSide * kSheetSide;
 void put_sheet(TreeRig& rig)
@@ -500,7 +500,7 @@ void put_sheet(TreeRig& rig)
     rig.sut->refit();
 }
 
-/// The radius of a disc with so many of its faces.
+/// Radius of a disc with this number of its faces.
 double sheet_disc(double faces)
 {
     return std::sqrt(faces * 4.0 / kSheetFaces / std::numbers::pi);
@@ -533,7 +533,7 @@ TEST(SurfaceQuery, what_a_spent_budget_leaves_is_far_away)
     EXPECT_FALSE(ask(*rig.sut, Vec3(0, 0, 0), 0.05).surface->is_cut);
 }
 
-/// The search begins at two blocks then, and both are in reach.
+/// The search then begins at two blocks, both in reach.
 TEST(SurfaceQuery, after_a_jump_lists_each_face_once_and_the_same_faces_as_a_first_query)
 {
     TreeRig rig({kSheetFaces, kSheetFaces, kSheetFaces});
@@ -623,13 +623,13 @@ TEST(TreeWalk, visits_exactly_the_coarse_blocks_when_asked_for_coarse_ones)
     EXPECT_TRUE(sut.left().empty());
 }
 
-/// A face of this path (AbTree); its corners are its own.
+/// Face of this path (AbTree), with separate corners.
 ChangedFace face_of_path(std::uint32_t prim, std::uint64_t path, float x)
 {
-    // A face's path is its bucket, and its id times an odd number, whose inverse this is.
+    // A face's path is its bucket, and its id times an odd number, of which this is the inverse.
     constexpr std::uint32_t kFactor = 0x9E37'79B9U;
     std::uint32_t inverse = 1;
-    for (int i = 0; i < 5; ++i) // Newton's: each time twice as many bits are right.
+    for (int i = 0; i < 5; ++i) // Newton's iteration: each round doubles the right bits.
     {
         inverse *= 2U - kFactor * inverse;
     }
@@ -643,7 +643,7 @@ ChangedFace face_of_path(std::uint32_t prim, std::uint64_t path, float x)
 
 TEST(TreeWalk, of_the_deepest_tree_leaves_no_more_on_its_stack_than_the_limit)
 {
-    constexpr std::uint32_t kFaces = 5; // Of corners of their own, as many as fit into a block.
+    constexpr std::uint32_t kFaces = 5; // Faces of separate corners, as many as fit into a block.
     constexpr std::uint32_t kTopShift = 3 * (kTreeLevels - 1);
     TreeRig rig({1'000, 1'000, 1'000});
     std::uint32_t prim = 0;
@@ -654,7 +654,7 @@ TEST(TreeWalk, of_the_deepest_tree_leaves_no_more_on_its_stack_than_the_limit)
             rig.put(face_of_path(prim, path | (i << 1U), x));
         }
     };
-    // From the root to the last digit but one all have a zero, and beside it all other digits.
+    // From the root to the last digit but one there is a zero with all other digits beside it.
     for (std::uint32_t shift = kTopShift; shift >= 3; shift -= 3)
     {
         for (std::uint64_t digit = 1; digit < (shift == kTopShift ? 2 : 8); ++digit)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// Trees that share a pool: each is sound and its own after any changes of all, and none takes what
-/// is kept for another.
+/// Trees that share a pool: each stays sound and separate under any changes of all, and none takes
+/// another's reserve.
 
 #include "tests/unit/rt_core/tree_support.hpp"
 
@@ -22,7 +22,7 @@ namespace
 constexpr std::uint32_t kTrees = 3;
 constexpr std::uint32_t kPrimsEach = 200;
 
-/// Trees with prims of their own in one pool.
+/// Trees with separate prims in one pool.
 class SharedTrees
 {
 public:
@@ -42,7 +42,7 @@ public:
         trees[tree]->insert(face);
         faces[tree].push_back(face);
     }
-    /// The one at that place of the list.
+    /// Removes the face at that place of the list.
     void remove(std::uint32_t tree, std::size_t at)
     {
         trees[tree]->remove(faces[tree][at].prim);
@@ -78,7 +78,7 @@ public:
     std::array<std::vector<ChangedFace>, kTrees> faces;
 };
 
-/// Of a tree's own prims; all trees have faces of the same ids. Four or five fill a block.
+/// Face of a tree's own prims; all trees have faces of the same ids. Four or five fill a block.
 ChangedFace own_face(Random& random, std::uint32_t tree, std::uint32_t number)
 {
     return random_face(random, face_styles()[3], tree * kPrimsEach + number, number);
@@ -118,7 +118,7 @@ TEST(TreePool, has_all_of_it_at_first_and_again_when_all_trees_are_empty)
 
 TEST(TreePool, trees_that_change_in_turns_stay_sound_and_their_own)
 {
-    // Room for all at times, and at times not.
+    // The pool is sometimes large enough for all.
     for (const std::uint32_t blocks : {400U, 90U})
     {
         SharedTrees sut({kTrees * kPrimsEach, blocks, blocks}, {0, 20, 20});
@@ -126,7 +126,7 @@ TEST(TreePool, trees_that_change_in_turns_stay_sound_and_their_own)
         bool was_full = false;
         for (int batch = 0; batch < 200; ++batch)
         {
-            // Several trees change before any is refitted: what one frees another may take.
+            // Several trees change before a refit: one may take blocks that another frees.
             for (int change = 0; change < 60; ++change)
             {
                 const std::uint32_t tree = random.below(kTrees);

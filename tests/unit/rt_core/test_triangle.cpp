@@ -42,7 +42,7 @@ Vec3 on_grid(Random& random, std::uint32_t across, std::uint32_t up)
     return {x, y, z};
 }
 
-/// A point near the triangle: above its inside, beside an edge or a corner, far off, or on it.
+/// Point near the triangle: above its inside, beside an edge or a corner, far away, or on it.
 Vec3 query_near(Random& random, const Triangle& triangle, double size)
 {
     const double a = random.between(-0.5, 1.5);
@@ -74,7 +74,7 @@ Pose generic(Random& random)
     return with_query(random, {random.in_cube(1.0), random.in_cube(1.0), random.in_cube(1.0)}, 1.0);
 }
 
-/// One short edge across a long one.
+/// Triangle with one short edge across a long one.
 Pose needle(Random& random)
 {
     const Vec3 tip = random.in_cube(1.0);
@@ -83,7 +83,7 @@ Pose needle(Random& random)
     return with_query(random, {tip, end, end + random.in_cube(width)}, 1.0);
 }
 
-/// The third corner just off the middle of the longest edge.
+/// Triangle with the third corner just off the middle of the longest edge.
 Pose cap(Random& random)
 {
     const Vec3 from = random.in_cube(1.0);
@@ -109,7 +109,7 @@ Pose all_equal_corners(Random& random)
     return with_query(random, {a, a, a}, 1.0);
 }
 
-/// Exactly collinear (small integers) or as nearly as doubles allow.
+/// Collinear triangle, exactly (small integers) or as nearly as doubles permit.
 Pose collinear(Random& random)
 {
     if (random.one_in(2))
@@ -149,7 +149,7 @@ Pose tiny(Random& random)
     return pose;
 }
 
-/// Stored coordinates: floats on a grid, as in a model.
+/// Triangle with stored coordinates: floats on a grid, as in a model.
 Pose on_the_grid(Random& random)
 {
     const auto point = [&random] { return Vec3(on_grid(random, 1U << 16U, 16) * 0x1p-16); };
@@ -167,7 +167,7 @@ double magnitude(const Pose& pose)
     return most;
 }
 
-/// How far the answer's point is from the place that its feature names.
+/// Distance of the answer's point from its feature.
 double off_feature(const Pose& pose, const ClosestPoint& answer)
 {
     const auto feature = static_cast<std::size_t>(answer.feature);
@@ -183,8 +183,8 @@ double off_feature(const Pose& pose, const ClosestPoint& answer)
     return static_cast<double>(DistanceOracle::distance(answer.point, pose.triangle));
 }
 
-/// Of a distance from the true one. Long double can't tell on thin triangles; then wider numbers
-/// do.
+/// Deviation of a distance from the true one; wider numbers decide on thin triangles, where long
+/// double cannot.
 double deviation(const Pose& pose, double distance, double allowed)
 {
     const auto off = static_cast<double>(std::abs(
@@ -220,7 +220,7 @@ TEST_P(ClosestPointTest, keeps_its_error_law_and_reports_a_point_of_the_triangle
         const double distance = std::sqrt(answer.distance_sq);
         const double off = deviation(pose, distance, answer.distance_error);
         ASSERT_LE(off, answer.distance_error) << "case " << i;
-        // The point is rounded to doubles of the query's size besides.
+        // The point is also rounded to doubles of the query's size.
         const double slack = answer.distance_error + 4e-16 * magnitude(pose);
         const double reach = std::abs((answer.point - pose.query).norm() - distance);
         ASSERT_LE(reach, slack) << "case " << i;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// Splits and merges of a hand-made model: every cut is manifold (I3), undoing them returns the
-/// state (I2), and the tree follows (I6).
+/// I2 undoing returns the state, I3 every cut is manifold, I6 the tree follows: splits and merges
+/// of a handmade model.
 
 #include "rt_core/forest/vertex_forest.hpp"
 #include "tests/shared/validate_tree.hpp"
@@ -22,11 +22,11 @@ namespace tactus::test
 namespace
 {
 
-/// A tetrahedron 0 1 2 3 and three records, made by hand:
+/// Tetrahedron 0 1 2 3 and three handmade records:
 ///
-///     record 0 (vertex 4): puts a vertex into base face 0 = (0, 1, 2)
-///     record 1 (vertex 5): puts one into what is left of face 0; depends on record 0
-///     record 2 (vertex 6): splits base faces 1 and 3 round vertex 3; depends on nothing
+///     record 0 (vertex 4): adds a vertex in base face 0 = (0, 1, 2)
+///     record 1 (vertex 5): adds one in the rest of face 0; depends on record 0
+///     record 2 (vertex 6): splits base faces 1 and 3 around vertex 3; depends on nothing
 constexpr ModelCounts kCounts{4, 4, 3};
 constexpr std::uint32_t kFaces = 16;
 
@@ -51,7 +51,7 @@ VsplitRecord make_record(std::uint32_t id, std::uint32_t parent,
 
 using CornerIds = std::array<std::uint32_t, 3>;
 
-/// The same corners whichever comes first.
+/// The same corners from the least one.
 CornerIds rotated(const std::array<VertexId, 3>& corners)
 {
     CornerIds ids{corners[0].value, corners[1].value, corners[2].value};
@@ -91,7 +91,7 @@ protected:
         sut_.emplace(arena_, *face_pool_, ModelId{0}, capacities.prims, kCounts, slots_, table_,
                      *tree_);
     }
-    /// The tree holds what the forest says, face by face.
+    /// Expects the forest's faces in the tree, one by one.
     void expect_tree_follows()
     {
         tree_->refit();
@@ -99,7 +99,7 @@ protected:
         for (const auto& [face, corners] : mesh())
         {
             faces.push_back(sut_->describe(sut_->find({face})));
-            // Not by way of the tree:
+            // Independent of the tree:
             const VertexForest::ActiveFace& active = sut_->face(faces.back().prim);
             for (std::size_t i = 0; i < 3; ++i)
             {
@@ -125,7 +125,8 @@ protected:
         EXPECT_EQ(faces.size(), sut_->active_faces());
         return faces;
     }
-    /// Each directed edge once, and its reverse once: closed, oriented, 2-manifold at edges.
+    /// Expects each directed edge once, and its reverse once: closed, oriented, 2-manifold at
+    /// edges.
     void expect_closed_manifold()
     {
         std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
@@ -144,7 +145,7 @@ protected:
         }
         EXPECT_EQ(vertices.size() + mesh().size(), edges.size() / 2 + 2) << "Euler";
     }
-    /// Legal without asking the forest: by the dependencies in the drawing above.
+    /// Legal operations by the dependencies listed above, without the forest.
     static bool may_split(std::uint32_t record, unsigned refined)
     {
         return record != 1 || (refined & 1U) != 0;
@@ -203,8 +204,8 @@ TEST_F(VertexForestTest, a_split_writes_the_star_as_the_record_says)
     EXPECT_EQ(side_b.corners_m[0], page(0).position_m);
 }
 
-/// The star of a split is laid out as a block: its faces as they are afterwards, and the rows that
-/// they use, no more and no fewer.
+/// The star of a split is laid out as a block: its faces after the split, and exactly the rows that
+/// they use.
 TEST_F(VertexForestTest, a_split_lays_its_star_out_as_a_block)
 {
     for (const std::uint32_t record : {0U, 1U, 2U})
@@ -288,9 +289,9 @@ TEST_F(VertexForestTest, an_inconsistent_record_changes_nothing)
     const std::vector<VsplitRecord> wrong{
         make_record(2, 3,
                     {{1, FaceState::base()}, {2, FaceState::base()}}), // The fan does not chain.
-        make_record(2, 3, {{1, FaceState::base()}, {1, FaceState::base()}}), // A face twice.
+        make_record(2, 3, {{1, FaceState::base()}, {1, FaceState::base()}}), // Duplicate face.
         make_record(2, 3, {{0, FaceState::base()}}),        // Its parent is no corner.
-        make_record(2, 3, {{1, FaceState::after({0}, 2)}}), // Another state.
+        make_record(2, 3, {{1, FaceState::after({0}, 2)}}), // Wrong state.
         make_record(2, 3, {{1, FaceState::base()}, {7, FaceState::base()}}), // Inactive.
     };
     const std::uint64_t hash = sut_->state_hash();
@@ -308,7 +309,7 @@ TEST_F(VertexForestTest, an_inconsistent_record_changes_nothing)
 
 TEST_F(VertexForestTest, a_full_pool_refuses_and_changes_nothing)
 {
-    make_forest({5, 64, 64}); // One free slot; a split wants two.
+    make_forest({5, 64, 64}); // One free slot; a split needs two.
     const std::uint64_t hash = sut_->state_hash();
 
     EXPECT_EQ(sut_->split({0}), VertexForest::SplitOutcome::full);

@@ -47,7 +47,7 @@ std::uint32_t count_of(const Vicinity& sut)
     return count;
 }
 
-/// All faces of some surfaces, listed with all sets of kernels.
+/// Checks all faces of some surfaces, listed with all sets of kernels.
 void with_each_set(PlacedSurface placed, const auto& check)
 {
     for (const Kernels* kernels : available_kernels())
@@ -57,7 +57,7 @@ void with_each_set(PlacedSurface placed, const auto& check)
     }
 }
 
-/// Of the listed faces, as seen from the place; the nearest one's bound.
+/// Bound of the nearest listed face, seen from the place.
 double nearest_seen(Vicinity& sut, const Vec3& place)
 {
     sut.stand_at(place - sut.center_m(), Vec3(0, 0, 1));
@@ -201,7 +201,7 @@ TEST(Vicinity, a_motion_enters_nothing_that_it_does_not_name)
         if (entered)
         {
             const HalfSpace<3> plane = sut.half_space(*entered, radius);
-            ASSERT_LE(plane.offset, 1e-12); // To stand still is allowed, the motion is not:
+            ASSERT_LE(plane.offset, 1e-12); // Resting is allowed, the motion is not.
             ASSERT_LT(plane.normal.dot(motion), plane.offset);
         }
     }
@@ -252,7 +252,7 @@ TEST(Vicinity, with_any_allowance_and_however_deep_the_ball_is_lets_it_come_no_n
 
 TEST(Vicinity, among_many_that_touch_looks_at_a_bounded_number_of_them)
 {
-    // All as far away, so that single precision can't tell which of them touch.
+    // All are equally far, so that single precision cannot decide which of them touch.
     const TriangleList list(2 * kMaxTouchLooks, plane().front());
     const ObjectPose pose;
     const Material material;
@@ -418,7 +418,7 @@ TEST(Vicinity, knows_how_far_a_way_is_free_of_a_face)
         if (share < 1.0)
         {
             ++touched;
-            // As near as a few steps come to a grazing touch.
+            // A few steps come this close to a grazing touch.
             ASSERT_LE(distance(motion * share), radius * (1.0 + 1e-3));
         }
     }

@@ -24,7 +24,7 @@ protected:
         pool_.emplace(arena, slots);
         return WishList(*pool_, 0, 0);
     }
-    /// As often as it takes to look at each wish once.
+    /// Expires until each request was checked once.
     void expire_all(std::uint32_t slots, std::uint32_t frame)
     {
         for (std::uint32_t i = 0; i < slots; ++i)
@@ -187,10 +187,10 @@ TEST_F(WishListTest, one_model_asks_for_what_is_not_kept_for_another_and_not_for
     EXPECT_FALSE(modest.has_credit());
     EXPECT_FALSE(modest.has_more_than_its_own());
     EXPECT_TRUE(greedy.has_more_than_its_own());
-    EXPECT_TRUE(greedy.is_under_way(2)); // Numbers are each model's own.
+    EXPECT_TRUE(greedy.is_under_way(2)); // Numbers belong to each model.
     EXPECT_FALSE(modest.is_under_way(2));
 
-    greedy.arrive(0, 1); // A slot stays the model's until it is given back.
+    greedy.arrive(0, 1); // A slot stays the model's until it is returned.
     EXPECT_FALSE(modest.has_credit());
     EXPECT_EQ(greedy.slots_had(), 1U);
     greedy.give_back_slot();
@@ -265,7 +265,7 @@ TEST(SlotDoor, has_room_for_every_slot_the_wishes_it_was_made_for_and_link_updat
     Arena arena(memory.bytes());
     SlotDoor sut(arena, 5, 4);
 
-    // Updates as many as may be pushed, then every slot still finds room.
+    // The greatest number of updates still leaves space for every slot.
     for (std::uint32_t i = 0; i < kMaxLinkUpdatesPerFrame; ++i)
     {
         ASSERT_TRUE(sut.has_room_for_update());

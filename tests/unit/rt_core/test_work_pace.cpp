@@ -10,7 +10,7 @@ namespace tactus::test
 namespace
 {
 
-/// After so many frames of as many splits each.
+/// Pace after `frames` frames of `splits` each.
 WorkPace after(std::uint32_t frames, std::uint32_t splits)
 {
     WorkPace sut;

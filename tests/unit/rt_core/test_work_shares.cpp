@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// How the stages of a frame share its work.
+/// Division of a frame's work between its stages.
 
 #include "rt_core/frame/work_shares.hpp"
 
@@ -26,7 +26,7 @@ TEST(WorkShares, keep_of_a_frame_what_its_answers_took_in_the_last_one)
     struct Frame
     {
         std::uint32_t answers;
-        std::uint32_t refining; ///< So far it may go, by the frame before.
+        std::uint32_t refining; ///< Limit by the previous frame.
     };
     for (const Frame& frame : {Frame{500'000, 600'000}, Frame{700'000, 450'000},
                                Frame{900'000, 250'000}, Frame{100'000, 250'000}, Frame{0, 600'000}})
@@ -61,7 +61,7 @@ TEST(WorkShares, keep_something_for_each_query_that_follows)
     work.spend(work.left());
     sut.begin_query(1);
     EXPECT_EQ(work.left(), 20'000U);
-    work.spend(30'000); // More than it might.
+    work.spend(30'000); // More than allowed.
     sut.begin_query(0);
     EXPECT_EQ(work.left(), 10'000U);
     work.spend(20'000);

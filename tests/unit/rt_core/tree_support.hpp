@@ -20,7 +20,7 @@ namespace tactus::test
 
 inline constexpr float kTreeQuantum = 0x1p-10F;
 
-/// An AB-Tree over any volume and the faces that should be in it, by prim.
+/// AB-Tree over any volume, with its expected faces by prim.
 template <typename Tree>
 class BasicTreeRig
 {
@@ -33,7 +33,7 @@ public:
         sut.emplace(*pool_, ModelId{0}, capacities, kTreeQuantum);
     }
 
-    /// Takes over one face as it is now: new, changed corner by corner, or (face none) gone.
+    /// Sets the present state of one face: new, changed corner by corner, or removed (face none).
     void put(const ChangedFace& face)
     {
         ChangedFace& held = faces_[face.prim.value];
@@ -58,7 +58,7 @@ public:
         held = face;
     }
     void remove(std::uint32_t prim) { put(ChangedFace{PrimId{prim}, FaceId{}, 0, 0, {}}); }
-    /// What the caller does each frame with faces that found no place.
+    /// Offers the unplaced faces again, as a frame does.
     void offer_again()
     {
         sut->offer_unplaced([this](PrimId prim) { return faces_[prim.value]; });
@@ -96,7 +96,7 @@ public:
 
 using TreeRig = BasicTreeRig<AbTree>;
 
-/// The largest error of three faces taken at random.
+/// Greatest error of three random faces.
 inline ErrorCode large_error(Random& random, std::span<const ChangedFace> faces)
 {
     ErrorCode largest = 0;
@@ -107,7 +107,7 @@ inline ErrorCode large_error(Random& random, std::span<const ChangedFace> faces)
     return largest;
 }
 
-/// How a test's faces lie in path space and in space.
+/// Distribution of a test's faces in path space and in space.
 struct FaceStyle
 {
     const char* name;
@@ -128,7 +128,7 @@ inline const std::array<FaceStyle, 5>& face_styles()
     return styles;
 }
 
-/// A small random triangle near the face's place along a line, in a cube of about 4 m.
+/// Small random triangle near the face's place along a line, in a cube of about 4 m.
 [[nodiscard]] inline ChangedFace random_face(Random& random, const FaceStyle& style,
                                              std::uint32_t prim, std::uint32_t face)
 {
@@ -150,7 +150,7 @@ inline const std::array<FaceStyle, 5>& face_styles()
     return changed;
 }
 
-/// Of the faces in a surface; each is there once.
+/// Faces of a surface, each once.
 [[nodiscard]] inline std::set<std::uint32_t> faces_of(const AbTree& tree,
                                                       const LocalSurface& surface)
 {

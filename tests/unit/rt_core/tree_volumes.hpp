@@ -12,13 +12,13 @@
 namespace tactus::test
 {
 
-/// The trees that a typed test of the AB-Tree runs for, and how its instances are called.
+/// Trees of a typed test, with the names of its instances.
 using TreesOfAllVolumes = testing::Types<AbTree, Dop18Tree>;
 
 struct VolumeNames
 {
     template <typename Tree>
-    static std::string GetName(int /*index*/) // The name that GoogleTest asks for.
+    static std::string GetName(int /*index*/) // Name required by GoogleTest.
     {
         return std::is_same_v<Tree, AbTree> ? "Aabb" : "Dop18";
     }

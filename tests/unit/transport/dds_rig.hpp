@@ -13,16 +13,16 @@
 #include <thread>
 #include <unistd.h>
 
-/// What tests over real DDS share.
+/// Functions of all tests over real DDS.
 namespace tactus::test
 {
 
 inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// Far beyond what anything here takes; only a broken build waits this long.
+/// Limit far beyond any regular time; only a broken build waits this long.
 inline constexpr std::chrono::seconds kPatience{60};
 
-/// Lines from any thread.
+/// Log lines from any thread.
 class Lines
 {
 public:
@@ -49,11 +49,11 @@ private:
     std::string text_;
 };
 
-/// Domains of this process meet each other on the network, over loopback sockets as between
-/// processes, and nobody else's; those of each call another time no earlier call's. The domains 161
-/// to 200 are for the programs that call this, one of which runs at a time
-/// (tests/CMakeLists.txt, tests_with_sockets). Who says
-/// nothing for `lease_s` seconds is gone: a processor may well be away for one.
+/// Isolates DDS: domains of this process communicate over loopback sockets as between processes,
+/// and with no others; each call separates from earlier ones. The domains 161 to 200 are for the
+/// calling programs, one of which runs at a time (tests/CMakeLists.txt, tests_with_sockets). A
+/// participant that is silent for `lease_s` seconds is gone: a processor may be unavailable for
+/// one.
 inline void isolate_domains(int lease_s = 20)
 {
     static int calls = static_cast<int>(::getpid());
@@ -71,8 +71,8 @@ inline void isolate_domains(int lease_s = 20)
     ::setenv("CYCLONEDDS_URI", uri.c_str(), 1);
 }
 
-/// Asks until it is so; false when it never is. Nothing else here waits for an event, and no test
-/// expects one within a time.
+/// Polls until the condition holds; false if it never does. No other function here waits for an
+/// event, and no test has a time limit.
 inline bool eventually(const std::function<bool()>& is_so)
 {
     const auto start = std::chrono::steady_clock::now();

@@ -30,8 +30,8 @@ struct FreeDeleter
     } // NOLINT: aligned_alloc's partner.
 };
 
-/// What a controller has for one model, small, and the haptic thread's side of the door: which
-/// slots it owns, checked at every hand-over against what the model's pages must hold.
+/// Small model of a controller, and the haptic thread's side of the door: its slots, checked at
+/// every hand-over against the content of the model's pages.
 class DoorSide
 {
 public:
@@ -55,7 +55,7 @@ public:
         return door.wanted.try_push({key, generation});
     }
 
-    /// Adopts all arrivals; returns how many.
+    /// Adopts all arrivals; returns their number.
     std::size_t adopt()
     {
         std::size_t adopted = 0;
@@ -110,8 +110,8 @@ public:
         owned_.erase(at);
     }
 
-    /// Every record that is linked has exactly the links of the whole model, as far as the records
-    /// they name are linked and so is all that those depend on.
+    /// Checks that every linked record has exactly the links of the whole model whose records and
+    /// dependencies are linked.
     void check_links()
     {
         for (const auto& [key, slot] : owned_)
@@ -137,7 +137,7 @@ public:
         }
     }
 
-    /// As far as the door has told.
+    /// True if the door has reported the record as linked.
     [[nodiscard]] bool is_linked(std::uint32_t record) const
     {
         const auto at = owned_.find({ContentKind::chunk, record / 64});
@@ -157,7 +157,7 @@ private:
         return all;
     }
 
-    /// Records that were told to be linked are what the model has.
+    /// Checks records reported as linked against the model.
     void check_content(const DoorEvent& event, std::uint64_t linked) const
     {
         for (std::size_t place = 0; event.key.kind == ContentKind::chunk && place < 64; ++place)
@@ -183,7 +183,7 @@ private:
     {
         EXPECT_EQ(update.key.kind, ContentKind::chunk);
         const auto at = owned_.find({ContentKind::chunk, update.key.number});
-        if (at != owned_.end()) // Otherwise it was given back while the update was on its way.
+        if (at != owned_.end()) // Otherwise it was returned while the update was in transit.
         {
             EXPECT_EQ(at->second, update.slot);
             EXPECT_EQ(linked_[update.slot] & ~update.linked, 0U) << "a record is unlinked";
@@ -194,7 +194,7 @@ private:
 
     const TinyModel& model_;
     std::unique_ptr<std::byte, FreeDeleter> memory_;
-    std::map<std::uint32_t, std::uint64_t> linked_; ///< By slot.
+    std::map<std::uint32_t, std::uint64_t> linked_; ///< Linked records by slot.
     std::map<std::pair<ContentKind, std::uint32_t>, std::uint32_t> owned_;
 
 public:

@@ -27,7 +27,7 @@
 namespace tactus::test
 {
 
-/// What a stranger makes of a piece.
+/// Forgeries of a piece.
 enum class Forgery
 {
     none,
@@ -62,12 +62,12 @@ inline std::vector<std::byte> forged(std::span<const std::byte> piece, Forgery h
     return bytes;
 }
 
-/// A host of its own making: it says that it has the model, and answers with what it likes. Header
-/// and base mesh are the true ones.
+/// Unauthenticated server that announces the model and sends any answers. Header and base mesh are
+/// true.
 class Stranger
 {
 public:
-    /// `model` must outlive it.
+    /// Starts a server; `model` must outlive it.
     Stranger(std::uint32_t domain, const TinyModel& model, std::string name = "tiny",
              std::string scene = "")
         : model_(model)
@@ -81,7 +81,7 @@ public:
         announce();
     }
 
-    /// From now on pieces of this kind are forged so.
+    /// Forges pieces of this kind from now on.
     void forge(ContentKind kind, Forgery how) { forgeries_[kind] = how; }
 
     void step()
@@ -129,7 +129,7 @@ private:
         }
         if (!is_matched(*chunks_))
         {
-            return; // It will be asked for again.
+            return; // It will be requested again.
         }
         for (std::uint32_t i = 0; i < wanted.pieces._length; ++i)
         {

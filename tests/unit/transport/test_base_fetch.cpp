@@ -21,7 +21,7 @@ namespace
 
 constexpr std::chrono::seconds kPatience{60};
 
-/// A link that owns the one that it disturbs.
+/// Link that owns the one that it disturbs.
 class FaultyLink final : public ChunkLink
 {
 public:
@@ -51,7 +51,7 @@ private:
     LoopbackLink loopback_;
 };
 
-/// A model whose base mesh has three parts and is still to come.
+/// Model with a base mesh of three parts that is still to be loaded.
 struct Waiting
 {
     explicit Waiting(const LoopbackFaults& faults = {})
@@ -78,7 +78,7 @@ TEST(BaseFetch, asks_for_each_part_once_and_has_the_base_mesh)
     EXPECT_FALSE(bring_bases(sut.served, kPatience));
     EXPECT_TRUE(sut.is_whole());
     EXPECT_EQ(sut.link->asked, parts_of(sut.model.base.size()));
-    EXPECT_FALSE(bring_bases(sut.served, kPatience)); // It is here.
+    EXPECT_FALSE(bring_bases(sut.served, kPatience)); // It is resident.
     EXPECT_EQ(sut.link->asked, parts_of(sut.model.base.size()));
 }
 
@@ -106,7 +106,7 @@ TEST(BaseFetch, waits_for_a_host_and_asks_the_next_one)
     Waiting sut({.delay_polls_min = 3, .delay_polls_max = 3});
     BaseFetch fetch(sut.served[0]);
     EXPECT_EQ(fetch.step(), BaseFetch::State::under_way);
-    sut.link->lose_host(); // With all that was on its way.
+    sut.link->lose_host(); // Drops everything in transit.
     for (int i = 0; i < 20; ++i)
     {
         EXPECT_EQ(fetch.step(), BaseFetch::State::under_way);

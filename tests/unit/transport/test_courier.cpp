@@ -39,7 +39,7 @@ constexpr ContentKey index_key(std::uint32_t number)
 constexpr ContentKey kBase{ContentKind::base, 0};
 constexpr std::int64_t kStepNs = 1'000'000;
 
-/// A file, a link that fails as told, a courier, and the haptic thread's side of the door.
+/// File, faulty link, loader, and the haptic thread's side of the door.
 struct Road
 {
     explicit Road(const TinyModel& model, const LoopbackFaults& faults = {},
@@ -60,7 +60,7 @@ struct Road
         now_ns += kStepNs;
         sut.step(now_ns);
     }
-    /// Steps until the piece came, at most `steps` times.
+    /// Steps until the piece arrives, at most `steps` times.
     [[nodiscard]] bool comes(ContentKey key, int steps = 1)
     {
         for (int i = 0; i < steps && !side.owns(key); ++i)
@@ -78,12 +78,13 @@ struct Road
             step();
         }
     }
-    /// The haptic thread knows since this generation that the base mesh isn't here, and wants it.
+    /// Reports from the haptic thread that the base mesh is absent since a generation, and requests
+    /// it.
     [[nodiscard]] bool wish_base(std::uint32_t gone, std::uint32_t wished)
     {
         return side.door.freed.try_push({ContentKind::base, 0, gone}) && side.wish(kBase, wished);
     }
-    /// Whether nothing comes through the door in so many steps.
+    /// True if nothing passes the door in `count` steps.
     [[nodiscard]] bool is_silent(int count)
     {
         DoorEvent event;
@@ -98,7 +99,7 @@ struct Road
         return true;
     }
 
-    /// The same with a wish that is made again and again, as a cache does that waits in vain.
+    /// Steps with a repeated request, as of a cache that waits in vain.
     [[nodiscard]] bool comes_wished_for(ContentKey key, std::uint32_t generation)
     {
         for (int i = 0; i < 100 && !side.owns(key); ++i)
@@ -158,11 +159,11 @@ TEST(Courier, brings_a_base_mesh_but_not_for_a_wish_older_than_its_going)
     EXPECT_EQ(event.key, kBase);
     EXPECT_TRUE(road.side.linker.has_base());
     EXPECT_TRUE(std::ranges::equal(road.side.slots.base.positions_m, positions_m));
-    ASSERT_TRUE(road.side.wish(kBase, 8)); // It is here.
+    ASSERT_TRUE(road.side.wish(kBase, 8)); // It is resident.
     EXPECT_TRUE(road.is_silent(1));
 }
 
-/// Of a host that is gone, and of one that is there and silent.
+/// Base mesh of a lost server, and of a silent one.
 TEST(Courier, gives_the_room_of_a_base_mesh_back_that_does_not_come_for_a_second)
 {
     const TinyModel model = make_tiny_model({.base_faces = 12'000});
@@ -181,7 +182,7 @@ TEST(Courier, gives_the_room_of_a_base_mesh_back_that_does_not_come_for_a_second
         while (!road.side.door.arrived.try_pop(event))
         {
             ASSERT_LT(road.now_ns - wished_ns, 2'000'000'000);
-            ASSERT_TRUE(road.side.wish(kBase, 1)); // It is still wanted, which changes nothing.
+            ASSERT_TRUE(road.side.wish(kBase, 1)); // A further request changes nothing.
             road.step();
         }
         EXPECT_GT(road.now_ns - wished_ns, 1'000'000'000);
@@ -192,8 +193,8 @@ TEST(Courier, gives_the_room_of_a_base_mesh_back_that_does_not_come_for_a_second
         EXPECT_FALSE(road.side.linker.has_base());
         EXPECT_NE(road.lines.at(0).find("base mesh 0 doesn't come"), std::string::npos)
             << road.lines.at(0);
-        // Until the haptic thread says that it knows, and of the time before that, a wish lends
-        // nothing, whatever its generation.
+        // A request reserves nothing until the haptic thread confirms, and older ones never do, for
+        // any generation.
         road.link.lose_host();
         ASSERT_TRUE(road.side.wish(kBase, 900));
         EXPECT_TRUE(road.is_silent(3'000));
@@ -202,7 +203,7 @@ TEST(Courier, gives_the_room_of_a_base_mesh_back_that_does_not_come_for_a_second
     }
 }
 
-/// Else a host that sends a wrong mesh again and again would keep it for ever.
+/// Otherwise a server that repeatedly sends a wrong mesh would block it permanently.
 TEST(Courier, gives_the_room_of_a_base_mesh_back_that_it_refuses_and_asks_for_it_anew)
 {
     const TinyModel model = make_tiny_model({.base_faces = 12'000});
@@ -219,7 +220,7 @@ TEST(Courier, gives_the_room_of_a_base_mesh_back_that_it_refuses_and_asks_for_it
         EXPECT_EQ(event.kind, DoorEventKind::base_back);
         EXPECT_EQ(road.sut.counters().refused_hash, time);
         EXPECT_EQ(road.sut.counters().pieces, std::uint64_t{time} * parts);
-        ASSERT_TRUE(road.side.wish(kBase, 1'000 * time + 1)); // Before it knows.
+        ASSERT_TRUE(road.side.wish(kBase, 1'000 * time + 1)); // Before the confirmation.
         EXPECT_TRUE(road.is_silent(1)) << time;
         ASSERT_TRUE(road.side.door.freed.try_push({ContentKind::base, 0, 1'000 * time + 2}));
     }
@@ -227,7 +228,7 @@ TEST(Courier, gives_the_room_of_a_base_mesh_back_that_it_refuses_and_asks_for_it
     EXPECT_FALSE(road.side.linker.has_base());
 }
 
-/// The second host is asked for the rest alone.
+/// The second server is asked for the rest only.
 TEST(Courier, keeps_what_came_of_a_base_mesh_whose_room_was_given_back)
 {
     const TinyModel model = make_tiny_model({.base_faces = 12'000});
@@ -354,7 +355,7 @@ TEST(Courier, refuses_a_damaged_piece_with_nothing_changed_and_asks_when_wished_
 TEST(Courier, refuses_a_sound_piece_under_another_one_s_key)
 {
     const TinyModel model = make_tiny_model({.records = 200});
-    /// Answers every request for a chunk with chunk 1, whichever was asked for.
+    /// Link that answers every request for a chunk with chunk 1.
     class Liar final : public ChunkLink
     {
     public:
@@ -492,7 +493,7 @@ TEST(Courier, tells_which_chunks_are_wished_for)
     EXPECT_EQ(chunks, std::vector<ChunkId>{{1}});
 }
 
-/// What is asked for comes after 1.6 s, or so many; wishes come again as a cache makes them.
+/// Road with answers after 1.6 s, or `delay_ms`; requests are repeated as by a cache.
 struct OverdueRoad : Road
 {
     explicit OverdueRoad(const TinyModel& model, std::uint32_t delay_ms = 1'600)
@@ -541,7 +542,7 @@ TEST(Courier, is_not_starved_any_more_of_what_nobody_wishes_for)
     OverdueRoad road(model, 10'000);
     road.wish_for(1'300);
     ASSERT_TRUE(road.sut.is_starved());
-    road.steps(800); // The wish stays open.
+    road.steps(800); // The request stays open.
     ASSERT_TRUE(road.sut.is_starved());
     road.steps(250);
     EXPECT_FALSE(road.sut.is_starved());
@@ -552,7 +553,7 @@ TEST(Courier, misses_nothing_that_was_not_wanted_meanwhile_or_that_nobody_could_
 {
     const TinyModel model = make_tiny_model({});
     OverdueRoad forgotten(model);
-    forgotten.wish_for(1'400, 1'200); // 1.2 s without a wish.
+    forgotten.wish_for(1'400, 1'200); // 1.2 s without a request.
     EXPECT_EQ(forgotten.overdue(), 0U);
     OverdueRoad without_host(model);
     without_host.wish_for(600);
@@ -579,8 +580,8 @@ TEST(Courier, keeps_wishes_while_the_host_is_gone_and_asks_the_next_one_at_once)
     EXPECT_TRUE(road.comes(index_key(0), 2));
 }
 
-/// Whatever the link does, every wish is fulfilled in the end, pages hold what the file holds, and
-/// no slot is lost or owned twice.
+/// Under any faults of the link, every request is finally satisfied, pages hold the file's content,
+/// and no slot is lost or owned twice.
 RC_GTEST_PROP(Courier, fulfils_every_wish_over_a_bad_link_and_leaks_no_slot, (std::uint32_t seed))
 {
     const TinyModel model =
@@ -624,7 +625,7 @@ RC_GTEST_PROP(Courier, fulfils_every_wish_over_a_bad_link_and_leaks_no_slot, (st
     ASSERT_EQ(road.side.linker.records_refused(), 0U);
 }
 
-/// The two threads of a controller, for the thread sanitizer and for what it cannot see.
+/// The two threads of a controller, for the thread sanitizer and for faults that it cannot detect.
 TEST(Courier, works_beside_a_haptic_thread)
 {
     const TinyModel model = make_tiny_model({.records = 64 * 12, .shuffled_ids = true});
@@ -655,10 +656,10 @@ TEST(Courier, works_beside_a_haptic_thread)
     {
         while (!road.side.owns(key))
         {
-            // A wish that was still on its way when its chunk was given back brings that again, and
-            // it takes the place.
+            // A request still in transit when its chunk was returned loads that again, which takes
+            // the place.
             make_room_for(key);
-            // Wishes may be forgotten on purpose (no slot, no index): the cache asks again.
+            // Requests may be dropped on purpose (no slot, no index): the cache repeats them.
             static_cast<void>(road.side.wish(key));
             std::this_thread::yield();
             adopted += road.side.adopt();

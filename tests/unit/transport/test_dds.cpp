@@ -51,8 +51,8 @@ using test::TinyModel;
 
 const std::array<ModelSelector, 1> kTiny{ModelSelector{"tiny"}};
 
-/// Where Cyclone DDS 0.10 does not free all it took: a domain that cannot be joined for its ports.
-/// The address sanitizer overlooks what this thread allocates as long as it lives.
+/// Scope in which Cyclone DDS 0.10 leaks: a domain that cannot be joined for its ports. The address
+/// sanitizer ignores this thread's allocations for its lifetime.
 struct CycloneLosesMemory
 {
 #if defined(__SANITIZE_ADDRESS__)
@@ -60,8 +60,8 @@ struct CycloneLosesMemory
 #endif
 };
 
-/// The devices to which this process' UDP sockets are bound that have an address of every
-/// interface; an empty text stands for one that is bound to none.
+/// Devices to which this process's UDP sockets with a wildcard address are bound; an empty text
+/// means none.
 std::vector<std::string> devices_of_open_sockets()
 {
     std::vector<std::string> devices;
@@ -87,8 +87,8 @@ std::vector<std::string> devices_of_open_sockets()
     return devices;
 }
 
-/// A host with a thread of its own, in a DDS domain of its own that meets the client's on the
-/// network: samples take the way over loopback sockets, as between processes.
+/// Server in its own thread and DDS domain, which communicates with the client's domain over
+/// loopback sockets, as between processes.
 class HostThread
 {
 public:
@@ -145,7 +145,7 @@ private:
     std::thread thread_;
 };
 
-/// Keeps every piece that comes, and how often.
+/// Keeps and counts all received pieces.
 class Collector final : public PieceSink
 {
 public:
@@ -187,14 +187,14 @@ protected:
         return std::move(created).value();
     }
 
-    /// The start of a model that is served somewhere.
+    /// Start of a served model.
     static ServedModel found(DdsClient& finder, const std::string& name = "tiny")
     {
         auto found = finder.find({name, std::nullopt}, kPatience);
         EXPECT_TRUE(found) << found.error().text;
         return std::move(found).value();
     }
-    /// A host of this model and a controller that has its start.
+    /// Creates a server of this model and a controller with its start.
     void connect(const TinyModel& model)
     {
         host = host_of("tiny", model);
@@ -216,7 +216,7 @@ protected:
     Lines host_lines;
     std::unique_ptr<HostThread> host;
     std::unique_ptr<DdsClient> controller;
-    ServedModel served; ///< After the controller, whose link it has.
+    ServedModel served; ///< It has the controller's link, so it is declared after it.
 
 private:
     int files_{0};
@@ -305,7 +305,7 @@ TEST_F(Dds, many_models_start_at_once_and_a_base_mesh_of_several_parts_comes_who
     {
         expect_whole_model(got[i], models[i]);
     }
-    EXPECT_EQ(server.subscribers().size(), 1U); // One a controller, whatever it wants.
+    EXPECT_EQ(server.subscribers().size(), 1U); // One for each controller and any request.
 }
 
 TEST_F(Dds, a_host_that_goes_in_the_middle_of_a_header_is_completed_by_another)
@@ -320,7 +320,7 @@ TEST_F(Dds, a_host_that_goes_in_the_middle_of_a_header_is_completed_by_another)
             sut->exchange().step();
             return search.step() == HeaderSearch::State::under_way;
         }));
-    host.reset(); // Asked, and gone before it could answer.
+    host.reset(); // It was asked, and ended before it could answer.
     const auto second = host_of("tiny", model, kOtherHostDomain);
     EXPECT_TRUE(eventually(
         [&]
@@ -331,7 +331,7 @@ TEST_F(Dds, a_host_that_goes_in_the_middle_of_a_header_is_completed_by_another)
     EXPECT_TRUE(std::ranges::equal(search.header(), model.header));
 }
 
-/// Counts the parts of a base mesh that come.
+/// Counts the received parts of a base mesh.
 class PartCounter final : public PieceReceiver
 {
 public:
@@ -369,14 +369,14 @@ TEST_F(Dds, what_came_of_a_base_mesh_before_its_host_went_is_not_asked_of_anothe
             return counter.times[1] == 1;
         }));
     EXPECT_EQ(fetch.step(), BaseFetch::State::under_way);
-    host.reset(); // The rest was asked of it as well: none of that left us.
+    host.reset(); // The rest was also requested from it, but was not sent.
     const auto second = host_of("tiny", model, kOtherHostDomain);
     EXPECT_TRUE(eventually([&] { return fetch.step() == BaseFetch::State::done; }));
     EXPECT_TRUE(std::ranges::equal(base_less.base, model.base));
     EXPECT_EQ(counter.times[0], 1);
     EXPECT_EQ(counter.times[1], 1);
     EXPECT_GE(counter.times[2], 1);
-    EXPECT_GE(second->counters().pieces_sent, 1U); // What was left of the base.
+    EXPECT_GE(second->counters().pieces_sent, 1U); // The rest of the base mesh.
     exchange.remove(counter);
 }
 
@@ -403,7 +403,7 @@ TEST_F(Dds, a_model_that_is_announced_otherwise_than_it_is_is_refused_or_never_c
         }));
     EXPECT_NE(other_base.objection().find("but its header names one of"), std::string::npos)
         << other_base.objection();
-    // A part of another size than announced is passed over.
+    // A part of another size than announced is skipped.
     HeaderFetch other_header = fetch_with([](Catalogue::Offer& offer) { offer.header_bytes -= 1; });
     for (int i = 0; i < 200; ++i)
     {
@@ -486,7 +486,7 @@ TEST_F(Dds, a_restarted_host_with_the_same_file_is_adopted_under_its_new_epoch)
     ASSERT_TRUE(polled_until(sut, got, [&] { return sut.state() == LinkState::connected; }));
     EXPECT_GT(sut.session(), session);
     EXPECT_TRUE(lines.has("model 'tiny' is served again"));
-    // The new host may not know us yet; whoever asks, asks again.
+    // The new server may not know the client yet; requests are repeated.
     const auto keys = all_pieces(model);
     EXPECT_TRUE(eventually(
         [&]
@@ -536,7 +536,7 @@ TEST_F(Dds, a_model_that_nobody_publishes_is_named_with_what_is_there_and_its_ha
 TEST_F(Dds, where_nothing_is_published_the_likeliest_cause_is_named_first)
 {
     const auto lonely = client();
-    const std::string uri = std::getenv("CYCLONEDDS_URI"); // The domain is joined by now.
+    const std::string uri = std::getenv("CYCLONEDDS_URI"); // The domain is already joined.
     ::unsetenv("CYCLONEDDS_URI");
     const std::string absent = lonely->find({"absent", std::nullopt}, 100ms).error().text;
     ::setenv("CYCLONEDDS_URI", uri.c_str(), 1);
@@ -550,10 +550,11 @@ TEST(DdsDomains, are_known_by_the_ports_of_their_programs)
 {
     const std::string sockets =
         "  sl  local_address rem_address   st tx_queue rx_queue tr tm->when retrnsmt\n"
-        "  10: 0100007F:1CF2 00000000:0000 07 00000000:00000000 00:00000000 00000000\n" // 7410
-        "  11: 0100007F:1DEE 00000000:0000 07 00000000:00000000 00:00000000 00000000\n" // 7662
-        "  12: 0100007F:1E00 00000000:0000 07 00000000:00000000 00:00000000 00000000\n" // 7680
-        "  13: 0100007F:FF95 00000000:0000 07 00000000:00000000 00:00000000 00000000\n" // 65429
+        "  10: 0100007F:1CF2 00000000:0000 07 00000000:00000000 00:00000000 00000000\n" // Port 7410
+        "  11: 0100007F:1DEE 00000000:0000 07 00000000:00000000 00:00000000 00000000\n" // Port 7662
+        "  12: 0100007F:1E00 00000000:0000 07 00000000:00000000 00:00000000 00000000\n" // Port 7680
+        // Port 65429
+        "  13: 0100007F:FF95 00000000:0000 07 00000000:00000000 00:00000000 00000000\n"
         "  14: 0100007F:0035 00000000:0000 07 00000000:00000000 00:00000000 00000000\n"
         "  15: garbage\n\n";
     EXPECT_EQ(domains_in(sockets), (std::set<std::uint32_t>{0, 1, 232}));
@@ -664,7 +665,7 @@ TEST_F(Dds, a_domain_whose_ports_others_have_is_refused_with_their_numbers)
         address.sin_family = AF_INET;
         address.sin_port = htons(port);
         sockets.push_back(::socket(AF_INET, SOCK_DGRAM, 0));
-        // Where that fails somebody has it already.
+        // A failure means that the port is already in use.
         static_cast<void>(
             ::bind(sockets.back(), reinterpret_cast<const sockaddr*>(&address), sizeof(address)));
     }
@@ -683,7 +684,7 @@ TEST_F(Dds, a_domain_whose_ports_others_have_is_refused_with_their_numbers)
 TEST_F(Dds, without_a_configuration_of_the_user_a_process_joins_as_host_and_controller)
 {
     ::unsetenv("CYCLONEDDS_URI");
-    std::vector<Domain> domains; // A host first, and then a controller.
+    std::vector<Domain> domains; // A server first, and then a controller.
     for (const Party party : {Party::host, Party::controller, Party::host})
     {
         auto joined = Domain::join(231, party);
@@ -695,7 +696,8 @@ TEST_F(Dds, without_a_configuration_of_the_user_a_process_joins_as_host_and_cont
 TEST_F(Dds, without_a_configuration_of_the_user_nothing_from_outside_the_machine_is_taken)
 {
     ::unsetenv("CYCLONEDDS_URI");
-    const int other = ::socket(AF_INET, SOCK_DGRAM, 0); // Somebody else's, which stays as it is.
+    // Socket of another program, which stays unchanged.
+    const int other = ::socket(AF_INET, SOCK_DGRAM, 0);
     sockaddr_in everywhere{};
     everywhere.sin_family = AF_INET;
     ASSERT_EQ(::bind(other, reinterpret_cast<sockaddr*>(&everywhere), sizeof(everywhere)), 0);
@@ -747,7 +749,8 @@ public:
     Program(const Program&) = delete;
     Program& operator=(const Program&) = delete;
 
-    /// Sends a signal if there is one and waits; the exit code, or minus the signal that killed it.
+    /// Sends a signal, if any, and waits; returns the exit code, or minus the signal that killed
+    /// it.
     int end(int signal = 0)
     {
         if (signal != 0)
@@ -759,7 +762,7 @@ public:
         pid_ = 0;
         return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
     }
-    /// All that it printed until it ended.
+    /// Whole output until the end.
     std::string output()
     {
         std::string text;
@@ -800,7 +803,7 @@ TEST_F(Dds, a_host_that_is_killed_is_noticed_and_its_successor_adopted)
     EXPECT_NE(output.find("ended; "), std::string::npos) << output;
 }
 
-/// Without a configuration of the user controllers have no ports that anybody knows.
+/// Without a user's configuration controllers have no known ports.
 TEST_F(Dds, a_controller_finds_a_host_that_starts_after_it_and_keeps_one_of_its_process_out)
 {
     ::unsetenv("CYCLONEDDS_URI");

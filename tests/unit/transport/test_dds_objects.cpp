@@ -39,13 +39,13 @@ using test::kNan;
 using test::make_tiny_model;
 using test::TemporaryFolder;
 
-/// A quarter turn about z at some place.
+/// Pose with a quarter turn about z.
 Pose some_pose(double x_m = 0.25)
 {
     return {{0.0, 0.0, std::sqrt(0.5), std::sqrt(0.5)}, {x_m, -1.5, 3.0}, 2.0};
 }
 
-/// A controller that follows what it is told to, and keeps the news.
+/// Controller that follows given servers, and keeps the events.
 class Follower
 {
 public:
@@ -87,7 +87,7 @@ private:
     SceneReader scene_;
 };
 
-/// A host of one model and a controller that follows it; each in a domain of its own, in turns.
+/// Server of one model and a controller that follows it, in turns, each in its own domain.
 class DdsObjects : public ::testing::Test
 {
 protected:
@@ -126,7 +126,7 @@ protected:
                 return is_so();
             });
     }
-    /// For what must not come, or comes by a step at the end of that time.
+    /// Steps for this time, for events that must not occur, or occur at its end.
     void step_for(std::chrono::milliseconds time)
     {
         const auto end = std::chrono::steady_clock::now() + time;
@@ -162,7 +162,7 @@ TEST_F(DdsObjects, come_move_and_go_as_the_host_says)
     EXPECT_EQ(follower->count(SceneNews::goes), 1U);
 
     const std::uint32_t pot = host->objects().show(object_called("pot")).value();
-    EXPECT_EQ(pot, cup); // It may have its number: it has another generation.
+    EXPECT_EQ(pot, cup); // It may have the number with another generation.
     ASSERT_TRUE(step_until([&] { return seen(pot) != nullptr; }));
     EXPECT_EQ(seen(pot)->shown.name, "pot");
     EXPECT_EQ(seen(pot)->generation, 2U);
@@ -176,7 +176,7 @@ TEST_F(DdsObjects, feel_otherwise_when_the_host_says_so)
     EXPECT_EQ(seen(cup)->shown.material, Material{});
     const Material honey{900.0, 0.5, 0.25, 3.0, 4.0, 1e-5, 1e-3};
     ASSERT_TRUE(host->objects().feel(cup, honey));
-    ASSERT_TRUE(host->objects().feel(cup, honey)); // Which is nothing new.
+    ASSERT_TRUE(host->objects().feel(cup, honey)); // The material is unchanged.
     ASSERT_TRUE(step_until([&] { return follower->count(SceneNews::feels) > 0; }));
     EXPECT_EQ(seen(cup)->shown.material, honey);
     EXPECT_EQ(seen(cup)->shown.pose.translation_m, some_pose().translation_m);
@@ -189,7 +189,7 @@ TEST_F(DdsObjects, feel_otherwise_when_the_host_says_so)
     step_for(100ms);
     EXPECT_EQ(follower->count(SceneNews::feels), 1U);
     EXPECT_EQ(follower->count(SceneNews::comes), 1U);
-    // Who joins late has it as it feels now.
+    // A late joiner gets the present material.
     follower.emplace(kClientDomain, "late");
     follower->hosts = {host->epoch()};
     ASSERT_TRUE(step_until([&] { return seen(cup) != nullptr; }));
@@ -202,7 +202,7 @@ TEST_F(DdsObjects, are_heard_of_at_rest_as_often_as_in_motion)
     const std::uint32_t cup = host->objects().show(object_called("cup")).value();
     ASSERT_TRUE(
         step_until([&] { return seen(cup) && follower->scene().was_heard(host->epoch()); }));
-    // A beat comes every 20 ms. Records, once a second, would be too few in all the time there is.
+    // A beat is sent every 20 ms. Records, once a second, would be too few.
     int heard = 0;
     EXPECT_TRUE(eventually(
         [&]
@@ -217,7 +217,7 @@ TEST_F(DdsObjects, are_heard_of_at_rest_as_often_as_in_motion)
     EXPECT_EQ(follower->count(SceneNews::moves), 0U);
 }
 
-/// The record is what a late joiner gets; what has rested for long is in it.
+/// A late joiner gets the record, which includes objects that have rested for long.
 TEST_F(DdsObjects, stand_for_a_late_joiner_where_they_came_to_rest)
 {
     const std::uint32_t cup = host->objects().show(object_called("cup")).value();
@@ -297,7 +297,7 @@ TEST_F(DdsObjects, that_a_host_must_not_show_never_leave_it)
     EXPECT_EQ(sut.find(kMaxObjects), nullptr);
 }
 
-/// Samples of the host's own participant that its program did not make.
+/// Samples of the server's own participant that its program did not send.
 class DdsObjectFaults : public DdsObjects
 {
 protected:
@@ -323,7 +323,7 @@ protected:
     {
         return {cup_, 1, to_wire(some_pose(x_m))};
     }
-    /// Best effort promises nothing: written until it was counted.
+    /// Writes until the sample was counted, since best effort guarantees nothing.
     void write_until_counted(std::uint64_t serial, const tactus_v5_MovedObject& moved)
     {
         const auto counted = [&]
@@ -384,7 +384,7 @@ TEST_F(DdsObjectFaults, are_refused_under_their_names_and_change_nothing)
     write_until_counted(999, good(0.75)); // Late.
     EXPECT_GE(refused(PoseRefusal::not_newer), 1U);
     EXPECT_EQ(seen(cup_)->shown.pose.translation_m[0], 0.5);
-    write_until_counted(1'001, good(0.75)); // Nothing of what was refused is remembered.
+    write_until_counted(1'001, good(0.75)); // Refused samples leave no trace.
     EXPECT_EQ(seen(cup_)->shown.pose.translation_m[0], 0.75);
 }
 
@@ -402,7 +402,7 @@ TEST_F(DdsObjectFaults, of_objects_that_are_not_there_or_were_are_passed_over)
     EXPECT_EQ(seen(cup_)->counts.refused_in_all(), 0U);
 }
 
-/// Whatever stands in a sample: only a pose passes.
+/// Any content of a sample: only a pose passes.
 TEST_F(DdsObjectFaults, of_noise_never_pass_for_a_pose)
 {
     constexpr std::uint64_t kSeed = 20'261'122;
@@ -431,7 +431,7 @@ TEST_F(DdsObjectFaults, of_noise_never_pass_for_a_pose)
     EXPECT_GT(seen(cup_)->counts.refused_in_all(), 0U);
 }
 
-/// What a host's own participant says of objects and models, past what its program allows.
+/// Messages of a server's participant about objects and models that its program does not allow.
 class DdsHostFaults : public DdsObjectFaults
 {
 protected:
@@ -499,7 +499,7 @@ protected:
     Endpoint entries_;
 };
 
-/// 4,096 objects and 256 models are what a controller keeps of one host.
+/// A controller keeps 4,096 objects and 256 models of one server.
 TEST_F(DdsHostFaults, more_objects_and_models_than_a_controller_holds_take_no_room)
 {
     const ContentHash model = host->models()[0].store().hash();
@@ -522,13 +522,13 @@ TEST_F(DdsHostFaults, more_objects_and_models_than_a_controller_holds_take_no_ro
     EXPECT_EQ(refused_of_host(Refused::object_number), 4U);
     EXPECT_EQ(refused_of_host(Refused::model_number), 5U);
     const std::string who = "(process " + std::to_string(::getpid()) + " on ";
-    follower->step(); // What was counted between its look and the last take.
+    follower->step(); // Includes counts between its poll and the last take.
     EXPECT_TRUE(follower->lines.has(who)) << follower->lines.text();
     EXPECT_EQ(lines_with("object 4096: a host has objects 0 to 4095"), 1U);
     EXPECT_EQ(lines_with("model 4096: a host has models 0 to 255"), 1U);
 }
 
-/// Records that are none: counted by reason, and named once.
+/// Invalid records: counted by reason, and named once.
 TEST_F(DdsHostFaults, records_that_are_none_are_named_once_and_change_nothing)
 {
     const auto write =
@@ -567,19 +567,19 @@ TEST_F(DdsHostFaults, objects_of_models_that_it_does_not_serve_are_refused_by_na
     const std::string line = "object 'ghost' is refused: it shows model " +
                              hash_text(other_model()) + ", which its host doesn't serve\n";
     ASSERT_TRUE(step_until([&] { return follower->lines.has(line); }));
-    show(7, "ghost", other_model()); // As a host does after a rest: no second line.
+    show(7, "ghost", other_model()); // Repeated by a server after a rest: no second line.
     step_for(2'500ms);
     EXPECT_EQ(seen(7), nullptr);
     EXPECT_EQ(lines_with("is refused"), 1U);
     EXPECT_EQ(follower->count(SceneNews::comes), 2U);
     EXPECT_EQ(follower->count(SceneNews::goes), 0U);
-    // Once it is served it comes, and one that goes before is never heard of.
+    // It appears once it is served; one that is removed before is never reported.
     show(9, "wraith", other_model());
     tactus_v5_ObjectRecord gone = {};
     gone.host_epoch = host->epoch();
     gone.object = 9;
     EXPECT_EQ(dds_dispose(records_.handle, &gone), DDS_RETCODE_OK);
-    step_for(500ms); // Until what the host says of its objects settles it.
+    step_for(500ms); // Waits until the server's statement about its objects settles it.
     announce(1, "ghosts", other_model());
     ASSERT_TRUE(step_until([&] { return seen(7) != nullptr; }));
     EXPECT_EQ(seen(7)->shown.name, "ghost");
@@ -616,12 +616,12 @@ TEST_F(DdsHostFaults, a_model_that_changes_under_its_name_changes_nothing_that_i
                      hash_text(other_model()) + "; what is resident is kept"));
     EXPECT_EQ(seen(cup_)->shown.model, model);
     EXPECT_EQ(follower->count(SceneNews::goes), 0U);
-    // The host tells the truth again within a second.
+    // The server repeats the truth within a second.
     EXPECT_TRUE(told("model 'tiny' is served again"));
     EXPECT_EQ(link.state(), LinkState::connected);
 }
 
-/// A stranger in the host's partition: writes the host's object anew, moves it and removes it.
+/// A stranger in the server's partition overwrites, moves and removes its object.
 TEST_F(DdsObjectFaults, of_who_is_not_the_host_do_not_get_in)
 {
     const Domain stranger = Domain::join(kOtherHostDomain).value();
@@ -657,7 +657,7 @@ TEST_F(DdsObjectFaults, of_who_is_not_the_host_do_not_get_in)
     EXPECT_EQ(refused[0].id, stranger.participants().own());
     // Both records; motion may get lost.
     EXPECT_GE(refused[0].counts.at(static_cast<std::size_t>(Refused::identity)), 2U);
-    write_until_counted(2'000, good(0.5)); // The host itself goes on as before.
+    write_until_counted(2'000, good(0.5)); // The server itself continues as before.
     EXPECT_EQ(seen(cup_)->shown.pose.translation_m[0], 0.5);
 }
 
@@ -688,7 +688,7 @@ TEST_F(DdsObjects, of_two_hosts_are_told_apart)
     EXPECT_EQ(follower->find(other->epoch(), pot)->shown.name, "pot");
 }
 
-/// Eight at the same instant: two get everything at once, the others when these have it.
+/// Eight together: two get everything at once, the others after these.
 TEST_F(DdsObjects, come_to_many_controllers_a_few_at_a_time)
 {
     constexpr std::uint32_t kMany = 500;
@@ -731,7 +731,7 @@ TEST_F(DdsObjects, motion_that_is_not_heard_comes_by_another_writer)
     ASSERT_TRUE(step_until([&] { return follower->scene().was_heard(host->epoch()); }));
     ASSERT_TRUE(step_until([&] { return follower->scene().is_complete(host->epoch()); }));
     EXPECT_EQ(host->counters().renewed, 0U);
-    // As the scene's reader says it when it has heard none for 300 ms.
+    // The scene's reader reports this after 300 ms of silence.
     ASSERT_TRUE(step_until(
         [&]
         {

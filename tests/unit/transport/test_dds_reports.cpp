@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The two reports of a controller, telemetry and front, keep the same laws on their way.
+/// Common laws of the two reports of a controller, telemetry and front, in transit.
 
 #include "rt_core/math/infinity.hpp"
 #include "tests/unit/transport/dds_rig.hpp"
@@ -30,7 +30,7 @@ namespace
 using test::eventually;
 using test::kNan;
 
-/// How much a report holds.
+/// Size of a report.
 struct Size
 {
     std::uint32_t tools, models, pairs, pages, objects;
@@ -39,7 +39,7 @@ struct Size
 constexpr Size kNothing{0, 0, 0, 0, 0};
 constexpr Size kSmall{1, 1, 1, 1, 1};
 
-/// Numbers of which no two are alike, and flags that differ from record to record.
+/// Different numbers, and flags that differ between records.
 class Distinct
 {
 public:
@@ -88,7 +88,7 @@ private:
     std::uint32_t count_{0};
 };
 
-// A record with a field more has another number of names below, which doesn't compile.
+// A record with an additional field has another number of names below, which does not compile.
 
 Telemetry telemetry_of(const Size& size)
 {
@@ -150,7 +150,7 @@ Front front_of(const Size& size)
                   front.regions_left_out);
     front.time_ns = -front.time_ns;
     auto& [splits, merges, scanned, nodes, triangles, looked_at, requests, regions, planes, work] =
-        front.budgets; // `planes` has no place on the wire.
+        front.budgets; // `planes` is not transmitted.
     distinct.fill(splits, merges, scanned, nodes, triangles, looked_at, requests, regions, work);
     front.sweep_begin = 40;
     front.sweep_end = 56;
@@ -196,7 +196,7 @@ Front front_of(const Size& size)
     return front;
 }
 
-/// A sample of the wire with one record of each kind, sound but for what a test changes.
+/// Wire sample with one record of each kind, valid except for a test's change.
 struct TelemetrySample
 {
     tactus_v5_ToolTelemetry tool = {};
@@ -240,7 +240,7 @@ struct FrontSample
     }
 };
 
-/// What is one report's own.
+/// Specific part of one report.
 struct TelemetryReport
 {
     using Reader = TelemetryReader;
@@ -336,7 +336,7 @@ protected:
         viewer_.emplace(Domain::join(2).value());
         sut_ = std::move(Report::Reader::create(*viewer_)).value();
     }
-    /// A controller is a participant: each is one of its own.
+    /// A controller is a participant: each has its own.
     struct Controller
     {
         Controller(const std::string& name, const Size& size)
@@ -350,7 +350,7 @@ protected:
         decltype(Report::made({})) report;
     };
     [[nodiscard]] const auto& seen() const { return Report::seen(*sut_); }
-    /// Writes until `is_so` of what the reader has seen.
+    /// Writes until the reader satisfies the condition.
     [[nodiscard]] bool polled_until(
         const std::function<bool()>& is_so, const std::function<void()>& write = [] {})
     {
@@ -376,7 +376,7 @@ TYPED_TEST(DdsReports, come_as_they_were_sent_and_go_with_their_controller)
     {
         typename TestFixture::Controller controller("one", size);
         ASSERT_TRUE(this->polled_until(
-            [&] { // The last one's end may still be on its way.
+            [&] { // The last one's end may still be in transit.
                 return this->seen().size() == 1 &&
                        this->seen()[0].id == controller.domain.participants().own();
             },
@@ -389,7 +389,7 @@ TYPED_TEST(DdsReports, come_as_they_were_sent_and_go_with_their_controller)
     EXPECT_EQ(this->sut_->refused(), 0U);
 }
 
-/// One writer may say that it is another, or many: none of that gets into the reader.
+/// A writer may claim to be another, or many: nothing of that enters the reader.
 TYPED_TEST(DdsReports, of_a_controller_that_they_do_not_come_from_are_not_heard)
 {
     typename TestFixture::Controller controller("good", kSmall);
@@ -447,7 +447,7 @@ class DdsTelemetry : public DdsReports<TelemetryReport>
 {
 };
 
-/// 70 at once, each of which goes on as if it were alone, and one that stays when the others leave.
+/// 70 together, each of which continues as if alone, and one that stays when the others leave.
 TEST_F(DdsTelemetry, of_more_than_64_controllers_is_watched_until_they_leave)
 {
     std::vector<std::unique_ptr<Controller>> controllers;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// Many servers of one name: a hash proves what any of them sends, so one that is silent or lies is
-/// passed; whose word counts stays with the first, but where another is allowed.
+/// Many servers of one name: hashes prove all pieces, so a silent or forging server is skipped; the
+/// authority stays with the first, unless another is allowed.
 
 #include "tests/unit/transport/dds_rig.hpp"
 #include "tests/unit/transport/stranger.hpp"
@@ -35,7 +35,7 @@ using test::make_tiny_model;
 using test::Stranger;
 using test::TinyModel;
 
-/// Keeps the true chunks that come and says so of the others.
+/// Keeps the true chunks and rejects the others.
 class Verifier final : public PieceSink
 {
 public:
@@ -72,11 +72,11 @@ protected:
     void start_anew()
     {
         strangers.clear();
-        client_.reset(); // A domain that is there keeps its configuration.
+        client_.reset(); // An existing domain keeps its configuration.
         SetUp();
     }
 
-    /// In a domain of its own; seen after those that came before.
+    /// Adds a server in its own domain, discovered after the earlier ones.
     Stranger& come(const TinyModel& of, std::string scene = "")
     {
         const auto domain = static_cast<std::uint32_t>(strangers.size());
@@ -190,7 +190,7 @@ TEST_F(DdsServers, pieces_come_from_the_next_where_the_first_is_silent_or_lies)
         {
             keys.push_back({ContentKind::chunk, chunk});
         }
-        link.request(keys, 1); // Once: who asks needn't know.
+        link.request(keys, 1); // Once: the requester need not know.
         ASSERT_TRUE(step_until(
             [&]
             {
@@ -205,7 +205,7 @@ TEST_F(DdsServers, pieces_come_from_the_next_where_the_first_is_silent_or_lies)
             << lines.text();
         const int sent = first.sent(ContentKind::chunk);
         got.chunks.clear();
-        link.request(keys, 2); // From now on of the second at once.
+        link.request(keys, 2); // All requests go to the second one from now on.
         ASSERT_TRUE(step_until(
             [&]
             {
@@ -231,7 +231,7 @@ TEST_F(DdsServers, a_piece_that_one_alone_lacks_comes_from_the_next)
         [&]
         {
             const std::vector<ContentKey> other{
-                {ContentKind::chunk, 1 + chunk++ % 3}}; // The first one answers all the time.
+                {ContentKind::chunk, 1 + chunk++ % 3}}; // The first one always answers.
             link.request(other, 1);
             link.poll(got);
             return got.chunks.contains(0); // Of the index page.
@@ -293,7 +293,7 @@ TEST_F(DdsServers, what_is_asked_for_is_kept_however_many_others_there_are)
                 return is_so();
             });
     };
-    // Four with many names of no interest; each has as much as another.
+    // Four servers with many irrelevant names; each has an equal share.
     for (std::uint32_t who = 0; who < 4; ++who)
     {
         for (std::uint32_t i = 0; i < 100; ++i)
@@ -303,12 +303,12 @@ TEST_F(DdsServers, what_is_asked_for_is_kept_however_many_others_there_are)
         ASSERT_TRUE(settled([&] { return share(who) >= kRoom / 4 - 1; })) << share(who);
     }
     EXPECT_EQ(sut.offers({}).size(), kRoom);
-    // The one with the name that is asked for has room, for other names, too.
+    // The one with the requested name has space, also for other names.
     announce(4, 0, "wanted");
     announce(4, 1, "other");
     EXPECT_TRUE(settled([&] { return share(4) == 2; }));
     EXPECT_EQ(sut.offers({}).size(), kRoom);
-    // Strangers with that name leave it there: no one has more than its share.
+    // Strangers with that name do not displace it: none exceeds its share.
     for (std::uint32_t who = 0; who < 4; ++who)
     {
         for (std::uint32_t i = 100; i < 200; ++i)
@@ -320,7 +320,7 @@ TEST_F(DdsServers, what_is_asked_for_is_kept_however_many_others_there_are)
     EXPECT_EQ(share(4), 1U);
     announce(4, 2, "wanted");
     EXPECT_TRUE(settled([&] { return share(4) == 2; }));
-    // All of a server whose word counts are kept.
+    // All entries of an authoritative server are kept.
     sut.keep(crowd[4].participants().own_epoch());
     announce(4, 1, "other");
     EXPECT_TRUE(settled([&] { return share(4) == 3; }));

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// Others on the wire: those that speak another version of the protocol are named and passed over,
-/// those that say that they are somebody else are not heard, and nothing of either touches who
-/// speaks for himself.
+/// Foreign participants: those with another protocol version are named and skipped, those with a
+/// false identity are ignored, and neither affects honest ones.
 
 #include "tests/shared/count_of.hpp"
 #include "tests/unit/transport/dds_rig.hpp"
@@ -39,7 +38,7 @@ using test::make_tiny_model;
 using test::TemporaryFolder;
 using test::TinyModel;
 
-/// What a program waits for something that must not come.
+/// Wait for an event that must not occur.
 constexpr auto kMoment = 300ms;
 
 class Nobody final : public PieceSink
@@ -49,8 +48,8 @@ public:
     std::size_t count{0};
 };
 
-/// Host, controller and stranger as three domains of this process that meet on loopback; host and
-/// controller take turns on one thread.
+/// Server, controller and stranger as three domains of this process on loopback; server and
+/// controller run in turn on one thread.
 class DdsVersions : public ::testing::Test
 {
 protected:
@@ -73,7 +72,7 @@ protected:
     {
         return [&text](const std::string& line) { text += line + "\n"; };
     }
-    /// Both step until it is so or the time is over; whether it is so.
+    /// Steps both until the condition holds or the time is over; returns the condition.
     [[nodiscard]] bool step_until(const std::function<bool()>& is_so,
                                   std::chrono::nanoseconds patience = kPatience)
     {
@@ -85,7 +84,7 @@ protected:
         }
         return is_so();
     }
-    /// Until the host has said once more what it serves.
+    /// Steps until the server has announced its models again.
     void step_for_an_announcement()
     {
         static_cast<void>(step_until([] { return false; }, 1'100ms));
@@ -101,7 +100,7 @@ protected:
             link->poll(got);
         }
     }
-    /// Our host, and our controller with its model.
+    /// Creates our server, and our controller with its model.
     void connect()
     {
         std::vector<PublishedModel> models;
@@ -120,7 +119,7 @@ protected:
         ASSERT_TRUE(step_until([&] { return host->subscribers().size() == 1; }));
     }
 
-    /// Whether our controller still gets what it asks for.
+    /// True if our controller still gets its requests.
     [[nodiscard]] bool is_served()
     {
         const ContentKey key{ContentKind::chunk, 0};
@@ -128,14 +127,14 @@ protected:
         link->request({&key, 1}, 1);
         return step_until([&] { return got.count > before; }) && got.count == before + 1;
     }
-    /// A writer of the stranger's that others listen to.
+    /// Writer of the stranger with a matched reader.
     [[nodiscard]] Endpoint heard_writer(Topic topic, const std::string& partition)
     {
         Endpoint writer = make_writer(stranger, topic, partition).value();
         EXPECT_TRUE(step_until([&] { return is_matched(writer); }));
         return writer;
     }
-    /// A host's announcement; the writer is to be kept as long as it is to last.
+    /// Announcement of a server, which lasts as long as the writer.
     [[nodiscard]] Endpoint announce(std::uint64_t epoch) const
     {
         Endpoint writer = make_writer(stranger, Topic::catalogue, "").value();
@@ -158,7 +157,7 @@ protected:
         wanted.granted = kCreditPieces;
         return wanted;
     }
-    /// A topic of another version; its type is of no matter to who only looks at names.
+    /// Topic of another version; its type is irrelevant for readers of names.
     [[nodiscard]] Entity topic_of_version(const std::string& name) const
     {
         return Entity(dds_create_topic(stranger.participant(), &tactus_v5_CatalogueEntry_desc,
@@ -219,7 +218,7 @@ TEST_F(DdsVersions, who_says_to_be_another_host_is_not_heard)
         }));
 }
 
-/// Anybody may dispose of anything, and filters don't see it.
+/// Every participant may dispose any instance, and filters do not see it.
 TEST_F(DdsVersions, who_is_not_the_host_can_not_end_it_nor_hide_its_end)
 {
     ASSERT_NO_FATAL_FAILURE(connect());
@@ -265,7 +264,7 @@ TEST_F(DdsVersions, who_is_not_the_controller_can_not_end_it_nor_hide_its_end)
     EXPECT_TRUE(step_until([&] { return host->subscribers().empty(); }));
 }
 
-/// What a host or a controller said and nobody took yet then tells of an end, in its own name.
+/// A sample that is not taken yet then reports an end, in its sender's name.
 TEST_F(DdsVersions, an_end_that_a_stranger_put_on_what_was_not_taken_yet_is_not_believed)
 {
     ASSERT_NO_FATAL_FAILURE(connect());
@@ -288,7 +287,7 @@ TEST_F(DdsVersions, an_end_that_a_stranger_put_on_what_was_not_taken_yet_is_not_
     }
     for (int i = 0; i < 2; ++i)
     {
-        std::unique_ptr<ChunkLink> untaken = std::move(link); // What it is told waits for it.
+        std::unique_ptr<ChunkLink> untaken = std::move(link); // Its messages wait.
         step_for_an_announcement();
         link = std::move(untaken);
         ASSERT_EQ(dds_dispose(shows.handle, &entry), DDS_RETCODE_OK);
@@ -415,7 +414,7 @@ TEST_F(DdsVersions, who_asks_for_too_much_in_a_second_is_counted_by_name_and_ser
             host->step();
             return refused() > 0;
         }));
-    // All here are of one process: a second later it is served again.
+    // All are in one process: a second later it is served again.
     const ContentKey key{ContentKind::chunk, 0};
     EXPECT_TRUE(step_until(
         [&]

@@ -16,7 +16,7 @@ namespace tactus::test
 namespace
 {
 
-/// Asks by places of the source mesh.
+/// Queries by places of the source mesh.
 class InsideRig
 {
 public:
@@ -26,7 +26,7 @@ public:
         , sut_(header_, served_.base)
     {
     }
-    /// So far from the surface the answer is the true one.
+    /// Distance from the surface beyond which the answer is right.
     [[nodiscard]] double sure_m() const
     {
         return 2.0 * static_cast<double>(header_.quantum_m()) * header_.fields().max_error_quanta;
@@ -42,7 +42,7 @@ private:
     InsideTest sut_;
 };
 
-/// The oracle is the shape's own formula.
+/// The oracle is the shape's formula.
 TEST(InsideTest, knows_the_inside_of_a_torus_from_its_hole)
 {
     constexpr double kRing_m = 0.05;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// What is linked, what waits and what is refused: a foreign id and a dependency cycle always
-/// (I12).
+/// I12: a foreign id and a dependency cycle are always refused; which records are linked, wait or
+/// are refused.
 
 #include "host_tools/encode/record_coder.hpp"
 #include "rt_core/spm/chunk_coding.hpp"
@@ -27,7 +27,7 @@ using test::DoorSide;
 using test::make_tiny_model;
 using test::TinyModel;
 
-/// Parses and links chunks without a courier.
+/// Parses and links chunks without a loader.
 struct Bench
 {
     explicit Bench(const TinyModel& tiny)
@@ -39,7 +39,7 @@ struct Bench
     {
         bring_bytes(chunk, slot, model.chunks[chunk]);
     }
-    /// What the model does not hold, but parse accepts.
+    /// Adds content that the model does not have, but parse accepts.
     void bring_forged(std::uint32_t chunk, std::uint32_t slot, std::span<const std::byte> bytes)
     {
         side.expects_sound_content = false;
@@ -149,13 +149,13 @@ RC_GTEST_PROP(Linker, looks_at_a_record_once_for_each_that_it_names, (std::uint3
     const TinyModel model =
         make_tiny_model({.seed = seed, .records = 1'000, .shuffled_ids = seed % 2 == 0});
     Bench bench(model);
-    // Its fan's owners, its ring's vertices, and who brought the anchor's face.
+    // The owners of its fan, its ring's vertices, and the creator of the anchor's face.
     std::uint64_t allowed = 0;
     for (const VsplitRecord& record : model.records)
     {
         allowed += 4U + 2U * record.fan_size;
     }
-    // Last chunks first: nearly every record has to wait.
+    // Last chunks first: nearly every record must wait.
     for (auto chunk = static_cast<std::uint32_t>(model.chunks.size()); chunk-- > 0;)
     {
         bench.bring(chunk, chunk);
@@ -184,7 +184,7 @@ TEST(Linker, records_wait_while_a_dependency_is_absent)
     EXPECT_EQ(bench.side.linker.records_refused(), 0U);
 }
 
-/// The chunk of a record that says something else of it.
+/// Chunk of a record with changed content.
 std::vector<std::byte> forge(const TinyModel& model, std::uint32_t record, auto&& change)
 {
     auto coded = model.coded;
@@ -192,7 +192,7 @@ std::vector<std::byte> forge(const TinyModel& model, std::uint32_t record, auto&
     return model.chunk_of({record / 64}, coded);
 }
 
-/// The first record whose anchor was last changed by another record.
+/// First record whose anchor was last changed by another record.
 std::uint32_t record_with_dependency(const TinyModel& model)
 {
     for (std::uint32_t id = 0; id < 64; ++id)
@@ -224,7 +224,7 @@ TEST(Linker, refuses_an_anchor_that_the_owner_s_star_does_not_have)
 TEST(Linker, refuses_a_fan_that_has_no_next_face)
 {
     const TinyModel model = make_tiny_model({.base_faces = 1, .records = 64});
-    // One face in a base of one face: nothing lies beyond its edges.
+    // One face in a base of one face: there is nothing beyond its edges.
     expect_refused(model, 0,
                    forge(model, 0,
                          [](CodedRecord& coded)
@@ -292,7 +292,7 @@ TEST(Linker, never_links_a_cycle_of_two_records)
 {
     const TinyModel model = make_tiny_model({.records = 192});
     auto coded = model.coded;
-    // Records 64 and 128 name each other as the last to change a face of theirs.
+    // Records 64 and 128 name each other as the last change of one of their faces.
     for (const auto& [id, other] : {std::pair{64U, 128U}, std::pair{128U, 64U}})
     {
         coded[id].left = coded[id].right = 0;
@@ -354,7 +354,7 @@ TEST(Linker, models_of_one_pool_have_chunks_of_the_same_numbers)
                         .has_value());
         (is_first ? side.linker : other).link_page({chunk}, slot);
     };
-    for (const std::uint32_t chunk : {2U, 0U, 1U}) // So that some records wait.
+    for (const std::uint32_t chunk : {2U, 0U, 1U}) // Some records then wait.
     {
         bring(true, chunk, 2 * chunk);
         bring(false, chunk, 2 * chunk + 1);
@@ -369,7 +369,7 @@ TEST(Linker, models_of_one_pool_have_chunks_of_the_same_numbers)
         EXPECT_TRUE(other.is_resident({chunk}));
         EXPECT_EQ(other.linked(2 * chunk + 1), ~std::uint64_t{0});
     }
-    for (const std::uint32_t chunk : {0U, 1U, 2U}) // In slots that the other one had.
+    for (const std::uint32_t chunk : {0U, 1U, 2U}) // In slots of the other one.
     {
         other.release_page(2 * chunk + 1);
         bring(true, chunk, 2 * chunk + 1);

@@ -29,7 +29,7 @@ std::string refusal_of(const std::filesystem::path& path)
     return store ? "" : store.error().text;
 }
 
-/// What every refusal must be: one line that begins with the file's name.
+/// Form of every refusal: one line that begins with the file's name.
 void expect_one_clear_line(const std::string& text, const std::filesystem::path& path)
 {
     EXPECT_EQ(text.rfind(path.string() + ": ", 0), 0U) << text;

@@ -60,10 +60,10 @@ TEST(CreditWindow, grants_a_window_beyond_what_was_seen_and_survives_loss)
     EXPECT_EQ(sut.granted(), 10U);
     sut.on_sample(4, 4);
     EXPECT_EQ(sut.granted(), 14U);
-    sut.on_sample(9, 2); // Three pieces before it were lost; the count shows it.
+    sut.on_sample(9, 2); // Three pieces before it were lost, as the count shows.
     EXPECT_EQ(sut.granted(), 19U);
     EXPECT_EQ(sut.received(), 6U);
-    sut.on_sample(7, 3); // Late, out of order: nothing is taken back.
+    sut.on_sample(7, 3); // Late and out of order: nothing is reduced.
     EXPECT_EQ(sut.granted(), 19U);
     sut.write_off();
     EXPECT_EQ(sut.granted(), 29U);
@@ -83,7 +83,7 @@ TEST(WishQueue, puts_the_newest_generation_first_and_keeps_its_order)
     add(3, 6);
     add(4, 6);
     add(5, 4);
-    add(1, 6); // Wished for again, newer.
+    add(1, 6); // Requested again, newer.
     std::vector<std::uint32_t> order;
     for (; !sut.empty(); sut.pop_front())
     {
@@ -131,7 +131,7 @@ TEST(WishQueue, forgets_the_oldest_generation_when_full_and_generations_may_wrap
     EXPECT_EQ(sut.front().key.number, 2U);
 }
 
-/// Random requests in a random order, against a list that is kept in order.
+/// Random requests in a random order, compared with a sorted list.
 TEST(WishQueue, is_in_the_order_of_a_list_that_is_searched)
 {
     constexpr std::size_t kCapacity = 40;

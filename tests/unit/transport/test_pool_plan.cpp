@@ -21,7 +21,7 @@ namespace
 
 struct PlannedScene
 {
-    /// Each model has so many records more than the one before.
+    /// Scene of models, each with `more_records` more records than the one before.
     explicit PlannedScene(std::size_t models, std::uint32_t more_records = 700)
     {
         for (std::uint32_t i = 0; i < models; ++i)
@@ -49,7 +49,7 @@ struct PlannedScene
     std::vector<ModelCapacities> capacities;
 };
 
-/// Frame and courier take their memory from an arena of exactly that size.
+/// Frame and loader take their memory from an arena of exactly that size.
 void expect_room_for_all(PlannedScene& scene, std::size_t bytes)
 {
     std::vector<ModelSource> sources;
@@ -86,7 +86,8 @@ TEST(PoolPlan, leaves_room_for_frame_and_courier_in_what_it_plans_for)
     }
 }
 
-/// What one has no use for is for the others, whatever the memory; with enough each is whole.
+/// Memory that one model does not need is for the others, for any size; with enough each is
+/// complete.
 TEST(PoolPlan, of_as_many_models_as_there_may_be_gives_each_its_part)
 {
     PlannedScene scene(kMaxModels, 1);
@@ -126,7 +127,7 @@ TEST(PoolPlan, knows_the_least_that_would_do)
     EXPECT_GT(least_pool_bytes(scene.setup, scene.headers, cache), 0U);
 }
 
-/// Of what `hrtc --pool-mib` counts, 2 by default, a frame is part.
+/// A frame is a part of the memory of `hrtc --pool-mib`, 2 by default.
 TEST(PoolPlan, of_eight_models_of_200_000_faces_and_four_tools_takes_2_mib_at_most)
 {
     HeaderParts parts = sound_header((200'000 - 500) / 2);

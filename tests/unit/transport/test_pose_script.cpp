@@ -20,7 +20,7 @@ const std::vector<ScriptedObject> kObjects{{"bunny"}, {"cow"}};
 const std::string kNoLine = "is not TIME_S NAME X Y Z QX QY QZ QW [SCALE] nor TIME_S NAME material "
                             "KEY=VALUE[,...]";
 
-/// What is said against a text; empty when it is fine.
+/// Fault of a text; empty if there is none.
 std::string fault_of(std::string_view text)
 {
     const auto lines = parse_pose_lines(text, kObjects);
@@ -127,9 +127,9 @@ TEST(PoseScript, puts_poses_between_the_lines_of_an_object)
     const auto made = interpolated(lines.value(), kObjects.size(), 10.0);
     ASSERT_TRUE(made) << made.error().text;
     const std::vector<PoseLine>& all = made.value();
-    ASSERT_EQ(all.size(), 5U + 3U); // Nothing for the bunny, nothing where the cow is gone.
+    ASSERT_EQ(all.size(), 5U + 3U); // None for the bunny, and none while the cow is gone.
     EXPECT_TRUE(std::ranges::is_sorted(all, {}, &PoseLine::time_s));
-    // A quarter of the way; half a turn the other way about z, so an eighth of a turn.
+    // A quarter of the path; half a turn the other way about z, so an eighth of a turn.
     const auto quarter = std::ranges::find_if(all, [](const PoseLine& line)
                                               { return line.object == 1 && line.time_s > 0.0; });
     EXPECT_NEAR(quarter->time_s, 0.1, 1e-15);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// Hours of bad weather in virtual time: a controller streams a model that doesn't fit over a link
-/// that loses, repeats, reorders, damages and mixes up, loses its host and gets it back, again and
-/// again, beside another controller that comes and goes. No answer is wrong, and at the end of each
-/// cycle, when all is quiet, everything that was taken has been given back.
+/// Hours of a bad link in virtual time: a controller streams a model larger than its memory over a
+/// link that loses, repeats, reorders, damages and swaps pieces, and loses and regains its server,
+/// beside another controller that is added and removed. No answer is wrong, and at the quiet end of
+/// each cycle all resources have been returned.
 
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/shared/frame_rig.hpp"
@@ -29,7 +29,7 @@
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define TACTUS_HEAP_IS_A_SANITIZER_S
-/// Not every compiler comes with <sanitizer/allocator_interface.h>.
+/// Some compilers lack <sanitizer/allocator_interface.h>.
 extern "C" std::size_t __sanitizer_get_current_allocated_bytes();
 #endif
 
@@ -42,17 +42,16 @@ namespace
 /// Frames of a cycle; at 1 kHz 600 cycles are an hour.
 constexpr std::uint32_t kCycleFrames = 6'000;
 constexpr std::uint32_t kUsualCycles = 12;
-/// Until then tables that grow to their working size may do so.
+/// Cycles in which tables may grow to their working size.
 constexpr std::uint32_t kWarmUpCycles = 4;
-/// Most that a quiet end may hold more than those of the warm-up: a few vectors that keep the most
-/// they ever held, 4 KB in an hour. A chunk that is leaked every third second is more within the
-/// usual cycles.
+/// Growth of a quiet end over those of the warm-up: a few vectors that keep their largest size, 4
+/// KB in an hour. One leaked chunk every third second is more within the usual cycles.
 constexpr std::size_t kHeapSlack_bytes = 8'192;
-/// Address space of a controller's pools is given back to the system; some small arenas of the C
-/// library may come and go.
+/// Address space of a controller's pools is returned to the system; some small arenas of the C
+/// library may vary.
 constexpr std::size_t kSpaceSlack_bytes = std::size_t{4} << 20U;
 constexpr double kToolRadius_diag = 0.01;
-/// What one touch needs, and not the model: the cache turns over all the time.
+/// Pages for one touch, not for the model, so that the cache is replaced constantly.
 constexpr std::size_t kPages = 100;
 
 std::uint32_t cycles_to_run()
@@ -62,11 +61,11 @@ std::uint32_t cycles_to_run()
                            : static_cast<std::uint32_t>(std::strtoul(text, nullptr, 10));
 }
 
-/// What the process has taken.
+/// Resources of the process.
 struct Holdings
 {
     std::size_t heap_bytes{0};
-    std::size_t space_bytes{0}; ///< 0 where a sanitizer reserves all of it.
+    std::size_t space_bytes{0}; ///< Address space; 0 if a sanitizer reserves all of it.
     std::size_t files{0};
 };
 
@@ -100,15 +99,15 @@ RigOptions bad_weather(const TestModel& model, std::uint64_t seed)
     return options;
 }
 
-/// What went on, for the summary and so that a soak in which nothing happened fails.
+/// Events for the summary, and to fail a soak without any.
 struct SoakFigures
 {
     std::uint64_t frames{0};
     std::uint64_t answered{0};
     std::uint64_t contacts{0};
     std::uint64_t loads{0};
-    std::uint64_t refused{0}; ///< Damaged or mixed up.
-    std::uint64_t unasked{0}; ///< Among them what came twice.
+    std::uint64_t refused{0}; ///< Damaged or swapped pieces.
+    std::uint64_t unasked{0}; ///< Includes duplicates.
     std::uint64_t asked_again{0};
 
     void operator+=(const CourierCounters& counters)
@@ -120,7 +119,7 @@ struct SoakFigures
     }
 };
 
-/// A controller with its link, a hand, and what judges it.
+/// Controller with its link, a hand, and its judges.
 class Controller
 {
 public:
@@ -138,7 +137,7 @@ public:
     Controller(const Controller&) = delete;
     Controller& operator=(const Controller&) = delete;
 
-    /// Nothing when all is as it should be.
+    /// Steps once; returns the fault, if any.
     [[nodiscard]] Verdict step()
     {
         const Moment moment = motion_.next();
@@ -146,13 +145,13 @@ public:
         return judge(rig_.step(moment.goal_m, budgets_), moment.pose);
     }
 
-    /// Far off, until nothing is under way any more and all slots are where they belong.
+    /// Moves far away until nothing is in transit and all slots are in place.
     [[nodiscard]] Verdict come_to_rest()
     {
         constexpr std::uint32_t most = 6'000; // Frames: many times kWishTimeoutFrames.
         const Vec3 far_off = to_world(rig_.pose(), Vec3(100.0 * model_.diagonal_m, 0.0, 0.0));
         std::uint32_t quiet =
-            0; // Frames in a row; what is late and unasked for comes in them, too.
+            0; // Consecutive frames; late and unrequested pieces arrive in them too.
         for (std::uint32_t frame = 0; frame < most && quiet < 100; ++frame)
         {
             const FrameOutput output = rig_.step(far_off, budgets_);
@@ -200,7 +199,7 @@ private:
         return budget ? budget : unexplained(output);
     }
 
-    static constexpr double kForceMax_n = 8.0; ///< As with_tool() says.
+    static constexpr double kForceMax_n = 8.0; ///< Value of with_tool().
 
     const TestModel& model_;
     const CenterOracle& oracle_;
@@ -211,7 +210,7 @@ private:
     Budgets budgets_;
 };
 
-/// One controller for all of it, another one for a part of each cycle.
+/// One controller for the whole run, another one for a part of each cycle.
 class Soak
 {
 public:
@@ -224,8 +223,8 @@ public:
     {
     }
 
-    /// Six seconds: the host goes twice, for some time and for a moment; the guest comes and goes,
-    /// with or without a host.
+    /// Six seconds: the server is lost twice, for some time and briefly; the second controller is
+    /// added and removed, with or without a server.
     void run_cycle(std::uint32_t cycle)
     {
         const std::uint32_t lost = 500 + random_.below(2'000U);
@@ -259,7 +258,7 @@ public:
         expect(steady_->come_to_rest(), cycle, kCycleFrames, "steady");
     }
 
-    /// With what the controller that is still there did.
+    /// Figures, including those of the remaining controller.
     [[nodiscard]] SoakFigures finish()
     {
         steady_.reset();

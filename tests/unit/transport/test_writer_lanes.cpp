@@ -36,7 +36,7 @@ protected:
     {
         return make_reader(*client_, Topic::chunks, partition).value();
     }
-    /// What has come, by the count in the sample and who wrote it.
+    /// Takes samples by their count and writer.
     void take_from(const Endpoint& reader)
     {
         take_each<tactus_v5_Pieces>(
@@ -67,7 +67,7 @@ TEST_F(Lanes, without_a_reader_are_not_matched_and_write_to_nobody)
     {
         EXPECT_TRUE(sut.write(&sample, &sample));
     }
-    EXPECT_EQ(sut.open(), 1U); // A next one waits for its reader's answer.
+    EXPECT_EQ(sut.open(), 1U); // The next one waits for its reader's answer.
 }
 
 TEST_F(Lanes, join_one_by_one_and_take_turns_and_everything_comes)
@@ -80,7 +80,8 @@ TEST_F(Lanes, join_one_by_one_and_take_turns_and_everything_comes)
     const auto write = [&]
     {
         tactus_v5_Pieces sample = {};
-        sample.host_epoch = host_->participants().own_epoch(); // Or the reader would refuse it.
+        // Otherwise the reader would refuse it.
+        sample.host_epoch = host_->participants().own_epoch();
         tactus_v5_Pieces probe = sample;
         sample.sent = ++sent;
         EXPECT_TRUE(sut.write(&sample, &probe));
@@ -102,7 +103,7 @@ TEST_F(Lanes, join_one_by_one_and_take_turns_and_everything_comes)
         [&]
         {
             take_from(in);
-            return counts_.size() == sent + 1; // And the probes' 0.
+            return counts_.size() == sent + 1; // Includes the probes' 0.
         }));
     EXPECT_EQ(*counts_.rbegin(), sent);
     EXPECT_EQ(writers_.size(), WriterLanes::kLanes);
@@ -173,12 +174,12 @@ TEST_F(Lanes, are_renewed_where_pieces_stay_away_for_300_ms)
 {
     auto sut = Subscription::create(*host_, ControllerId{1}, "controller", 100).value();
     const auto start = Backoff::Clock::now();
-    sut.set_credit({100, 228, 80}); // Older than what was sent since.
+    sut.set_credit({100, 228, 80}); // Older than samples sent since.
     EXPECT_EQ(sut.try_heal(start), nullptr);
     EXPECT_EQ(sut.try_heal(start + std::chrono::seconds(2)), nullptr);
     sut.set_credit({100, 228, 70});
     EXPECT_EQ(sut.try_heal(start + std::chrono::milliseconds(2'200)), nullptr);
-    sut.set_credit({100, 228, 80}); // They came late.
+    sut.set_credit({100, 228, 80}); // They arrived late.
     EXPECT_EQ(sut.try_heal(start + std::chrono::milliseconds(2'400)), nullptr);
     sut.set_credit({100, 228, 70});
     EXPECT_NE(sut.try_heal(start + std::chrono::milliseconds(2'800)), nullptr);

@@ -46,7 +46,7 @@ ContentHash short_hash(std::span<const std::byte> bytes)
     return hash;
 }
 
-/// A made-up mesh that grows split by split, as a stand-in for a real simplification run backwards.
+/// Synthetic mesh that grows split by split, as a simplification run backwards.
 class GrowingMesh
 {
 public:
@@ -65,7 +65,7 @@ public:
         }
     }
 
-    /// Splits some vertex into a run of its faces.
+    /// Splits a random vertex into a run of its faces.
     void split(RecordId id)
     {
         VsplitRecord& record = model_.records[id.value];
@@ -134,7 +134,7 @@ private:
         return live;
     }
 
-    /// The corner of the face that follows `from` -> `to`.
+    /// Corner of the face that follows `from` -> `to`.
     [[nodiscard]] VertexId third(FaceId face, VertexId from, VertexId to) const
     {
         const auto& corners = faces_.at(face.value).corners;
@@ -168,7 +168,7 @@ private:
         }
     }
 
-    /// A or B may only be missing at a border, and not both.
+    /// A or B may be missing only at a border, and not both.
     void add_sides(RecordId id, VertexId v, std::uint32_t depth)
     {
         VsplitRecord& record = model_.records[id.value];
@@ -277,7 +277,7 @@ GridPosition vertex_on_grid(const TinyModel& model, VertexId vertex)
                        : model.records[model.counts.record_of(vertex).value].position_m);
 }
 
-/// What is told of the records in their chunks, and the radius that follows from it.
+/// Coded form of the records in their chunks, with the resulting radius.
 void code_records(TinyModel& model)
 {
     for (std::uint32_t id = 0; id < model.records.size(); ++id)
@@ -290,7 +290,7 @@ void code_records(TinyModel& model)
         }
         record.reach = star_reach(on_grid(record.position_m), ring, kSomeError);
     }
-    // The coder knows `next` as parse leaves it.
+    // The coder has `next` as parse leaves it.
     std::vector<VsplitRecord> records = model.records;
     for (VsplitRecord& record : records)
     {

@@ -15,20 +15,20 @@
 namespace tactus::test
 {
 
-/// How large a made-up model is and which one.
+/// Size and seed of a synthetic model.
 struct TinyModelSpec
 {
     std::uint32_t seed{1};
     std::uint32_t base_faces{8};
     std::uint32_t records{200};
     bool shuffled_ids{false}; ///< Dependencies may have larger ids than their dependents.
-    /// Influence boxes of chunks are slices of x, apart from each other; otherwise everything.
+    /// Chunks' influence boxes are separate slices of x; otherwise everything.
     bool boxes_in_a_row{false};
 };
 
-/// A made-up model: a mesh of random vertices that grows by random splits, with borders. Header,
-/// base and index are written with code of its own, so that reader and writer check each other;
-/// chunks by the product's coder. `records[i].next` is what the whole model's links must be.
+/// Synthetic model: a mesh of random vertices that grows by random splits, with borders. Header,
+/// base and index are written by separate code, so that reader and writer check each other; chunks
+/// by the product's coder. `records[i].next` are the links of the whole model.
 struct TinyModel
 {
     ModelCounts counts;
@@ -45,7 +45,7 @@ struct TinyModel
     std::vector<std::uint32_t> base_next;
 
     [[nodiscard]] std::span<const std::byte> piece(ContentKey key) const;
-    /// One chunk of a model that says this of all its records.
+    /// Chunk of a model with this content for all its records.
     [[nodiscard]] std::vector<std::byte> chunk_of(ChunkId id,
                                                   std::span<const CodedRecord> all) const;
 };
