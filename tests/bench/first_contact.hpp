@@ -30,12 +30,12 @@ struct ContactSpread
 /// do.
 struct FirstContactFigures
 {
-    double header_bytes{0.0}; ///< Without hashes.
+    double header_bytes{0.0}; ///< Bytes without hashes.
     double base_bytes{0.0};
-    ContactSpread index_bytes;      ///< Without hashes.
+    ContactSpread index_bytes;      ///< Bytes without hashes.
     ContactSpread chunk_bytes;      ///< Bytes of chunks, which contain no hashes.
-    ContactSpread all_bytes;        ///< Without hashes.
-    ContactSpread all_hashed_bytes; ///< With the hashes of header and fetched index pages.
+    ContactSpread all_bytes;        ///< Bytes without hashes.
+    ContactSpread all_hashed_bytes; ///< Bytes with the hashes of header and fetched index pages.
     ContactSpread chunks;           ///< Number of chunks.
     ContactSpread needed_bytes;     ///< Bytes of chunks with a record that is split.
     ContactSpread splits;           ///< Splits from the base mesh until the sphere is certified.

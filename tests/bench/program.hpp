@@ -25,7 +25,7 @@ struct ProgramSetup
 {
     std::vector<std::string> words; ///< Path and arguments.
     std::string network;            ///< File of its network namespace; empty: ours.
-    std::string dds_uri;            ///< Its CYCLONEDDS_URI; empty: none.
+    std::string dds_uri;            ///< CYCLONEDDS_URI of the program; empty: none.
     std::filesystem::path output;   ///< File of stdout and stderr.
     /// True if stdin and stdout are connected to ask(); stderr goes to `output`.
     bool is_asked{false};

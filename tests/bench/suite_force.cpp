@@ -69,7 +69,7 @@ struct MeshCase
     double error_p99_n{kNoGoal};
     bool has_goals{true};
 };
-/// On a grid of 16 bits, 2 um, rounding of the corners alone rotates the faces of the finest mesh
+/// Rounding of the corners on a grid of 16 bits, 2 um, rotates the faces of the finest mesh
 /// by about 10 mrad; with 20 bits by less than one.
 constexpr std::array<MeshCase, 6> kMeshes{{{"5k", When::always, 5'120, 16},
                                            {"20k", When::always, 20'480, 16},

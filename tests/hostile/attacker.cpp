@@ -516,7 +516,8 @@ Attack visit()
             std::strcpy(static_cast<char*>(wanted.controller_name),
                         turn % 8 == 0 ? "\x1b[31mred\x07" : "stranger");
             dds_write(writer, &wanted);
-            std::this_thread::sleep_for(1ms); // Without a pause the two merge into one event.
+            std::this_thread::sleep_for(
+                1ms); // The pause keeps the two from merging into one event.
             dds_dispose(writer, &wanted);
         };
     };

@@ -119,7 +119,7 @@ private:
         }
         if (!is_matched(chunks_.at(id)))
         {
-            return; // It will be requested again.
+            return; // The piece will be requested again.
         }
         std::vector<std::byte> bytes;
         if (!model_.has(key) || !model_.read(key, bytes))

@@ -165,7 +165,7 @@ TEST_P(Fronts, a_copy_that_is_brought_up_to_date_now_and_then_is_what_the_slots_
 {
     SCOPED_TRACE(model_.name + " seed " + std::to_string(seed_));
     RigOptions options;
-    options.cache_off = random_.one_in(2); // Without the cache many pages are evicted.
+    options.cache_off = random_.one_in(2); // Many pages are evicted without the cache.
     FrameRig sut(model_, options);
     PagePool& pages = sut.frame().pools().cache.pages;
     std::vector<ShownPage> copy(pages.metas.begin(), pages.metas.end());

@@ -139,7 +139,7 @@ TEST_F(RigidRest, a_box_and_a_capsule_on_a_plate_and_over_its_edge)
     for (const double tilt : {0.0, 0.2, 0.7})
     {
         const Mat3 turned = rotation_about(Vec3(0.3, 1, 0.2), tilt);
-        for (const double x_m : {0.05, 0.098}) // On the top, and over its edge.
+        for (const double x_m : {0.05, 0.098}) // Places on the top, and over its edge.
         {
             for (const SolidCore& tool : {box, pin(0.002, 0.012)})
             {

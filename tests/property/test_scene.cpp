@@ -138,7 +138,7 @@ TEST(SceneChanges, an_object_that_comes_round_a_tool_makes_no_force_until_the_to
     sut.press();
     sut.rig->change(sut.change(SceneChangeKind::object_goes, 0));
     sut.step(sut.pressed_m());
-    sut.rig->change(sut.change(SceneChangeKind::object_comes, 1)); // Its pose is the same.
+    sut.rig->change(sut.change(SceneChangeKind::object_comes, 1)); // The pose is the same.
     for (int i = 0; i < 100; ++i)
     {
         sut.step(sut.pressed_m() - 0.002);
@@ -351,7 +351,8 @@ TEST(SceneTouches, are_what_a_tool_with_a_force_may_meet_within_20_ms_and_near_o
     expect_listed({0.002, 500.0, 8.0, 1.0}, kCases);
 }
 
-/// At 0.1 m/s it may approach by 12 mm within 20 ms. A displacement of 24 mm makes 12 N at 500 N/m.
+/// The tool may approach by 12 mm within 20 ms at 0.1 m/s. A displacement of 24 mm makes 12 N at
+/// 500 N/m.
 TEST(SceneTouches, are_also_what_a_leap_that_is_no_jump_may_bring)
 {
     constexpr std::array<ListedCase, 2> kCases{{{0.0309, 1, false}, {0.0311, 0, false}}};

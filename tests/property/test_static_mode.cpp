@@ -59,7 +59,7 @@ TEST_P(StaticMode, a_model_that_fits_ends_refined_and_frames_only_query)
     FrameRig sut(model_, static_options());
     if (frames_until_static(sut, {}) == kFramesMax)
     {
-        // So few faces of needles share vertices that the blocks run out before the faces.
+        // Faces of needles share few vertices: the blocks run out before the faces.
         const PoolUse blocks = sut.step(random_place()).models[0].blocks;
         EXPECT_GT(blocks.used_max + AbTree::kReserve + kMaxStarFaces, blocks.capacity);
         EXPECT_EQ(sut.model().residence, Residence::partial);

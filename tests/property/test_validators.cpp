@@ -242,7 +242,7 @@ TEST_F(Validators, faces_in_a_wrong_lane_are_told)
     expect_flaw(tree.side(block).prims[lane], PrimId{}, "holds a prim that does not exist");
     expect_flaw(tree.side(block).prims[lane], tree.side(other).prims[first_lane(other)],
                 "is in another lane than it says");
-    std::uint32_t partly = block; // Its last lane is free.
+    std::uint32_t partly = block; // The last lane is free.
     while (std::popcount(tree.block(partly).faces) == kBlockFaces)
     {
         partly = some_other_block(partly);

@@ -208,7 +208,7 @@ int run(int argc, char** argv)
     {
         return line.fail("no network can be made here: " + controller.error().text);
     }
-    // By default the system wakes a sleeper up to 50 us late, to save power.
+    // The system by default wakes a sleeper up to 50 us late, to save power.
     static_cast<void>(::prctl(PR_SET_TIMERSLACK, 1UL));
     sigset_t while_waiting;
     stop_on_signals(while_waiting);

@@ -122,7 +122,7 @@ TEST(ForceStepJudge, tells_steps_apart_that_come_of_late_data)
     EXPECT_FALSE(is_certified(true));
     EXPECT_FALSE(is_certified(true)); // The places still differ, since one proxy had to wait.
     ours.proxy_m = twin.proxy_m;
-    EXPECT_FALSE(is_certified(true)); // In both frames, the proxies must coincide.
+    EXPECT_FALSE(is_certified(true)); // The proxies must coincide in both frames.
     EXPECT_TRUE(is_certified(true));
 }
 

@@ -201,7 +201,8 @@ TEST(ProxyTrail, meets_faces_edges_and_corners_also_when_it_only_touches)
     EXPECT_TRUE(sut.is_met(Vec3(1.0, 0.25, 1.0), Vec3(1.0, 0.25, -1.0))); // Through the border.
     EXPECT_TRUE(sut.is_met(Vec3(1.0, 1.0, 1.0), Vec3(1.0, 1.0, -1.0)));   // Through a corner.
     EXPECT_TRUE(sut.is_met(Vec3(0.3, 0.1, 1.0), Vec3(0.3, 0.1, 0.0)));    // Ends on the face.
-    EXPECT_TRUE(sut.is_met(Vec3(-0.5, 0.5, 0.0), Vec3(0.5, 0.5, 0.0))); // In the plane of the face.
+    EXPECT_TRUE(
+        sut.is_met(Vec3(-0.5, 0.5, 0.0), Vec3(0.5, 0.5, 0.0))); // Path in the plane of the face.
     // Through a corner, in the plane.
     EXPECT_TRUE(sut.is_met(Vec3(-1.0, 1.0, 0.0), Vec3(1.0, -1.0, 0.0)));
 

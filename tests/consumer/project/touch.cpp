@@ -292,10 +292,10 @@ int main(int argc, char** argv)
         courier.step(std::int64_t{i} * setup.period_ns);
         const FrameInput input{.tools = states, .changes = changes, .budgets = {}, .now_ns = 0};
         const FrameOutput output = frame->run(input);
-        tap.record(input, output); // On the haptic thread.
+        tap.record(input, output); // Called on the haptic thread.
         while (tap.try_take(coded))
         {
-            writer.add_frame(coded); // On another thread, or the same one as here.
+            writer.add_frame(coded); // Called on any thread.
         }
 
         for (std::size_t tool = 0; tool < states.size(); ++tool)

@@ -53,7 +53,7 @@ int main(int argc, char** argv)
         return 2;
     }
 
-    // In hrtc the transport thread does this. Here both run in turn on one thread.
+    // The transport thread does this in hrtc. Here both run in turn on one thread.
     Model& parts = frame->model({0});
     Courier courier(arena, frame->pools().slots, frame->pools().cache.door, {});
     courier.add(parts.header, parts.linker, *model.link, model.name);

@@ -62,7 +62,7 @@ TEST(BuildNotes, are_none_of_a_terrain_that_is_as_large_as_terrains_are)
     EXPECT_EQ(size_notes(terrain, {143.0, 1.0, {}}, false), Notes{});
     EXPECT_EQ(size_notes(terrain, {20'000.0, 1.0, {}}, false), Notes{});
     EXPECT_EQ(size_notes(terrain, {0.0002, 1.0, {}}, false).size(), 1U) << "a tiny one";
-    for (auto& [x, y, z] : terrain.positions) // On its side, and seen from below.
+    for (auto& [x, y, z] : terrain.positions) // Terrain on its side, and seen from below.
     {
         std::swap(x, z);
         z = -z;

@@ -82,7 +82,7 @@ TEST(SharedGrids, small_parts_meet_large_ones)
     SharedGrids other(2);
     other.add(0, at(0, 0, 0), make_tile(1.0));
     other.add(1, at(0.3, 1.0, 0), make_tile(0.1));
-    EXPECT_EQ(other.first_of_each(), (Groups{0, 0})); // At 0.3 and 0.4.
+    EXPECT_EQ(other.first_of_each(), (Groups{0, 0})); // Offsets 0.3 and 0.4.
 }
 
 TEST(SharedGrids, some_common_corners_are_left_where_there_are_more_than_it_keeps)
@@ -96,7 +96,7 @@ TEST(SharedGrids, some_common_corners_are_left_where_there_are_more_than_it_keep
         sut.add(model, at(static_cast<double>(model), 0, 0), tile);
         expected.push_back(model);
     }
-    sut.add(1, at(0, 0, 0), tile); // In the place of the first one, with a tenth left.
+    sut.add(1, at(0, 0, 0), tile); // Place of the first one, with a tenth left.
     EXPECT_EQ(sut.first_of_each(), expected);
 }
 

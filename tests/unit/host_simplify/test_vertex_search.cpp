@@ -51,7 +51,7 @@ TEST(VertexSearch, has_one_place_for_all_vertices_at_one_position)
     const auto vertices = first_numbers(mesh.positions.size());
     const VertexSearch sut(mesh, vertices);
     EXPECT_EQ(sut.place_count(), 2U);
-    // Each of the crowd is found by some other one.
+    // Each vertex is found by some other one.
     std::set<std::uint32_t> all;
     for (const std::uint32_t vertex : vertices)
     {

@@ -19,7 +19,7 @@ inline dds::WatchedController told(std::uint8_t id, const std::string& name)
     controller.name = name;
     controller.telemetry.tool_count = 1;
     controller.telemetry.tools[0].force_n = {0.0, 3.0, 4.0};
-    controller.telemetry.pair_count = 1; // Its distance is unknown: infinite.
+    controller.telemetry.pair_count = 1; // The pair's distance is unknown: infinite.
     controller.telemetry.pairs[0].upper_m = kInfinity;
     return controller;
 }

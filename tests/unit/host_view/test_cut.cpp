@@ -262,7 +262,7 @@ TEST(Cut, of_a_part_of_the_pages_is_all_that_can_be_split_with_them)
     EXPECT_FALSE(cut_bytes(opened.decoded, told).has_value());
     const test::Shelved shelved(model);
     EXPECT_FALSE(decode_cut(*shelved.known, told).has_value());
-    const auto decoded = decode_cut(*shelved.known, told, false); // Without the missing pages.
+    const auto decoded = decode_cut(*shelved.known, told, false); // Missing pages are ignored.
     ASSERT_TRUE(decoded.has_value()) << decoded.error().text;
     const std::vector<FrontPage> part = splittable_part(decoded.value(), told);
     const auto shown = cut_bytes(decoded.value(), part);

@@ -206,7 +206,7 @@ TEST_F(WebServerTest, lets_four_viewers_watch_and_goes_on_answering)
     {
         EXPECT_NE(viewer->read("\"one\"").find("data: {"), std::string::npos);
     }
-    viewers.pop_back(); // Its thread is free after that is detected.
+    viewers.pop_back(); // The viewer's thread is free after that is detected.
     std::string again;
     while (again.find("data: {") == std::string::npos)
     {
@@ -248,7 +248,7 @@ TEST_F(WebServerTest, sends_what_can_be_split_of_a_front_that_leaves_pages_out)
     const ContentHash hash = shelf_->labels().front().hash;
     const ChunkId last{shelf_->find(hash)->header().counts().chunks() - 1};
     dds::SeenFront seen = test::front(1, 9);
-    seen.front.models.push_back({hash, {{last, 1}}, {}}); // Its records depend on others.
+    seen.front.models.push_back({hash, {{last, 1}}, {}}); // The chunk's records depend on others.
     const auto status = [&](const char* path)
     {
         return status_of(get(fmt::format("{}?controller={}&serial={}&model={}", path,

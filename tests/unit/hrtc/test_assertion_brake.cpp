@@ -57,7 +57,7 @@ enum class Bug : std::uint8_t
     none,
     haptic,
     haptic_and_fade, ///< A second bug occurs while the forces fade.
-    frame,           ///< On the haptic thread, by the frame's input.
+    frame,           ///< Bug on the haptic thread, by the frame's input.
     main,
     supervisor,
     other,

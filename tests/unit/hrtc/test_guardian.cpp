@@ -101,7 +101,7 @@ TEST_F(GuardianTest, lets_a_crash_end_the_process_as_it_would_have)
     {
         ::signal(SIGSEGV, SIG_DFL); // A sanitizer's handler would end the process otherwise.
         const auto guardian = start();
-        ::kill(::getpid(), SIGSEGV); // From outside, so that the signal is not repeated.
+        ::kill(::getpid(), SIGSEGV); // The signal is from outside, so that it is not repeated.
         ::_exit(0);
     }
     int status = 0;

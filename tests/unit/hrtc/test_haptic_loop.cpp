@@ -297,8 +297,8 @@ TEST(HapticLoop, time_that_falls_back_ends_the_force_until_the_clock_is_believed
 
 TEST(HapticLoop, encoders_that_were_stuck_come_back_as_a_hand_that_is_too_fast)
 {
-    // In free air, and just after the press began; finally the hand is at the bottom.
-    const double damping_n = 8.0 * kDampingForceShare; // At most, against that speed.
+    // The hand is in free air, has just begun to press, or is at the bottom.
+    const double damping_n = 8.0 * kDampingForceShare; // Greatest damping, against that speed.
     for (const std::uint64_t begin : {100U, 300U, 400U})
     {
         LoopRigOptions options;

@@ -184,7 +184,8 @@ TEST(MovedObject, that_goes_15_mm_at_once_is_followed)
                     { return std::optional(frame < kSettled ? 0.0 : -0.015); });
     sut.run();
     EXPECT_FALSE(LoopRig::has(sut.rig().events(), ForceOff::jump));
-    EXPECT_NEAR(sut.rig().written_n(1'800).norm(), 0.0, kRounding_n); // It has left the hand.
+    EXPECT_NEAR(sut.rig().written_n(1'800).norm(), 0.0,
+                kRounding_n); // The object has left the hand.
     EXPECT_GT(sut.rig().largest_step_n(kSettled - 1, 1'900), kFadeStep_n);
 }
 
@@ -284,9 +285,9 @@ Felt felt_of(const Strike& strike, double speed_m_per_s)
     return felt;
 }
 
-/// From 0.2 to 3.3 mm before the touch. The force grows at most by 0.5 m/s and the hand's motion in
-/// a frame at 500 N/m, and by the slew of the change limit; it fades while the object exceeds its
-/// speed limit.
+/// Strikes from 0.2 to 3.3 mm before the touch. The force grows at most by 0.5 m/s and the hand's
+/// motion in a frame at 500 N/m, and by the slew of the change limit; it fades while the object
+/// exceeds its speed limit.
 TEST(MovedObject, that_strikes_before_the_touch_is_carried_no_faster_than_is_believed)
 {
     for (const double way_m : {0.012, 0.015, 0.025})

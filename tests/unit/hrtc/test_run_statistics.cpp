@@ -85,7 +85,7 @@ TEST(RunStatistics, counts_a_frame_as_over_budget_from_one_beyond_what_it_may_do
     EXPECT_EQ(run.sut.frames, 5U);
 }
 
-/// With more work than any frame before, a long frame is our overrun; with as much as in a quick
+/// A long frame with more work than any before is our overrun; with as much as in a quick
 /// one, the machine's delay.
 TEST(RunStatistics, compares_long_frames_with_quick_ones_by_their_work)
 {

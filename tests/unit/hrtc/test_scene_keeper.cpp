@@ -298,7 +298,7 @@ TEST_F(FollowedScene, feels_as_the_controller_was_told_whatever_the_host_says)
     ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_comes] == 1; }));
     EXPECT_EQ(last_come().object.material, (Material{250.0, 0.5, 0.5}));
     EXPECT_EQ(keeper->news().feels, 1U);
-    EXPECT_EQ(names, (std::vector<std::string>{"0 1 cup"})); // Of later ones.
+    EXPECT_EQ(names, (std::vector<std::string>{"0 1 cup"})); // Names of later ones.
 }
 
 TEST_F(FollowedScene, leaves_out_what_has_no_room_until_there_is_some)
@@ -394,7 +394,7 @@ TEST_F(FollowedModel, goes_where_the_host_s_object_with_the_least_number_is)
     ASSERT_TRUE(step_until([&] { return shown_as(0) == HostObject{host->epoch(), pot}; }));
     host->objects().remove(pot);
     ASSERT_TRUE(step_until([&] { return !shown_as(0).has_value(); }));
-    EXPECT_EQ(changes[SceneChangeKind::object_goes], 0); // It stays in place.
+    EXPECT_EQ(changes[SceneChangeKind::object_goes], 0); // The object stays in place.
     EXPECT_EQ(changes[SceneChangeKind::object_comes], 0);
 }
 

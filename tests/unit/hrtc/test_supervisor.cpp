@@ -67,7 +67,7 @@ private:
         {
             if (is_supervised)
             {
-                static_cast<void>(supervisor_.look()); // It never brakes a running loop.
+                static_cast<void>(supervisor_.look()); // A running loop is never braked.
             }
             if (frame == kSettled)
             {
@@ -223,7 +223,7 @@ TEST(Supervisor, looks_when_the_silence_would_be_long_enough)
     Heartbeat heartbeat;
     Supervisor sut({rig.tools(), &heartbeat, &rig.clock(), nullptr, kPeriod});
     SimulatedClock& clock = rig.virtual_clock();
-    EXPECT_EQ(sut.look(), clock.now() + kPeriod * 3); // It has not begun.
+    EXPECT_EQ(sut.look(), clock.now() + kPeriod * 3); // The loop has not begun.
     clock.advance(milliseconds(100));
     EXPECT_EQ(sut.look(), clock.now() + kPeriod * 3);
     EXPECT_EQ(sut.brakes(), 0U);
@@ -340,7 +340,7 @@ TEST(Supervisor, brakes_a_device_whose_reading_hangs_and_lets_the_loop_come_back
     supervising.value().join();
     EXPECT_GE(sut.brakes(), 1U);
     EXPECT_LE(before, brakes_seen.load());
-    EXPECT_NE(rig.device().status().state, DeviceState::brake); // It was released.
+    EXPECT_NE(rig.device().status().state, DeviceState::brake); // The brake was released.
     // A loop that a busy machine stalled earlier is already braked and logs no change.
     EXPECT_TRUE(std::ranges::any_of(
         rig.events(), [](const SafetyEvent& event)

@@ -110,10 +110,10 @@ TEST(SharePush, adds_up_to_the_push_whatever_the_normals_are)
                            pair_towards(Vec3(1.0, -0.1, 0.3), 0.01),
                            pair_towards(Vec3(-1.0, 0.0, 0.0), 0.01)};
     std::array<Vec3, 3> pushes_n;
-    const Vec3 push_n(3.0, 2.0, -1.0); // With friction.
+    const Vec3 push_n(3.0, 2.0, -1.0); // Force with friction.
     share_push(pairs, 0.01, push_n, pushes_n);
     EXPECT_LT((pushes_n[0] + pushes_n[1] + pushes_n[2] - push_n).norm(), 1e-12);
-    EXPECT_LT(pushes_n[2].norm(), 1e-12); // It would have to pull.
+    EXPECT_LT(pushes_n[2].norm(), 1e-12); // The object would have to pull.
 }
 
 TEST(SharePush, leaves_a_push_that_no_normal_explains_to_the_nearest)

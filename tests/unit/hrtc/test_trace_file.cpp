@@ -105,7 +105,7 @@ TEST_F(Traced, a_frame_holds_its_stages_one_after_the_other)
 TEST_F(Traced, a_missed_deadline_is_marked)
 {
     TraceFile sut(file(), microseconds(151));
-    sut.tap().add(frame(0, 5'000)); // It ends 150.75 us after its deadline.
+    sut.tap().add(frame(0, 5'000)); // The frame ends 150.75 us after its deadline.
     TracedFrame later = frame(1, 6'000);
     later.periods = 2;
     sut.tap().add(later);

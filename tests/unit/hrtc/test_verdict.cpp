@@ -72,12 +72,12 @@ TEST(Verdict, judges_mesh_and_scene_controller_and_machine_apart)
               "faded for a moment 27 times (2 brakes by the supervisor): 'hrtc doctor' says why");
     EXPECT_TRUE(is_machine_alone(complaints_of(report)));
     EXPECT_FALSE(fails_when_strict(report));
-    report["deadline"]["own_fault"] = 1; // It may then have been the loop itself.
+    report["deadline"]["own_fault"] = 1; // The loop itself may then be the cause.
     EXPECT_EQ(verdict(report), "controller: 1 deadline missed by the loop's own fault; force off "
                                "for: watchdog 1, stall 26; 2 brakes by the supervisor");
     EXPECT_FALSE(is_machine_alone(complaints_of(report)));
     report = good_report();
-    report["safety"]["begun"]["watchdog"] = 1; // Of a device that was silent by itself.
+    report["safety"]["begun"]["watchdog"] = 1; // The device was silent by itself.
     EXPECT_EQ(verdict(report), "controller: force off for: watchdog 1");
     report = good_report();
     report["deadline"]["stopped"] = 1;

@@ -69,7 +69,7 @@ TEST(FaultyDevice, is_the_device_itself_but_from_begin_to_end_of_a_fault)
             const std::vector<DeviceSample> sut = readings_with({fault});
             for (std::size_t i = 0; i < whole.size(); ++i)
             {
-                // Its velocity follows immediately.
+                // The velocity follows immediately.
                 const bool leaps = kind == DeviceFaultKind::stuck;
                 const bool holds = i >= fault.begin_frame &&
                                    i < fault.begin_frame + fault.frames + (leaps ? 1 : 0);

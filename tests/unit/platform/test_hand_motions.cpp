@@ -316,7 +316,7 @@ TEST(HandMotions, peg_goes_into_a_hole_and_changes_its_grip_outside_of_it)
         grips += i > 0 && now.buttons > run.samples[i - 1].buttons ? 1 : 0;
         farthest = farthest.cwiseMax(rotation_vector(orthonormalised(run.rotation[i])).cwiseAbs());
     }
-    // Its tool is a sphere of 2 mm, and 1 N on 500 N/m is 2 mm more.
+    // The tool is a sphere of 2 mm, and 1 N on 500 N/m is 2 mm more.
     EXPECT_NEAR(lowest_m, kHoleBottom_m + kTool_m - 0.002, 1e-3);
     EXPECT_EQ(grips, 2);
     EXPECT_EQ(run.landings(), 2);
@@ -347,7 +347,7 @@ TEST(HandMotions, teleport_is_at_places_of_the_model_and_jumps_between_them)
         return places;
     };
     const std::vector<Vec3> places = places_of(1);
-    EXPECT_GT(places.size(), 15U); // It sometimes stays in place.
+    EXPECT_GT(places.size(), 15U); // The hand sometimes stays in place.
     EXPECT_LE(places.size(), 20U);
     const std::vector<LandingSite> sites =
         find_landing_sites(scene_of(1).anchors_world_m, kDiagonal_m, kTool_m);

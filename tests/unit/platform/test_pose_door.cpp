@@ -69,7 +69,7 @@ TEST(PoseDoor, counts_the_age_from_when_the_host_was_heard_on_its_own_clock)
     sut.put(0, pose, kStart);
     const auto changes = sut.refresh(kStart + milliseconds(3));
     ASSERT_EQ(changes.size(), 1U);
-    EXPECT_EQ(changes[0].pose.arrival_ns, 0); // It does not age while the server is heard.
+    EXPECT_EQ(changes[0].pose.arrival_ns, 0); // The pose does not age while the server is heard.
     EXPECT_EQ(changes[0].pose.stamp_ns, 1);
     static_cast<void>(sut.refresh(kStart + kLimit));
     EXPECT_EQ(sut.uses()[0].old_frames, 0U);
@@ -87,7 +87,7 @@ TEST(PoseDoor, tells_the_frame_of_a_silent_host_before_the_limit_and_of_one_that
     PoseDoor sut(placed, kLimit);
     sut.put(0, pose_of(2.0), kStart);
     ASSERT_EQ(sut.refresh(kStart).size(), 1U);
-    for (int ms = 20; ms <= 200; ms += 20) // It rests, and its server is heard: no changes.
+    for (int ms = 20; ms <= 200; ms += 20) // The object rests, and its server is heard: no changes.
     {
         sut.hear(0, kStart + milliseconds(ms));
         EXPECT_TRUE(sut.refresh(kStart + milliseconds(ms + 15)).empty());
@@ -580,11 +580,11 @@ TEST(PoseDoor, brings_an_object_with_what_it_is_and_takes_it_away)
     ASSERT_TRUE(sut.try_go(2));
     sut.put(2, pose_of(6.0), kStart);
     const auto went = sut.refresh(kStart + milliseconds(1));
-    ASSERT_EQ(went.size(), 1U); // Its pending pose is dropped.
+    ASSERT_EQ(went.size(), 1U); // The pending pose is dropped.
     EXPECT_EQ(went[0].kind, SceneChangeKind::object_goes);
     EXPECT_EQ(went[0].number, 2U);
     EXPECT_EQ(went[0].generation, 1U);
-    EXPECT_TRUE(sut.refresh(kStart + milliseconds(1000)).empty()); // It does not age either.
+    EXPECT_TRUE(sut.refresh(kStart + milliseconds(1000)).empty()); // The place does not age either.
 }
 
 TEST(PoseDoor, tells_that_an_object_feels_otherwise_in_its_turn)

@@ -36,7 +36,7 @@ public:
         struct sigaction action
         {
         };
-        action.sa_handler = count_signal; // Without SA_RESTART.
+        action.sa_handler = count_signal; // SA_RESTART is not set.
         EXPECT_EQ(sigaction(SIGALRM, &action, &before_), 0);
         sigevent event{};
         event.sigev_notify = SIGEV_SIGNAL;

@@ -59,7 +59,7 @@ TEST(ProcessStop, is_seen_by_a_thread_that_was_started_later)
     std::thread later(
         [&seen]
         {
-            kill(getpid(), SIGCONT); // It works without a stop.
+            kill(getpid(), SIGCONT); // SIGCONT works without a stop.
             seen = look_twice();
         });
     later.join();

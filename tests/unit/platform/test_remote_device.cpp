@@ -140,7 +140,7 @@ TEST_F(RemoteDeviceTest, never_sends_a_force_to_another_attachment_than_it_was_w
     sut.write({{1.0, 0.0, 0.0}, {}, 0.0});
     arrive(0.0, true); // Another device, before the haptic thread has seen it.
     EXPECT_EQ(sut.command().state, DeviceState::idle);
-    sut.write({{1.0, 0.0, 0.0}, {}, 0.0}); // For the previous one.
+    sut.write({{1.0, 0.0, 0.0}, {}, 0.0}); // A command for the previous device.
     EXPECT_EQ(sut.command().state, DeviceState::idle);
     static_cast<void>(sut.read());
     EXPECT_EQ(sut.status().state, DeviceState::idle);
@@ -195,7 +195,7 @@ TEST_F(RemoteDeviceTest, fades_softly_whatever_the_hold_and_goes_on_with_the_nex
     sut.write({{1.0, 0.0, 0.0}, {}, 0.0});
     sut.brake_softly();
     clock.advance(milliseconds(20));
-    sut.release_brake(); // It fades until the next write.
+    sut.release_brake(); // The force fades until the next write.
     EXPECT_NEAR(sut.command().force_n.x(), 0.6, 1e-9);
     sut.write({{0.5, 0.0, 0.0}, {}, 0.0});
     EXPECT_EQ(sut.command().force_n.x(), 0.5);

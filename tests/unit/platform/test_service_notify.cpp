@@ -98,7 +98,7 @@ TEST(ServiceNotify, keeps_a_watchdog_quiet_with_a_few_words)
     {
         sut.alive(MonotonicTime{ms * 1'000'000});
     }
-    EXPECT_EQ(manager.heard(), Words(5, "WATCHDOG=1")); // At 0, 500, ... 2,000 ms.
+    EXPECT_EQ(manager.heard(), Words(5, "WATCHDOG=1")); // Times 0, 500, ... 2,000 ms.
 }
 
 TEST(ServiceNotify, has_no_watchdog_when_it_is_another_processes_or_makes_no_sense)

@@ -259,11 +259,11 @@ double drift_in_a_pause_m(std::optional<Duration> watchdog, Duration pause,
 
 TEST(SimulatedDevice, holds_its_last_force_through_a_pause_unless_a_watchdog_ends_it)
 {
-    // At its final speed, F over the damping, it continues as long as the force.
+    // The hand continues at its final speed, F over the damping, as long as the force.
     const double speed_m_per_s = 2.0 / 7.0;
     const double held_m = drift_in_a_pause_m(std::nullopt, milliseconds(100));
     EXPECT_NEAR(held_m, 0.1 * speed_m_per_s, 1e-5);
-    // Without a force it comes to rest by itself, in m / b seconds of the same speed.
+    // The hand then comes to rest by itself, in m / b seconds of the same speed.
     const double coasting_m = 0.1 / 7.0 * speed_m_per_s;
     EXPECT_NEAR(drift_in_a_pause_m(milliseconds(20), milliseconds(100)),
                 0.019 * speed_m_per_s + coasting_m, 2e-4);

@@ -95,7 +95,7 @@ TEST(SimulatedPeriodicTimer, treats_a_frame_of_exactly_two_periods_as_one_lost)
     SimulatedClock clock;
     SimulatedPeriodicTimer sut(clock);
     ASSERT_TRUE(sut.start(kTick, kTickMargin));
-    static_cast<void>(next(sut)); // At 1 ms.
+    static_cast<void>(next(sut)); // Cycle at 1 ms.
     clock.advance(milliseconds(2));
     const Cycle cycle = next(sut);
     EXPECT_EQ(cycle.deadline.ns, 4'000'000);

@@ -155,7 +155,7 @@ TEST(SystemCallTrap, lets_a_sleep_last)
         });
 }
 
-/// With the vDSO none of them is a system call; without it every one is.
+/// None of them is a system call with the vDSO; without it every one is.
 TEST(SystemCallTrap, counts_all_clock_reads_or_none)
 {
     with_trap(

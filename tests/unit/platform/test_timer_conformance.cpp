@@ -218,7 +218,7 @@ TYPED_TEST(PeriodicTimerConformance, tells_by_how_much_a_sleep_or_the_wait_was_t
     {
         if (seen.cycle.periods > 1)
         {
-            continue; // It may have slept to deadlines that it then lost.
+            continue; // The loop may have slept to deadlines that it then lost.
         }
         const MonotonicTime wake = seen.cycle.deadline - this->kMargin;
         const Duration lateness = seen.cycle.wake_lateness;

@@ -164,7 +164,7 @@ TEST(FrameCoding, refuses_values_that_no_frame_can_have)
     constexpr std::size_t kChanges = kFlags + 1 + 8 + kToolStateBytes;
     constexpr std::size_t kValid = kFlags + 1 + 8 + 24 + 8 + 4;
     constexpr std::size_t kMove = 9 + kObjectPoseBytes;
-    constexpr std::size_t kFeel = 9 + kObjectSpecBytes - 4; // It names no model.
+    constexpr std::size_t kFeel = 9 + kObjectSpecBytes - 4; // This change names no model.
     constexpr std::size_t kBudgets = kChanges + 1 + kMove + kSceneChangeBytes + kFeel;
     constexpr std::size_t kEvents = kBudgets + kBudgetsBytes + 4;
     constexpr std::size_t kEvent = kEvents + 2;

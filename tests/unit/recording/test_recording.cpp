@@ -369,7 +369,7 @@ TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
                    "a frames section has 1048577 bytes; 1 to 1048576 are allowed");
     expect_refusal(with_section(kFrames, [](auto& payload) { payload.pop_back(); }),
                    "frame 2 is cut short by the end of its section");
-    constexpr std::size_t kFeel = 9 + kObjectSpecBytes - 4; // It names no model.
+    constexpr std::size_t kFeel = 9 + kObjectSpecBytes - 4; // This change names no model.
     constexpr std::size_t kChanges = 1 + 9 + kObjectPoseBytes + kSceneChangeBytes + kFeel;
     constexpr std::size_t kSlot = 4 + 1 + 8 + kToolStateBytes + kChanges + kBudgetsBytes + 13;
     expect_refusal(with_bytes(kFrames, kSlot, {4}), "frame 0 names slot 4 of 4");

@@ -144,7 +144,7 @@ private:
             for (const Vec3& corner : core.corners())
             {
                 const auto under = closest_point_on_triangle(corner, triangle);
-                if (under.feature == TriangleFeature::interior) // It is above the face.
+                if (under.feature == TriangleFeature::interior) // The point is above the face.
                 {
                     keep(corner, under.point, reach, under.feature, face, report.corners, nullptr);
                 }

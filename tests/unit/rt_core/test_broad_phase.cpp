@@ -172,7 +172,7 @@ TEST(BroadPhase, names_what_is_near_and_proves_that_nothing_else_is)
                       0.02);
     }
     expect_proofs(seed_of(720), 1, 1, 1.0, 0.5);
-    expect_proofs(seed_of(721), 65, 2, 2e4, 1.0);          // At the limit of places.
+    expect_proofs(seed_of(721), 65, 2, 2e4, 1.0);          // Greatest number of places.
     expect_proofs(seed_of(722), 300, kMaxTools, 1.0, 0.5); // Around every tool.
     expect_proofs(seed_of(723), kMaxObjects, 3, 1.0, 0.001);
 }

@@ -540,7 +540,7 @@ TEST(ChunkCache, has_no_more_wishes_under_way_than_the_transport_side_remembers)
     for (std::uint32_t page = 0; page < kPages; ++page)
     {
         rig.deliver_index_page(page);
-        rig.ask({}); // It was prefetched before it is needed.
+        rig.ask({}); // The page was prefetched before it is needed.
     }
     const RankedRegion everything = ball(0, kPages * CacheRig::kPageDistance);
     const auto ask_for_long = [&]
@@ -617,7 +617,7 @@ TEST(ChunkCache, in_a_large_pool_looks_at_some_pages_a_wish_and_refuses_after_al
         {
             sut.ask({});
         }
-        constexpr std::uint32_t kFree = kPages - 5; // Of the last pages in the search.
+        constexpr std::uint32_t kFree = kPages - 5; // One of the last pages in the search.
         for (std::uint32_t chunk = 0; chunk < kPages; ++chunk)
         {
             if (chunk != kFree || !is_one_free)

@@ -382,7 +382,7 @@ TEST(ContactReport, touches_are_what_measuring_every_face_finds)
         }
         if (expected.size() > kEnoughMeetingFaces)
         {
-            continue; // It may have met so many that the rest was left out.
+            continue; // The query may have met so many that the rest was left out.
         }
         std::sort(expected.begin(), expected.end());
         most = std::max(most, expected.size());

@@ -267,7 +267,7 @@ TEST(ForceConditioner, a_force_that_a_gain_lets_in_slowly_comes_from_somewhere)
         }
         const SpringForce out = condition(sut, wish);
         EXPECT_EQ(out.force_n, wish.force_n);
-        // Without a ramp it is the wall's energy that the hand did not supply.
+        // The rest without a ramp is the wall's energy that the hand did not supply.
         EXPECT_NEAR(out.surplus_j, is_ramp ? 0.0 : 0.5 * 4.0 * 4.0 / 1'000.0, kRounding);
     }
 }
@@ -498,7 +498,7 @@ TEST(WrenchConditioner, takes_of_the_damping_what_its_lever_makes_of_it_and_half
         WrenchConditioner sut(setup);
         WrenchWish wish = wrench(Vec3(0, 0, 0), Vec3(0, 0, 0), 100.0, 1.8);
         wish.force.surface_damping_n_s_per_m = damping;
-        static_cast<void>(condition(sut, wish)); // In free air.
+        static_cast<void>(condition(sut, wish)); // The hand is in free air.
         wish.force.force_n = Vec3(1, 0, 0);
         wish.torque.force_n = Vec3(0, 0, 0.1);
         EXPECT_NEAR(condition(sut, wish).turn.force_n.z(), 0.1 * cap_nm_per_rad / 1.8, 1e-9);

@@ -443,7 +443,7 @@ TEST(ForcePipeline, an_object_that_carries_a_hand_makes_no_step_of_the_force)
         }
         std::printf("an object of 0.45 m/s%s: %.3f N a period, damped in %u of 400\n",
                     is_told ? "" : " that the frame says nothing of", growth_n, damped);
-        // Without the object's motion the hand's whole displacement counts, with its swing.
+        // The hand's whole displacement with its swing counts if the object's is unknown.
         EXPECT_LE(growth_n, is_told ? 0.35 : 500.0 * 0.6e-3 + 0.12);
         EXPECT_EQ(damped > 200, !is_told);
     }

@@ -34,7 +34,8 @@ std::optional<FrameRefusal> refusal_of(std::size_t tools, std::size_t objects, s
 
 TEST(FrameSetup, takes_as_many_tools_objects_and_models_as_the_limits_and_refuses_none_or_more)
 {
-    const FrameRefusal counts_are_fine = FrameRefusal::header_refused; // It is checked later.
+    const FrameRefusal counts_are_fine =
+        FrameRefusal::header_refused; // The header is checked later.
     EXPECT_EQ(refusal_of(1, 1, 1), counts_are_fine);
     EXPECT_EQ(refusal_of(kMaxTools, kMaxObjects, kMaxModels), counts_are_fine);
     EXPECT_EQ(refusal_of(kMaxTools + 1, 1, 1), FrameRefusal::too_many);
@@ -60,7 +61,7 @@ TEST(FrameSetup, takes_as_many_faces_of_all_models_as_the_limit)
     setup.objects = objects;
     setup.tools = tools;
     models[1].capacities.faces = kMaxPoolFaces;
-    EXPECT_EQ(find_refusal(setup), FrameRefusal::header_refused); // It is checked later.
+    EXPECT_EQ(find_refusal(setup), FrameRefusal::header_refused); // The header is checked later.
     models[0].capacities.faces = 1;
     EXPECT_EQ(find_refusal(setup), FrameRefusal::too_many_faces);
 }
@@ -75,7 +76,7 @@ TEST(FrameSetup, takes_a_force_tolerance_up_to_the_limit)
     for (const double taken : {0.0, kForceToleranceUsual_n, kForceToleranceMax_n})
     {
         setup.force_tolerance_n = taken;
-        // It is checked later.
+        // The header is checked later.
         EXPECT_EQ(find_refusal(setup), FrameRefusal::header_refused) << taken;
     }
     for (const double refused :

@@ -29,7 +29,8 @@ QuantumBox box_at(std::int32_t x)
 
 using Pages = std::vector<std::uint32_t>;
 
-/// Frames in which `pages` pages are checked. The search uses the balls until the next frame.
+/// Frames in which `pages` pages are checked. The search refers to the spheres until the next
+/// frame.
 class SearchRig
 {
 public:

@@ -76,7 +76,7 @@ TEST(MaterialGlide, is_sound_and_continuous_between_any_two_however_often_they_c
         (void)sut.step(wanted, kTool, kPeriod_s);
         const Material& felt = sut.felt();
         ASSERT_TRUE(is_sound(felt)) << i;
-        // From a soft wall to the tool's own stiffness, or from a stiffer one.
+        // The change is from a soft wall to the tool's own stiffness, or from a stiffer one.
         const double share = kPeriod_s / kMaterialGlide_s;
         EXPECT_LE(std::abs(stiffness_felt(felt) - stiffness_felt(before)), 3'000.0 * 1.01 * share);
         EXPECT_LE(std::abs(felt.static_friction - before.static_friction), 2.0 * 1.01 * share);

@@ -397,7 +397,7 @@ TEST(NearFaces, of_a_search_that_was_cut_are_left_to_those_that_go_on_with_it)
             if (parts == 3 && round % 4 == 0 && !unfinished.left.empty())
             {
                 fill(object, random, 3, round % 8 == 0);
-                moved = 0.0; // It starts again.
+                moved = 0.0; // The motion is counted again.
                 ++changed;
             }
         } while (!unfinished.left.empty() && parts < 200);
@@ -478,7 +478,7 @@ TEST(OtherSurface, is_no_nearer_than_all_of_its_faces_less_their_errors)
             const double lower = sut.lower_bound_m({point, 0.0}, enough);
 
             ASSERT_LE(lower, truth);
-            ASSERT_GE(lower, std::min(truth, enough) - 0.02); // In single precision.
+            ASSERT_GE(lower, std::min(truth, enough) - 0.02); // Rounding of single precision.
             ASSERT_LE(sut.lower_bound_m({point, 0.25}, enough), truth - 0.25);
             ASSERT_GE(sut.upper_bound_m({point, 0.25}), truth + 0.25);
             if (round % 2 == 0)

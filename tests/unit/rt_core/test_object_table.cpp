@@ -70,7 +70,7 @@ TEST_F(ObjectTableTest, places_the_model_where_its_source_is_told_to_stand)
     object.pose.scale = 2.0;
     object.pose.translation_m = Vec3(0.0, 3.0, 0.0);
     ASSERT_EQ(change(object), std::nullopt);
-    EXPECT_EQ(sut[0].pose.translation_m, Vec3(2.0, 3.0, 0.0)); // Its origin is at x = 1.
+    EXPECT_EQ(sut[0].pose.translation_m, Vec3(2.0, 3.0, 0.0)); // The origin is at x = 1.
     object = with(object, SceneChangeKind::object_moves);
     object.pose.rotation << 0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0;
     object.pose.arrival_ns = 77;
@@ -165,7 +165,7 @@ TEST_F(ObjectTableTest, refuses_materials_out_of_range)
         [](Material& m) { m.damping_n_s_per_m = 1.001 * kDampingMax_n_s_per_m; },
         [](Material& m) { m.viscosity_n_s_per_m = -1.0; },
         [](Material& m) { m.viscosity_n_s_per_m = 1.001 * kDampingMax_n_s_per_m; },
-        [](Material& m) { m.texture_height_m = 1e-6; }, // Without a length.
+        [](Material& m) { m.texture_height_m = 1e-6; }, // No length.
         [](Material& m) { m.texture_length_m = kNotANumber; },
         [](Material& m) { m.texture_length_m = 1.001 * kTextureLengthMax_m; },
         [](Material& m)

@@ -73,7 +73,7 @@ TEST_F(PageTableTest, two_models_have_chunks_of_the_same_numbers_in_slots_of_one
     EXPECT_TRUE(sut_.is_own(0));
     EXPECT_FALSE(sut_.is_own(1));
     EXPECT_FALSE(sut_.is_own(2));
-    other.update_linked({7}, 0, 3); // It had that slot once.
+    other.update_linked({7}, 0, 3); // The other model had that slot once.
     EXPECT_EQ(sut_.meta(0).linked, 1U);
     EXPECT_DEATH(other.evict(0), "");
     sut_.evict(0);

@@ -75,8 +75,8 @@ TEST(PoolRoom, what_cant_be_refused_is_missing_for_everybody_until_as_much_has_c
     PoolShare one = sut.promise(0);
     PoolShare other = sut.promise(1);
     sut.take(one);
-    sut.take_unasked(one); // It was reserved for the other.
-    sut.take_unasked(one); // It was not available.
+    sut.take_unasked(one); // The place was reserved for the other.
+    sut.take_unasked(one); // The place was not available.
 
     EXPECT_EQ(sut.left_for(one), 0U);
     EXPECT_EQ(sut.left_for(other), 0U);

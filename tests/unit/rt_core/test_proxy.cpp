@@ -619,7 +619,7 @@ TEST(Proxy, friction_rounds_a_ball_as_well)
         ASSERT_LE(along, 0.4 * across * (1.0 + 1e-9)) << i;
         sum += i > 100 ? along / across : 0.0;
     }
-    EXPECT_GT(sum / 200.0, 0.36); // It rolls slightly farther over an edge than on a face.
+    EXPECT_GT(sum / 200.0, 0.36); // The sphere rolls slightly farther over an edge than on a face.
 }
 
 TEST(Proxy, on_a_viscous_surface_makes_no_energy_however_the_hand_goes)

@@ -18,7 +18,7 @@ namespace
 
 constexpr double kLead_s = 0.02;
 constexpr double kSpeedMax_m_per_s = 10.0;
-/// One ball at the tool, and one for each quarter of the horizon.
+/// One sphere at the tool, and one for each quarter of the horizon.
 constexpr std::size_t kBalls = 5;
 constexpr std::size_t kHalfway = 2;
 constexpr std::size_t kLast = 4;

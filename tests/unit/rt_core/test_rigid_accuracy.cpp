@@ -115,7 +115,8 @@ TEST(RigidAccuracy, a_cylinder_across_a_cylinder_is_pushed_from_axis_to_axis)
     {
         Rig rig(tool_of(Segment{{0, -0.03, 0}, {0, 0.03, 0}}, 0.01),
                 {{tube(0.02, 0.1, kFacets), {}}});
-        rig.objects[0].pose.rotation = turn(Vec3(0, 1, 0), kPi / 2.0); // Its axis is the world's x.
+        rig.objects[0].pose.rotation =
+            turn(Vec3(0, 1, 0), kPi / 2.0); // The cylinder's axis is the world's x.
         rig.settle(Vec3(0, off, 0.06), Mat3::Identity(), 50);
 
         const ToolOutput output = rig.settle(Vec3(0, off, 0.025), Mat3::Identity(), 2'000);

@@ -275,7 +275,8 @@ TEST(RigidProxy, is_not_run_over_by_an_object_that_turns_and_leaps)
             ASSERT_FALSE(output.frozen) << i;
             ASSERT_FALSE(output.squeezed) << i;
             ASSERT_GT(rig.distance(), 0.0) << i;
-            ASSERT_GT(to_model(pose, output.proxy_m).z(), 0.0) << i; // On its previous side.
+            ASSERT_GT(to_model(pose, output.proxy_m).z(), 0.0)
+                << i; // The side is the previous one.
         }
     }
 }

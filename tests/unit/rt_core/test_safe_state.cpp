@@ -406,7 +406,7 @@ TEST(SafeState, goes_on_from_what_the_device_has_left_of_the_force)
     tool.input.force_left = 0.7;
     EXPECT_EQ(tool.step().causes, ForceOff::watchdog);
     EXPECT_NEAR(tool.sut.gain(), 0.7, 1e-12);
-    tool.input.force_left = 0.999; // Its own decrease is steeper.
+    tool.input.force_left = 0.999; // The force's own decrease is steeper.
     tool.step();
     EXPECT_NEAR(tool.sut.gain(), 0.7 - kPeriod_s / kFadeTime_s, 1e-12);
     tool.input.force_left = 1.0;

@@ -152,8 +152,8 @@ TEST(SplitShares, what_is_left_is_saved_and_what_is_used_beyond_is_paid)
     EXPECT_EQ(sut.save_all(0), 8U);
 }
 
-/// For any behaviour of the others: never more than all, and every waiting class gets its eighth if
-/// there are at least eight splits, one split for each of its first requests if it has more.
+/// Shares never exceed the total, and every waiting class gets its eighth if there are at least
+/// eight splits, one split for each of its first requests if it has more.
 TEST(SplitShares, no_class_is_starved_and_no_budget_overdrawn)
 {
     const std::uint64_t seed = seed_of(2'300);
@@ -292,7 +292,7 @@ TEST(SplitShares, each_of_64_waiting_requests_has_its_turn_within_the_stated_num
     }
 }
 
-/// Without that order the last ones never get a split, which shows that the bound depends on it.
+/// The last ones never get a split without that order, on which the bound depends.
 TEST(SplitShares, leave_nothing_for_the_last_of_64_whose_turn_never_changes)
 {
     WaitingRequests requests(16, Random::seeded(1));

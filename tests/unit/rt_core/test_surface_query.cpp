@@ -654,7 +654,7 @@ TEST(TreeWalk, of_the_deepest_tree_leaves_no_more_on_its_stack_than_the_limit)
             rig.put(face_of_path(prim, path | (i << 1U), x));
         }
     };
-    // From the root to the last digit but one there is a zero with all other digits beside it.
+    // Every digit from the root to the last but one is a zero with all other digits beside it.
     for (std::uint32_t shift = kTopShift; shift >= 3; shift -= 3)
     {
         for (std::uint64_t digit = 1; digit < (shift == kTopShift ? 2 : 8); ++digit)

@@ -290,7 +290,7 @@ TEST_F(VertexForestTest, an_inconsistent_record_changes_nothing)
         make_record(2, 3,
                     {{1, FaceState::base()}, {2, FaceState::base()}}), // The fan does not chain.
         make_record(2, 3, {{1, FaceState::base()}, {1, FaceState::base()}}), // Duplicate face.
-        make_record(2, 3, {{0, FaceState::base()}}),        // Its parent is no corner.
+        make_record(2, 3, {{0, FaceState::base()}}),        // The parent is no corner.
         make_record(2, 3, {{1, FaceState::after({0}, 2)}}), // Wrong state.
         make_record(2, 3, {{1, FaceState::base()}, {7, FaceState::base()}}), // Inactive.
     };

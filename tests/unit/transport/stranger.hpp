@@ -129,7 +129,7 @@ private:
         }
         if (!is_matched(*chunks_))
         {
-            return; // It will be requested again.
+            return; // The piece will be requested again.
         }
         for (std::uint32_t i = 0; i < wanted.pieces._length; ++i)
         {

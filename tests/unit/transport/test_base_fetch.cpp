@@ -78,7 +78,7 @@ TEST(BaseFetch, asks_for_each_part_once_and_has_the_base_mesh)
     EXPECT_FALSE(bring_bases(sut.served, kPatience));
     EXPECT_TRUE(sut.is_whole());
     EXPECT_EQ(sut.link->asked, parts_of(sut.model.base.size()));
-    EXPECT_FALSE(bring_bases(sut.served, kPatience)); // It is resident.
+    EXPECT_FALSE(bring_bases(sut.served, kPatience)); // The base mesh is resident.
     EXPECT_EQ(sut.link->asked, parts_of(sut.model.base.size()));
 }
 

@@ -159,7 +159,7 @@ TEST(Courier, brings_a_base_mesh_but_not_for_a_wish_older_than_its_going)
     EXPECT_EQ(event.key, kBase);
     EXPECT_TRUE(road.side.linker.has_base());
     EXPECT_TRUE(std::ranges::equal(road.side.slots.base.positions_m, positions_m));
-    ASSERT_TRUE(road.side.wish(kBase, 8)); // It is resident.
+    ASSERT_TRUE(road.side.wish(kBase, 8)); // The base mesh is resident.
     EXPECT_TRUE(road.is_silent(1));
 }
 

@@ -216,7 +216,7 @@ protected:
     Lines host_lines;
     std::unique_ptr<HostThread> host;
     std::unique_ptr<DdsClient> controller;
-    ServedModel served; ///< It has the controller's link, so it is declared after it.
+    ServedModel served; ///< Declared after the controller, whose link it has.
 
 private:
     int files_{0};
@@ -320,7 +320,7 @@ TEST_F(Dds, a_host_that_goes_in_the_middle_of_a_header_is_completed_by_another)
             sut->exchange().step();
             return search.step() == HeaderSearch::State::under_way;
         }));
-    host.reset(); // It was asked, and ended before it could answer.
+    host.reset(); // The server was asked, and ended before an answer.
     const auto second = host_of("tiny", model, kOtherHostDomain);
     EXPECT_TRUE(eventually(
         [&]
@@ -803,7 +803,7 @@ TEST_F(Dds, a_host_that_is_killed_is_noticed_and_its_successor_adopted)
     EXPECT_NE(output.find("ended; "), std::string::npos) << output;
 }
 
-/// Without a user's configuration controllers have no known ports.
+/// Controllers without a user's configuration have no known ports.
 TEST_F(Dds, a_controller_finds_a_host_that_starts_after_it_and_keeps_one_of_its_process_out)
 {
     ::unsetenv("CYCLONEDDS_URI");

@@ -162,7 +162,7 @@ TEST_F(DdsObjects, come_move_and_go_as_the_host_says)
     EXPECT_EQ(follower->count(SceneNews::goes), 1U);
 
     const std::uint32_t pot = host->objects().show(object_called("pot")).value();
-    EXPECT_EQ(pot, cup); // It may have the number with another generation.
+    EXPECT_EQ(pot, cup); // The number is reused with another generation.
     ASSERT_TRUE(step_until([&] { return seen(pot) != nullptr; }));
     EXPECT_EQ(seen(pot)->shown.name, "pot");
     EXPECT_EQ(seen(pot)->generation, 2U);
@@ -181,7 +181,7 @@ TEST_F(DdsObjects, feel_otherwise_when_the_host_says_so)
     EXPECT_EQ(seen(cup)->shown.material, honey);
     EXPECT_EQ(seen(cup)->shown.pose.translation_m, some_pose().translation_m);
     Material none = honey;
-    none.texture_height_m = 1e-3; // As high as long.
+    none.texture_height_m = 1e-3; // Height equal to the length.
     const auto refused = host->objects().feel(cup, none);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().text.find("object 'cup' has a material with"), 0U);
@@ -573,7 +573,7 @@ TEST_F(DdsHostFaults, objects_of_models_that_it_does_not_serve_are_refused_by_na
     EXPECT_EQ(lines_with("is refused"), 1U);
     EXPECT_EQ(follower->count(SceneNews::comes), 2U);
     EXPECT_EQ(follower->count(SceneNews::goes), 0U);
-    // It appears once it is served; one that is removed before is never reported.
+    // The object appears once the model is served; one that is removed before is never reported.
     show(9, "wraith", other_model());
     tactus_v5_ObjectRecord gone = {};
     gone.host_epoch = host->epoch();

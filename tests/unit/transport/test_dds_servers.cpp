@@ -234,7 +234,7 @@ TEST_F(DdsServers, a_piece_that_one_alone_lacks_comes_from_the_next)
                 {ContentKind::chunk, 1 + chunk++ % 3}}; // The first one always answers.
             link.request(other, 1);
             link.poll(got);
-            return got.chunks.contains(0); // Of the index page.
+            return got.chunks.contains(0); // Chunk 0 of the index page.
         }));
     EXPECT_FALSE(lines.has("doesn't answer")) << lines.text();
 }

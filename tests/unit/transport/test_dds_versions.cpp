@@ -287,7 +287,7 @@ TEST_F(DdsVersions, an_end_that_a_stranger_put_on_what_was_not_taken_yet_is_not_
     }
     for (int i = 0; i < 2; ++i)
     {
-        std::unique_ptr<ChunkLink> untaken = std::move(link); // Its messages wait.
+        std::unique_ptr<ChunkLink> untaken = std::move(link); // The link's messages wait.
         step_for_an_announcement();
         link = std::move(untaken);
         ASSERT_EQ(dds_dispose(shows.handle, &entry), DDS_RETCODE_OK);
@@ -407,7 +407,7 @@ TEST_F(DdsVersions, who_asks_for_too_much_in_a_second_is_counted_by_name_and_ser
     ASSERT_TRUE(test::eventually(
         [&]
         {
-            for (int i = 0; i < 16; ++i) // As many as a reader keeps.
+            for (int i = 0; i < 16; ++i) // Number that a reader keeps.
             {
                 dds_write(writer.handle, &wanted);
             }

@@ -369,7 +369,7 @@ TEST(Linker, models_of_one_pool_have_chunks_of_the_same_numbers)
         EXPECT_TRUE(other.is_resident({chunk}));
         EXPECT_EQ(other.linked(2 * chunk + 1), ~std::uint64_t{0});
     }
-    for (const std::uint32_t chunk : {0U, 1U, 2U}) // In slots of the other one.
+    for (const std::uint32_t chunk : {0U, 1U, 2U}) // Slots of the other model.
     {
         other.release_page(2 * chunk + 1);
         bring(true, chunk, 2 * chunk + 1);

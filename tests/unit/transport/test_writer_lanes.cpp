@@ -134,7 +134,7 @@ TEST_F(Lanes, lose_what_a_reader_that_does_not_answer_would_make_them_keep)
     const Endpoint in = reader(kPartition);
     ASSERT_TRUE(eventually([&] { return sut.is_matched(); }));
     bool is_full = false;
-    for (int i = 0; i < 100'000 && !is_full; ++i) // Its answers take a moment.
+    for (int i = 0; i < 100'000 && !is_full; ++i) // The reader's answers take a moment.
     {
         is_full = !sut.write(&sample, &sample, bytes);
     }
