@@ -22,9 +22,9 @@ import tempfile
 import results
 
 INSTRUCTIONS = "instructions a frame"
-MOST = "most of a frame"  # Of the suite worst, in instructions; it is held, and may be less.
+MOST = "most of a frame"  # Metric of the suite worst, in instructions; an upper limit.
 TOLERANCE = 0.02
-ENTRY = "tactus::Frame::run(*"  # What is counted, and all that it calls.
+ENTRY = "tactus::Frame::run(*"  # Counted function, with all that it calls.
 
 
 def run(*words):
@@ -46,7 +46,7 @@ def instructions_a_frame(bench, folder, case, frames):
 
 
 def count(bench, suite, with_instructions, cases):
-    """The results of these cases of the suite as this build has them; none: of all."""
+    """Results of these cases of the suite from this build; none: all."""
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         is_worst = suite == "worst"
@@ -62,7 +62,7 @@ def count(bench, suite, with_instructions, cases):
 
 
 def held(counted, with_instructions):
-    """What is compared, by its name."""
+    """Compared values by name."""
     for row in counted["rows"]:
         is_held = row["metric"] == MOST if row["suite"] == "worst" else \
             with_instructions or row["metric"] != INSTRUCTIONS

@@ -25,7 +25,7 @@ CORE, ROUND, SURFACE, HAND, FORCE = "#0072b2", "#cfe6f5", "#d9d2c5", "#888888", 
 
 
 def panels(titles, height):
-    """Axes without ticks, in which lengths are true."""
+    """Axes without ticks and with equal scales."""
     figure, axes = pyplot.subplots(1, len(titles), figsize=(9.6, height))
     figure.subplots_adjust(left=0.01, right=0.99, top=1 - 0.3 / height, bottom=0.02, wspace=0.04)
     for one, title in zip(axes, titles):
@@ -40,8 +40,8 @@ def solid(corners, colour=CORE):
 
 
 def grown(axes, corners, radius):
-    """What is within the radius of a polygon: the polygon, a strip for each edge, a disc for each
-    corner; drawn with one colour, so that no seam shows."""
+    """Points within the radius of a polygon: the polygon, a strip for each edge, a disc for each
+    corner; drawn in one colour, so that no seam is visible."""
     axes.add_patch(patches.Polygon(corners, closed=True, color=ROUND, linewidth=0))
     for (x, y), (u, v) in zip(corners, corners[1:] + corners[:1]):
         axes.add_patch(patches.Circle((x, y), radius, color=ROUND, linewidth=0))
@@ -54,7 +54,7 @@ def grown(axes, corners, radius):
 
 
 def measure(axes, start, end, name, offset=(0, 0)):
-    """A length with its name."""
+    """Length with its name."""
     axes.annotate("", start, end, arrowprops={"arrowstyle": "<->", "color": "#333333",
                                               "linewidth": 0.8, "shrinkA": 0, "shrinkB": 0})
     axes.text((start[0] + end[0]) / 2 + offset[0], (start[1] + end[1]) / 2 + offset[1], name,
@@ -68,7 +68,7 @@ def arrow(axes, start, end, colour, name="", offset=(0, 0)):
 
 
 def shapes(_):
-    """Each form of --tool, cut through its middle: its core, and the radius all round."""
+    """Each form of --tool, cut through its middle: its core, and the radius around it."""
     figure, axes = panels(("point", "sphere:R", "capsule:R,L", "box:X,Y,Z,R", "hull:FILE,R",
                            "mesh:NAME,R"), 2.4)
     for one in axes:
@@ -97,7 +97,7 @@ def shapes(_):
 
 
 def spring(axes, start, end, turns=7, width=0.07):
-    """A zigzag between two places."""
+    """Zigzag between two places."""
     along = (end[0] - start[0], end[1] - start[1])
     length = math.hypot(*along)
     across = (-along[1] / length * width, along[0] / length * width)
@@ -121,7 +121,7 @@ def ground(axes, slope=0.0):
 
 
 def coupling(_):
-    """What holds a tool back: two springs, friction's cone, and the springs of --guide."""
+    """Forces on a tool: two springs, friction's cone, and the springs of --guide."""
     figure, axes = panels(("held back: two springs", "friction: it sticks", "friction: it slides",
                            "guided: plane, line, point"), 2.9)
     for one in axes:

@@ -25,16 +25,16 @@ try:
 except ImportError:
     matplotlib = None
 
-DRAWN_BY = "3.6.3"  # Debian 12's; another one may put a line elsewhere.
+DRAWN_BY = "3.6.3"  # Version of Debian 12; another one may place a line elsewhere.
 COLOURS = {"Tactus": "#0072b2", "static": "#56b4e9", "goal": "#000000", "Embree": "#e69f00",
            "CGAL": "#009e73", "FCL": "#cc79a7", "sphere": "#882255", "Bullet": "#d55e00",
            "OpenMesh": "#999933", "meshoptimizer": "#7f7f7f"}
 QUANTILES = {"p50": "o", "p99": "D", "max": "^"}
-EXACT = 1e-9  # Where an error of 0 stands on an axis of powers, in diagonals.
+EXACT = 1e-9  # Place of an error of 0 on a logarithmic axis, in diagonals.
 
 
 class Results:
-    """The rows of all files of the folder."""
+    """Rows of all files of the folder."""
 
     def __init__(self, folder):
         self.rows = [row for path in sorted(folder.glob("*.json"))
@@ -45,14 +45,14 @@ class Results:
                 and all(row.get(key, "") == value for key, value in wanted.items())]
 
     def names(self, key, suite, **wanted):
-        """The different names under that key, in their order."""
+        """Different names under that key, in order."""
         names = list(dict.fromkeys(row[key] for row in self.found(suite, **wanted)))
         if not names:
             raise results.Failure(f"no rows of {suite} with {wanted}")
         return names
 
     def value(self, suite, key="value", **wanted):
-        """None when no row has it."""
+        """Value of a row; None if there is none."""
         found = [row[key] for row in self.found(suite, **wanted) if key in row]
         return found[0] if found else None
 
@@ -60,13 +60,13 @@ class Results:
         return [self.value(suite, key, metric=form.format(one), **wanted) for one in QUANTILES]
 
     def line(self, suite, key, names, **wanted):
-        """A value for each name; not a number where there is none."""
+        """Value for each name; NaN if there is none."""
         values = [self.value(suite, **wanted, **{key: name}) for name in names]
         return [float("nan") if value is None else value for value in values]
 
 
 def colour(name):
-    """Of the contestant, by the last word of its name that is known."""
+    """Colour of the contestant, by the last known word of its name."""
     known = [word for word in COLOURS if word in name]
     return COLOURS[known[-1]] if known else "#444444"
 
@@ -79,7 +79,7 @@ def axes_of(columns, height, **more):
 
 
 def by_powers(axis):
-    """Ticks that are read as they stand: 0.5, 1, 2, 5 ..., of a long axis the powers of ten alone."""
+    """Plain ticks: 0.5, 1, 2, 5 ..., only powers of ten on a long axis."""
     getattr(axis.axes, f"set_{axis.axis_name}scale")("log")
     low, high = axis.get_view_interval()
     axis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5) if high < 200 * low else (1,)))
@@ -90,7 +90,7 @@ def by_powers(axis):
 
 
 def legend_below(figure, axes, columns=6):
-    """One legend for all: what the axes have named, each name once."""
+    """One legend for all axes, each name once."""
     handles = {}
     for one in axes:
         handles.update({name: handle for handle, name in zip(*one.get_legend_handles_labels())})
@@ -99,10 +99,9 @@ def legend_below(figure, axes, columns=6):
 
 
 def ranges(axes, title, unit, lines, series):
-    """A line for each name; in it, for each (name, colours, [p50, p99, max] of each line), marks.
+    """One line for each name, with marks for each (name, colours, [p50, p99, max] of each line).
 
-    Colours are one, or a list with one for each line.
-    """
+    Colours are one, or a list with one for each line."""
     step = 0.8 / len(series)
     drawn = set()
     for at, (name, colours, values) in enumerate(series):
@@ -128,7 +127,7 @@ def ranges(axes, title, unit, lines, series):
 
 
 def curves(axes, title, x_name, y_name, curves_of):
-    """(name, colour, x, y) each, both axes by powers of ten."""
+    """Points (name, colour, x, y), both axes logarithmic."""
     for name, shade, x, y in curves_of:
         axes.plot(x, y, "o-", color=shade, markersize=4, linewidth=1.2, label=name)
     axes.set(title=title, xlabel=x_name, ylabel=y_name)
@@ -156,7 +155,7 @@ def frame(data):
 
 
 def points_of(data, case):
-    """(by, setting, {metric: value}) of all who were asked at the same points."""
+    """(by, setting, {metric: value}) of all contestants with the same points."""
     pairs = dict.fromkeys((row["by"], row["setting"])
                           for row in data.found("error_time", case=case, part="", metric="p99"))
     for by, setting in pairs:
@@ -188,7 +187,7 @@ def error_time(data):
 
 
 def faces_of(data, case):
-    """Of the whole mesh: the most that somebody was asked about."""
+    """Faces of the whole mesh: the greatest number of a contestant."""
     counts = [int(setting.removesuffix(" faces")) for _, setting, _ in points_of(data, case)
               if setting.endswith(" faces")]
     if not counts:
@@ -365,12 +364,13 @@ def svg(picture, data):
         figure.savefig(text, format="svg", facecolor="white", metadata={"Date": None,
                                                                         "Creator": None})
         pyplot.close(figure)
-    # A line for each thing that is drawn.
+    # One line for each drawn element.
     return re.sub(r"\n\s*(?!<g id=|\s)", " ", text.getvalue()).rstrip() + "\n"
 
 
 def run(arguments, usage, pictures, data_of):
-    """Draws or checks them in a folder; each is drawn from what `data_of` makes of that folder."""
+    """Draws or checks them in a folder; each is drawn from the result of `data_of` for that folder.
+    """
     if len(arguments) != 2 or arguments[0] not in ("draw", "check"):
         print(usage, file=sys.stderr)
         return 3

@@ -30,9 +30,9 @@ import sys
 HEADER = {"schema", "commit", "machine", "quick", "options", "compiler", "rows"}
 MACHINE = {"processor", "processors", "kernel", "date_utc"}
 ROW = {"suite", "case", "metric", "value", "unit"}
-NAME = ("case", "by", "setting", "metric")  # What tells the rows of a suite apart.
-TOGETHER = {"goal": "met", "peer": "peer_value"}  # Neither comes without the other.
-COUNTS = {"counts", "worst"}  # Tests compare with them.
+NAME = ("case", "by", "setting", "metric")  # Keys that distinguish the rows of a suite.
+TOGETHER = {"goal": "met", "peer": "peer_value"}  # Fields that occur only together.
+COUNTS = {"counts", "worst"}  # Suites that tests compare with.
 
 TABLE = re.compile(r"<!--((?: benchmarks/\w+\.json)+) -->\n\n((?:\|.*\|\n)+)")
 NUMBER = re.compile(r"(?<![\w.,-])-?\d+(?:,\d{3})*(?:\.\d+)?(?:e-?\d+)?(?![\w.])")
@@ -40,7 +40,7 @@ PICTURE = re.compile(r"!\[[^\]]*\]\((?:benchmarks/)?(\w+\.svg)\)")
 
 
 class Failure(Exception):
-    """A step that could not be done."""
+    """Step that failed."""
 
 
 def read(path):
@@ -54,7 +54,7 @@ def read(path):
 
 
 def write(path, results):
-    """A row a line: what changed from run to run can be read in a diff."""
+    """One row a line, so that a diff shows the changes between runs."""
     head = json.dumps({key: value for key, value in results.items() if key != "rows"}, indent=2)
     rows = ",\n".join("    " + json.dumps(row) for row in results["rows"])
     path.write_text(f'{head[:-2]},\n  "rows": [\n{rows}\n  ]\n}}\n', encoding="utf-8")
@@ -69,7 +69,7 @@ def name_of(row):
 
 
 def refusal(suite, results, path):
-    """Why the suite's file must stay as it is; None when it can be written."""
+    """Reason why the suite's file must stay unchanged; None if it can be written."""
     if suite in COUNTS:
         return "what tests compare with; counts.py --write renews it"
     if any(text.startswith(f"{suite} ") for text in results.get("failures", [])):
@@ -111,7 +111,7 @@ def form_faults(results):
 
 
 def told(value, text):
-    """Whether the page's text is that value, to its own digits."""
+    """True if the page's text is that value, to its own digits."""
     digits = len(re.sub(r"e.*|[-,.]", "", text).lstrip("0")) or 1
     number = float(text.replace(",", ""))
     return abs(value - number) <= 1e-12 or float(f"{value:.{digits}g}") == number
@@ -139,10 +139,10 @@ def git(folder, *words):
 
 
 def history_faults(page, files, folder):
-    """Commits that nobody can look up must be told as such."""
+    """Commits outside the history must be marked as such."""
     depth = git(folder, "rev-parse", "--is-shallow-repository")
     if depth is None or depth.stdout.strip() != "false":
-        return  # No repository here, or a part of one.
+        return  # No repository, or a shallow one.
     for path in files:
         results = read(path)
         commit = results.get("commit", "")

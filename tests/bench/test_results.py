@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # Copyright the Tactus authors.
-"""results.py and counts.py as programs: planted faults are found, and full results stay."""
+"""results.py and counts.py as programs: planted faults are detected, and full results stay."""
 
 import json
 import os
@@ -143,7 +143,7 @@ class Kept(unittest.TestCase):
         kept.write_text(json.dumps(results([*ROWS[2:], row("counts", "one", "instructions a frame",
                                                            10_000)])))
         bench.write_text(f'#!/bin/sh\n[ "$4" = --json ] && cp "{run}" "$5" || true\n')
-        valgrind = self.root / "valgrind"  # In place of the real one.
+        valgrind = self.root / "valgrind"  # Replaces the real one.
         for splits, total, code in ((12, 50_000, 0), (12, 51_000, 0), (12, 51_005, 1),
                                     (12, 48_000, 1), (13, 50_000, 1), (12, 0, 2)):
             run.write_text(json.dumps(results([ROWS[2], ROWS[3] | {"value": splits}])))
@@ -154,9 +154,9 @@ class Kept(unittest.TestCase):
             with self.subTest(splits=splits, total=total):
                 self.assertEqual(self.sut("counts.py", kept, bench), splits - 12, self.said)
                 self.assertIn(self.sut("counts.py", kept, bench, "--instructions"),
-                              (code, 77), self.said)  # 77: without AVX2.
+                              (code, 77), self.said)  # 77: no AVX2.
         run.write_text(json.dumps(results(ROWS[2:3])))
-        self.assertEqual(self.sut("counts.py", kept, bench), 1)  # A count less is another, too.
+        self.assertEqual(self.sut("counts.py", kept, bench), 1)  # A lower count differs too.
 
     def test_no_frame_costs_more_than_the_worst_that_is_kept(self):
         kept, run, bench = (self.root / name for name in ("worst.json", "run.json", "bench"))

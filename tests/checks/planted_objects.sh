@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # planted_objects.sh CHECKOUT SCRATCH CXX [PYTHON]: the guards over objects must pass on clean ones
-# and must name what is planted in others. Without PYTHON only the guards over symbols are tried,
-# which every compiler has; the others read machine code of x86-64 by g++.
+# and must name faults planted in others. Without PYTHON only the guards over symbols are run, which
+# work with every compiler; the others read x86-64 machine code of g++.
 set -euo pipefail
 readonly checks="$1/cmake/checks" scratch=$2 cxx=$3 python=${4:-}
 failures=0 flags=(-std=c++20 -O1)
@@ -10,7 +10,8 @@ rm -rf "$scratch"
 mkdir -p "$scratch"
 cd "$scratch"
 
-archive() { # archive NAME FLAGS...: compiles standard input to NAME.o and to the only one in lib.a.
+# archive NAME FLAGS...: compiles standard input to NAME.o and to the only object in lib.a.
+archive() {
     local name=$1
     shift
     cat >"$name.cpp"
@@ -19,7 +20,7 @@ archive() { # archive NAME FLAGS...: compiles standard input to NAME.o and to th
     ar rcs lib.a "$name.cpp.o"
 }
 
-expect() { # expect CODE TEXT COMMAND...: that exit code, and TEXT in what it says.
+expect() { # expect CODE TEXT COMMAND...: expects that exit code, and TEXT in the output.
     local code=0 output wanted=$1 text=$2
     shift 2
     output=$("$@" 2>&1) || code=$?
@@ -39,7 +40,7 @@ report() {
     rm -rf "$scratch"
 }
 
-# --- Symbols: the heap, and calls of one system in objects that may make them and in others.
+# --- Symbols: the heap, and calls of one system in objects with and without permission.
 archive heap <<<'int* make() { return new int(1); }'
 expect 1 'operator new(unsigned long) in heap.cpp.o' bash "$checks/check_rt_core_symbols.sh" lib.a \
     "$checks/rt_core_symbols.txt"

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # planted_realtime.sh CHECKOUT SCRATCH CXX EIGEN: clang must refuse to compile, and its realtime
-# sanitizer must refuse to run, marked functions that do what the frame must not. One of rt_core's
-# own sources, copied, stands for all; without a fault it must compile and run.
+# sanitizer must refuse to run, marked functions with operations forbidden in a frame. A copy of one
+# of rt_core's sources represents all; without a fault it must compile and run.
 set -euo pipefail
 readonly root=$1 scratch=$2 cxx=$3 eigen=$4
 readonly source=$root/rt_core/predict/region_predictor.cpp function=RegionPredictor::observe
@@ -11,7 +11,7 @@ rm -rf "$scratch"
 mkdir -p "$scratch"
 cd "$scratch"
 
-# plant FILE INCLUDE STATEMENT: the copy FILE of the source, with the STATEMENT in its function.
+# plant FILE INCLUDE STATEMENT: copies the source to FILE, with the STATEMENT in its function.
 plant() {
     awk -v include="$2" -v statement="$3" -v function_name="$function" '
         NR == 4 { print include }
@@ -28,12 +28,12 @@ compile() { # compile ARGUMENT...
     "$cxx" -std=c++20 -I"$root" -isystem "$eigen" -DEIGEN_DONT_VECTORIZE \
         -DEIGEN_MAX_ALIGN_BYTES=0 -DEIGEN_NO_DEBUG "$@"
 }
-# Read once, since Eigen takes a second.
+# Precompiled, since Eigen takes a second.
 compile -fsanitize=realtime -fpch-instantiate-templates \
     -x c++-header "$root/rt_core/predict/region_predictor.hpp" -o first.pch
 again() { compile -fsanitize=realtime -include-pch first.pch "$@"; }
 
-expect() { # expect ok|fault TEXT COMMAND...: whether it succeeds, and TEXT in what it says.
+expect() { # expect ok|fault TEXT COMMAND...: expects success or failure, and TEXT in the output.
     local output outcome=ok wanted=$1 text=$2
     shift 2
     output=$("$@" 2>&1) || outcome=fault
@@ -43,7 +43,7 @@ expect() { # expect ok|fault TEXT COMMAND...: whether it succeeds, and TEXT in w
     fi
 }
 
-warned() { # warned ok|fault TEXT INCLUDE STATEMENT: when compiled.
+warned() { # warned ok|fault TEXT INCLUDE STATEMENT: result of compiling.
     plant copy.cpp "$3" "$4"
     expect "$1" "$2" again -Werror=function-effects -fsyntax-only copy.cpp
 }
@@ -62,7 +62,7 @@ warned fault 'throw' '' 'if (lead_s < 0.0) throw 1;'
 warned fault 'pointer' 'void (*hook)() noexcept;' 'hook();'
 warned fault "non-'nonblocking' function 'elsewhere'" 'void elsewhere() noexcept;' 'elsewhere();'
 
-# What only shows when it runs: the compiler is told to trust.
+# Faults that only the run shows: the compiler is told to trust.
 cat >main.cpp <<'EOC'
 #include "rt_core/predict/region_predictor.hpp"
 #include <cstdio>
@@ -76,7 +76,7 @@ int main()
 }
 EOC
 again -c main.cpp "$root/rt_core/base/assert.cpp"
-caught() { # caught ok|fault TEXT INCLUDE STATEMENT: when run.
+caught() { # caught ok|fault TEXT INCLUDE STATEMENT: result of running.
     plant copy.cpp "$3" "$4"
     again -c copy.cpp -o copy.o
     compile -fsanitize=realtime main.o copy.o assert.o -o program

@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# qnx_toolchain.sh CHECKOUT SCRATCH CMAKE CC CXX EIGEN_DIR: what can be tried of the QNX toolchain
-# file without QNX: that it refuses what it must, and that with stand-ins for QNX's compilers the
-# portable part is configured for QNX, with the generic extras.
+# qnx_toolchain.sh CHECKOUT SCRATCH CMAKE CC CXX EIGEN_DIR: tests the QNX toolchain file without
+# QNX: it refuses wrong settings, and with stand-ins for QNX's compilers the portable part is
+# configured for QNX, with the generic extras.
 set -euo pipefail
 readonly checkout=$1 scratch=$2 cmake=$3 cc=$4 cxx=$5 eigen=$6
 rm -rf "$scratch"
 mkdir -p "$scratch"/{host/usr/bin,target,googletest}
 
-# A stand-in answers -V as QNX's driver does, by which CMake knows it, takes the target out of the
-# options, and is this machine's compiler for the rest.
+# A stand-in answers -V like QNX's driver, by which CMake identifies it, drops the target from the
+# options, and otherwise is this machine's compiler.
 stand_in() { # stand_in NAME COMPILER
     cat >"$scratch/host/usr/bin/$1" <<STAND_IN
 #!/usr/bin/env bash
@@ -42,7 +42,7 @@ configure() { # configure QNX_HOST PROCESSOR
         -DEigen3_DIR="$eigen" 2>&1
 }
 
-expect() { # expect TEXT WHERE: TEXT is in the output or in the file WHERE.
+expect() { # expect TEXT WHERE: expects TEXT in the output or in the file WHERE.
     if [[ "$2" != *"$1"* ]]; then
         printf 'expected "%s" in:\n%s\n' "$1" "$2"
         exit 1

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # setup_command_line.sh SETUP: cmake/setup.sh refuses wrong usage with exit 3 and one line that
-# names the fault, explains itself with exit 0, names the packages that it could not install, and
-# has a full run beside peers count instructions.
+# names the fault, prints its help with exit 0, names packages that it could not install, and counts
+# instructions in a full run with peers.
 set -euo pipefail
 readonly setup=$1
 failures=0
@@ -19,7 +19,7 @@ expect() { # expect CODE TEXT ARGUMENT...
     fi
 }
 
-cd / # From any folder.
+cd / # Works in any folder.
 expect 0 'Usage: bash cmake/setup.sh' --help
 expect 3 'no command'
 expect 3 "unknown argument 'bild'" bild
@@ -37,7 +37,7 @@ expect 3 "--peers is for 'bench' only" rt-machine --peers
 expect 3 "--arm64 is for 'rt-machine' only" bench --arm64
 TACTUS_MESHES=nowhere expect 3 'TACTUS_MESHES must name the folder' bench --docs
 
-# A dpkg that knows nothing and a sudo that refuses stand in for a user without packages and root.
+# A dpkg without packages and a sudo that refuses represent a user without packages and root.
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 printf '#!/bin/sh\nexit 1\n' | tee "$scratch/dpkg-query" "$scratch/sudo" >"$scratch/apt-get"
@@ -50,7 +50,7 @@ else
         'apt-get update failed; still missing: assimp-testmodels binutils cmake' packages
 fi
 
-# A house with one package, which is installed; its build and its bench say what they are asked.
+# A checkout with one installed package; its build and its bench print their arguments.
 mkdir -p "$scratch"/{tools,house/cmake,house/build/release/bin}
 cp "$setup" "$scratch/house/cmake"
 printf 'dpkg\n' | tee "$scratch"/house/cmake/packages{,-test}.txt \
@@ -79,7 +79,7 @@ counts_instructions YES --peers
 counts_instructions NO --peers --quick
 counts_instructions NO
 
-# The programs alone, without tests and what is for them.
+# Programs only, without tests and their needs.
 rm "$scratch/built"
 PATH="$scratch/tools:$PATH" bash "$scratch/house/cmake/setup.sh" programs >"$scratch/said" 2>&1 \
     || { cat "$scratch/said"; failures=$((failures + 1)); }

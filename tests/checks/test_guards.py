@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Each guard of guards.py passes a small clean house and names file and line of a planted fault."""
+"""Each guard of guards.py passes a small clean tree and names file and line of a planted fault."""
 import contextlib
 import io
 import pathlib
@@ -22,7 +22,7 @@ SPDX = '# SPDX-License-Identifier: Apache-2.0\n'
 
 
 class House(unittest.TestCase):
-    """A house without faults, the layers of the checkout included."""
+    """Tree without faults, with the layers of the checkout."""
 
     def setUp(self):
         scratch = tempfile.TemporaryDirectory()
@@ -40,7 +40,7 @@ class House(unittest.TestCase):
         self.source('rt_core/limits.hpp', 'inline constexpr int kMaxGood = 1;')
         self.source('tests/unit/test_good.cpp', '#include "rt_core/base/good.hpp"',
                     'static_assert(kMaxGood == 1);')
-        # Its comments name pages that the house does not have.
+        # Its comments name pages that the tree does not have.
         self.script(guards.LAYERS, re.sub('#.*', '# A.', (CHECKOUT / guards.LAYERS).read_text()))
 
     def text(self, path, text):
@@ -49,11 +49,11 @@ class House(unittest.TestCase):
         file.write_text(text, encoding='utf-8')
 
     def source(self, path, *lines):
-        """A source whose lines begin at line 4."""
+        """Source whose lines begin at line 4."""
         self.text(path, LICENCE + '\n'.join(lines) + '\n')
 
     def script(self, path, *lines):
-        """A script whose lines begin at line 2."""
+        """Script whose lines begin at line 2."""
         self.text(path, SPDX + '\n'.join(lines) + '\n')
 
     def run_guards(self, *arguments):
@@ -71,7 +71,7 @@ class House(unittest.TestCase):
         self.assertEqual(code, 0, said)
 
     def refuse(self, name, *faults, code=1):
-        """These faults and no others; the house is clean again afterwards."""
+        """Expects exactly these faults; the tree is clean again afterwards."""
         got, said = self.run_guards(self.root, '--only', name)
         lines = said.splitlines()[:len(faults)]
         self.assertEqual(got, code, said)

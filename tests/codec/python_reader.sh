@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# python_reader.sh SPM_BUILD: a second reader, by docs/internals/spm-format.md, must find in the
-# files of spm_build what they were made from, and refuse them when one byte is another.
+# python_reader.sh SPM_BUILD: a second reader, written by docs/internals/spm-format.md, must find
+# the sources in the files of spm_build, and refuse the files with a changed byte.
 set -euo pipefail
 readonly build=$1
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -15,10 +15,10 @@ trap 'rm -rf "$scratch"' EXIT
 cd "$scratch"
 
 fail() { printf 'FAULT: %s\n' "$*"; exit 1; }
-# figure NAME FILE: a number of a flat JSON object.
+# figure NAME FILE: prints a number of a flat JSON object.
 figure() { sed -n "s/.*\"$1\": *\(-\{0,1\}[0-9]*\).*/\1/p" "$2"; }
 
-# agrees SHAPE FACES EULER: what the reader finds is what spm_build says; Euler's number too.
+# agrees SHAPE FACES EULER: compares the reader's result with spm_build's output and Euler's number.
 agrees() {
     local name wanted
     "$build" --shape "$1" --faces "$2" -o "$1.spm" --json >built.json 2>/dev/null
@@ -37,8 +37,8 @@ agrees torus 1000 0
 agrees terrain 1000 1
 (($(figure border_edges read.json) > 0)) || fail 'the terrain has no border'
 
-# One byte changed, in one process. A prime step, so that header, base, index and chunks are hit at
-# all alignments.
+# Changes one byte at a time, in one process. The step is prime, so that header, base, index and
+# chunks are changed at all alignments.
 python3 - "$here" torus.spm <<'PYTHON' || fail 'a changed byte'
 import sys
 
@@ -57,7 +57,7 @@ for at in range(0, len(whole), 53):
     sys.exit(f"byte {at} of {len(whole)} is another, and nothing is refused")
 PYTHON
 
-# refuses FILE WHAT: with exit code 1 and one line of its own, not a trace.
+# refuses FILE WHAT: expects exit code 1 and one line, without a trace.
 refuses() {
     local code=0
     python3 "$reader" "$1" >out.txt 2>said.txt || code=$?

@@ -32,17 +32,17 @@ HEADER = struct.Struct("<8s2H5Ii2H3II3ddIIIII3IIIQQQ16s")
 INDEX_ENTRY = struct.Struct("<6iQ16s")
 CHUNK_ENTRY = struct.Struct("<6HH16s")
 
-# What a chunk says of a record, in its words. An owner is ("base", face), ("record", q) or None for
+# Fields of a record as its chunk codes them. An owner is ("base", face), ("record", q) or None for
 # a derived one.
 Coded = namedtuple("Coded", "anchor place corner left right sides others residual errors steps")
-# And what that means: `ring` is w0 .. wk, `star` face ids by place, None where there is no face,
-# `before` the states of the fan faces, `error` and `bucket` as `star` and for A and B.
+# Decoded record: `ring` is w0 .. wk, `star` face ids by place, None without a face, `before` the
+# states of the fan faces, `error` and `bucket` like `star` and for A and B.
 Record = namedtuple("Record", "depth position parent ring star before error bucket")
 Model = namedtuple("Model", "header positions faces records")
 
 
 class Refused(Exception):
-    """The file breaks the format; the text says where."""
+    """Violation of the format; the text gives the place."""
 
 
 def require(condition, text):
@@ -74,7 +74,7 @@ def content_hash(data):
 
 
 def checked(data, what, behind=b""):
-    """The bytes before the closing checksum, which may cover others that aren't there."""
+    """Bytes before the closing checksum, which may also cover others."""
     require(len(data) >= 4, f"{what}: too short")
     sum_of = crc32c(data[:-4] + behind)
     require(struct.unpack("<I", data[-4:])[0] == sum_of, f"{what}: wrong checksum")
@@ -99,7 +99,7 @@ def read_table(path):
     return table
 
 
-# Section 6.3: where each model begins in the table. A signed number has 1 + 32 + 32 x 4.
+# Section 6.3: start of each model in the table. A signed number has 1 + 32 + 32 x 4.
 SIGNED = 161
 SIZES = {"tier_step": 2 * 3 * 16, "owner_step": 2 * 2 * SIGNED, "place": 2 * 8, "corner": 8 * 4,
          "left": 8, "right": 8 * 8, "has_one_side": 1, "has_only_b": 1, "is_named": 2 * 4,
@@ -111,7 +111,7 @@ MODEL_SIZE = sum(SIZES.values())
 
 
 class RangeDecoder:
-    """Sections 6.1 and 6.2. Models are named by where they begin in the table."""
+    """Sections 6.1 and 6.2. Models are named by their start in the table."""
 
     def __init__(self, data, table):
         self.data, self.at, self.p = data, 0, list(table)
@@ -157,7 +157,7 @@ class RangeDecoder:
         return node - (1 << bits)
 
     def rest(self, width, model):
-        """A number that is `width` bits wide, with `model` as N."""
+        """Number of `width` bits, with `model` as N."""
         if width < 2:
             return width
         number, known = 1, min(2, width - 1)
@@ -272,7 +272,7 @@ def read_chunks(data, header, index):
 
 
 def tier_of(record):
-    """Number, first record and the end of the record's tier, were it full."""
+    """Number, first record and end of the record's tier if it were full."""
     tier, first, end = 0, 0, 64
     while record >= end:
         tier, first, end = tier + 1, end, 5 * end
@@ -280,7 +280,7 @@ def tier_of(record):
 
 
 class ChunkReader:
-    """Section 6.4: the records of one chunk as the chunk says them."""
+    """Section 6.4: the records of one chunk as coded."""
 
     def __init__(self, code, number, header, table):
         self.coder, self.header = RangeDecoder(code, table), header
@@ -380,7 +380,7 @@ class ChunkReader:
 
 
 class Missing(Exception):
-    """A record must be resolved first."""
+    """Dependency that must be resolved first."""
 
 
 def rounded(a, b):
@@ -392,7 +392,7 @@ def toward_zero(a, b):
 
 
 def predicted(points, residual):
-    """Section 6.6: where the vertex is, from the ring and the residual."""
+    """Section 6.6: position of the vertex, from the ring and the residual."""
     count = len(points)
     mean = [rounded(sum(point[axis] for point in points), count) for axis in range(3)]
     edges = [[point[axis] - mean[axis] for axis in range(3)] for point in points]
@@ -417,7 +417,7 @@ def predicted(points, residual):
 
 
 class Resolver:
-    """Section 6.5 to 6.7: records out of what the chunks say of them."""
+    """Section 6.5 to 6.7: decodes records from their coded form."""
 
     def __init__(self, header, positions, faces, coded):
         self.header, self.positions, self.faces, self.coded = header, positions, faces, coded
@@ -451,7 +451,7 @@ class Resolver:
         return v, record.ring[place - 2], record.ring[place - 1]
 
     def place_at(self, own, edge):
-        """The place in the star, fan first, whose face has the edge, and the face's third corner."""
+        """Place in the star, fan first, of the face with the edge, and the face's third corner."""
         star = self.known(own).star
         for place in (*range(2, len(star)), 0, 1):
             face = star[place]
@@ -521,7 +521,7 @@ class Resolver:
         return corners[j], corners[(j + 1) % 3], corners[(j + 2) % 3], face, state
 
     def step(self, own, owner, edge, met):
-        """The face over the edge: its id, its state and its third corner."""
+        """Face over the edge: its id, its state and its third corner."""
         if owner is not None and owner[0] == "base":
             third = third_corner(self.faces[owner[1]][0], edge)
             require(third is not None, f"record {own}: a base face misses the edge")
@@ -543,7 +543,7 @@ class Resolver:
 
 
 def third_corner(corners, edge):
-    """The corner that is not in the edge; None when the face does not have the edge."""
+    """Corner that is not in the edge; None if the face does not have the edge."""
     for i in range(3):
         if (corners[i], corners[(i + 1) % 3]) == edge:
             return corners[(i + 2) % 3]
@@ -554,7 +554,8 @@ def read_model(data, table):
     header, index = read_header(data)
     positions, faces = read_base(data, header)
     boxes, coded = [], []
-    for number, box, code in list(read_chunks(data, header, index)):  # All are sound, then decoded.
+    # All must be sound before they are decoded.
+    for number, box, code in list(read_chunks(data, header, index)):
         coded.extend(ChunkReader(code, number, header, table).records())
         boxes.append(box)
     resolver = Resolver(header, positions, faces, coded)
@@ -565,7 +566,7 @@ def read_model(data, table):
 
 
 def check_states(resolver):
-    """What ties records together besides the walk."""
+    """Relations of records outside the walk."""
     taken = set()
     for own, record in enumerate(resolver.records):
         for face, state in zip(record.star[2:], record.before):
@@ -575,7 +576,7 @@ def check_states(resolver):
 
 
 def check_boxes(resolver, boxes):
-    """Each face of fan and star, inflated, lies in the chunk's influence box."""
+    """Each face of fan and star, inflated, is in the chunk's influence box."""
     for own, record in enumerate(resolver.records):
         low, high = boxes[own // 64]
         shapes = [((record.parent, record.ring[i], record.ring[i + 1]), resolver.error(face, state))
@@ -591,7 +592,7 @@ def check_boxes(resolver, boxes):
 
 
 def replay(model):
-    """Splits every record, least depth first; the corners of all faces, by face id."""
+    """Splits every record, least depth first; returns the corners of all faces by id."""
     corners = {face: list(entry[0]) for face, entry in enumerate(model.faces)}
     state = dict.fromkeys(corners, BASE)
     for own in sorted(range(len(model.records)), key=lambda own: (model.records[own].depth, own)):
@@ -620,7 +621,7 @@ def replay(model):
 
 
 def count_border(corners):
-    """Edges with one face. Refuses a mesh that is not 2-manifold or not evenly oriented."""
+    """Edges with one face. Refuses a mesh that is not 2-manifold or not consistently oriented."""
     edges, round_vertex = set(), {}
     for a, b, c in corners.values():
         require(len({a, b, c}) == 3, "mesh: a face with equal corners")
@@ -641,7 +642,7 @@ def count_border(corners):
 
 
 def check_buckets(model, faces):
-    """The upper bits of all faces' places in one order: 8 faces each, in the last one the rest."""
+    """Upper bits of all faces' places in one order: 8 faces each, the rest in the last one."""
     count = dict.fromkeys(range((len(faces) + 7) // 8), 0)
     for face in faces:
         record, side = divmod(face - model.header.base_faces, 2)

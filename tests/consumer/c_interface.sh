@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# c_interface.sh SPM_BUILD ASK: a program in C asks this build's library about the ring that
-# project/serve.cpp makes.
+# c_interface.sh SPM_BUILD ASK: a program in C asks this build's library about the ring of
+# project/serve.cpp.
 set -euo pipefail
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT

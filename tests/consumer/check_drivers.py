@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # Copyright the Tactus authors.
-"""check_drivers.py DOCS C_COMPILER: the structs for drivers, in Python and in C, are what the tables
-of docs/udp-device.md say, field by field; both seal the same bytes; the module's examples run."""
+"""check_drivers.py DOCS C_COMPILER: the structs for drivers, in Python and in C, equal the tables
+of docs/udp-device.md, field by field; both authenticate the same bytes; the module's examples run.
+"""
 import ctypes
 import doctest
 import os
@@ -34,7 +35,7 @@ def rows_of(text):
 
 
 def fields_of(struct, begin=0):
-    """The same of a struct of ctypes, and its names in C."""
+    """The same for a ctypes struct, with its names in C."""
     for name, kind in struct._fields_:
         at = begin + getattr(struct, name).offset
         if name == "head":
@@ -57,7 +58,7 @@ for name, struct in KINDS.items():
     assert [(at, length) for _, at, length in fields[name]] == rows, \
         f"{name}: {fields[name]} is not {rows}"
 
-# In C, where every name is the same; and what one description comes to.
+# The C program prints every name's place, and the bytes of one description.
 program = '#include "tactus_driver.h"\n#include <stdio.h>\nint main(void) { size_t i;\n'
 for name, listed in fields.items():
     for field, _, _ in listed:

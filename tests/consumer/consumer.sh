@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # consumer.sh quick|all|aarch64 BUILD PROJECT FOLDER COMPILER EXAMPLES: installs the libraries of
-# BUILD into FOLDER, moves them, and lets projects of somebody else's find, link and run them.
+# BUILD into FOLDER, moves them, and lets external projects find, link and run them.
 #
 # quick: with COMPILER and the shared libraries. all: with g++ and clang++, shared and static, with
-# our flags and with -march=native -O3, by CMake and by pkg-config; what is refused; and the
-# component core, built alone. aarch64: that component built for aarch64, where Eigen and libccd are
-# all that is there, and a program of it under an emulator; skips (77) without compiler, emulator or
-# mmdebstrap, which fetches those two.
+# our flags and with -march=native -O3, by CMake and by pkg-config; refusals; and the component
+# core, built alone. aarch64: that component for aarch64 with only Eigen and libccd, and a program
+# of it under an emulator; skips (77) without compiler, emulator or mmdebstrap, which fetches those
+# two.
 set -euo pipefail
 readonly extent=$1 build=$2 project=$3 folder=$4 compiler=$5 examples=$6
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -16,7 +16,7 @@ readonly here source
 readonly domain=${TACTUS_TEST_DOMAIN:-$(($$ % 231))}
 
 fail() { printf 'FAULT: %s\n' "$*"; exit 1; }
-quietly() { # quietly LOG COMMAND...: its output only when it fails.
+quietly() { # quietly LOG COMMAND...: prints the output only on failure.
     local log=$1
     shift
     "$@" >"$log" 2>&1 || { tail -n 40 "$log"; fail "this failed: $*"; }
@@ -36,7 +36,7 @@ cd "$folder"
 for component in libtactus0 libtactus-dev; do
     quietly install.log cmake --install "$build" --prefix "$PWD/first/usr" --component "$component"
 done
-mv first second # Nothing in it may name the place where it was installed.
+mv first second # No file may contain the path of the installation.
 readonly prefix=$PWD/second/usr
 if grep -rIlE "$PWD/first|$build|$source" "$prefix"; then
     fail "these files name folders of this machine"
@@ -56,7 +56,7 @@ configure_in() { # configure_in PROJECT NAME COMPILER OPTION...
 }
 declare digest=''
 printf '%s\n' '0 0 0' '0.03 0 0.001' '1 2 3' >points.txt
-try() { # try NAME COMPILER FLAGS STATIC: builds it; the model and all answers are as before.
+try() { # try NAME COMPILER FLAGS STATIC: builds it; the model and all answers are unchanged.
     quietly "$1.log" configure "$1" "$2" -DTactus_USE_STATIC_LIBS="$4" \
         -DCMAKE_CXX_FLAGS="$3" -DCMAKE_C_FLAGS="$3"
     quietly "$1.log" cmake --build "$1" --parallel 2
@@ -72,7 +72,7 @@ try() { # try NAME COMPILER FLAGS STATIC: builds it; the model and all answers a
     [[ -e distances.txt ]] || cp "$1.txt" distances.txt
     cmp distances.txt "$1.txt" || fail "$1: other distances"
 }
-touches() { # touches PROGRAM: says what the others said, and its recording replays.
+touches() { # touches PROGRAM: prints the same as the others, and its recording replays.
     "$1" ring.spm run.rec >said.txt || fail "$1 ends with $?: $(<said.txt)"
     grep -q '^2000 frames agree bit for bit; ' said.txt || fail "$1 says $(<said.txt)"
     sed -i 1q said.txt
@@ -80,7 +80,7 @@ touches() { # touches PROGRAM: says what the others said, and its recording repl
     digest=$(<said.txt)
     echo "$1: $digest"
 }
-refuses() { # refuses EXPECTED COMMAND...: fails, and says so in this way.
+refuses() { # refuses EXPECTED COMMAND...: fails with this text.
     local expected=$1
     shift
     if "$@" >refused.log 2>&1; then
@@ -90,8 +90,8 @@ refuses() { # refuses EXPECTED COMMAND...: fails, and says so in this way.
         || { cat refused.log; fail "refused without '$expected'"; }
 }
 
-# Each block of code of these pages stands in the project, word for word.
-blocks_are_there() { # blocks_are_there PAGE COUNT: so many blocks at least.
+# Each block of code of these pages occurs in the project verbatim.
+blocks_are_there() { # blocks_are_there PAGE COUNT: expects at least this number of blocks.
     local block blocks=0
     # shellcheck disable=SC2016 # Backquotes as they stand in the page.
     awk -v RS='```' \
@@ -111,7 +111,7 @@ if [[ "$extent" != aarch64 ]]; then
     blocks_are_there devices.md 2
 fi
 
-# core alone sees nothing but Eigen and libccd.
+# The component core alone sees only Eigen and libccd.
 core_alone() { # core_alone NAME OPTION...
     quietly "$1.log" cmake -S "$source" -B "$1" -G Ninja -DTACTUS_ONLY_CORE=ON \
         -DCMAKE_DISABLE_FIND_PACKAGE_CycloneDDS=ON -DCMAKE_DISABLE_FIND_PACKAGE_fmt=ON \
@@ -120,20 +120,20 @@ core_alone() { # core_alone NAME OPTION...
     quietly "$1.log" cmake --install "$1" --prefix "$PWD/$1/usr"
     [[ -n $(find "$1/usr" -name libtactus_core.so) ]] || fail "$1: nothing is installed"
 }
-fade() { # fade NAME PREFIX OPTION...: the program of core alone, built.
+fade() { # fade NAME PREFIX OPTION...: builds the program of core alone.
     quietly "$1.log" cmake -S "$project" -B "$1" -G Ninja -DCMAKE_BUILD_TYPE=Release \
         -DCMAKE_PREFIX_PATH="$2" "${launcher[@]}" "${@:3}"
     quietly "$1.log" cmake --build "$1"
 }
 if [[ "$extent" == aarch64 ]]; then
-    # Debian's packages for that processor, taken apart here; nothing of them is run.
+    # Debian's packages for that processor are unpacked here; none of them is run.
     release=$(. /etc/os-release && echo "$VERSION_CODENAME")
     if ! mmdebstrap --variant=extract --architectures=arm64 \
         --include=libccd-dev,libeigen3-dev "$release" sysroot >sysroot.log 2>&1; then
         echo "skipped: Debian's packages for arm64 can't be had: $(tail -n 1 sysroot.log)"
         exit 77
     fi
-    # The mathematics library, which libccd names by its place, is the compiler's.
+    # libccd names the mathematics library by path; the compiler's is used.
     sed -i "s|/usr/lib/aarch64-linux-gnu/libm.so|m|" \
         sysroot/usr/lib/aarch64-linux-gnu/ccd/ccd-targets-none.cmake
     cat >aarch64.cmake <<TOOLCHAIN
@@ -168,7 +168,7 @@ fi
 readonly warnings='-Wall -Wextra -Wpedantic -Wconversion -Werror'
 if [[ "$extent" == quick ]]; then
     try shared "$compiler" "-O2 $warnings" OFF
-    # Host and controller of somebody else's, over DDS.
+    # External server and controller, over DDS.
     ./shared/serve ring.spm "$domain" >/dev/null &
     serving=$!
     trap 'kill "$serving" 2>/dev/null' EXIT
@@ -176,14 +176,13 @@ if [[ "$extent" == quick ]]; then
     ./shared/ask ring "$domain" >ask.txt || fail "over DDS ask ends with $?"
     ./shared/ask ring.spm | cmp - ask.txt || fail 'over DDS ask says something else'
     kill "$serving"
-    # Two controllers push one cup of somebody else's host, and it gives way to both, by the lines
-    # that the page shows.
+    # Two controllers push one cup of an external server, which yields to both, by the page's lines.
     # shellcheck disable=SC2016 # Backquotes as they stand in the page.
     mapfile -t shown < <(sed -n '/^```console$/,/^```$/{s/ *#.*//;s/^\$ //p}' \
         "$source/docs/library.md")
     [[ "${shown[*]}" == 'serve cup.spm 0 hrtc --model cup hrtc --model cup' ]] \
         || fail "docs/library.md shows other lines: ${shown[*]}"
-    # On a domain of this test's.
+    # The lines use this test's domain.
     # shellcheck disable=SC2317 # By the page's lines.
     serve() { exec ./shared/serve "$1" "$domain" >slide.txt; }
     # shellcheck disable=SC2317 # By the page's lines.
@@ -208,7 +207,7 @@ if [[ "$extent" == quick ]]; then
         grep -qE '^poses  *cup: moved in [0-9]{3,} frames' "$name.log" \
             || fail "$name: the cup did not give way: $(<"$name.log")"
     done
-    # The device of the examples, in the loop of hrtc, up and down over the thick of the ring.
+    # The device of the examples, in the loop of hrtc, moves up and down over the ring's thickness.
     cp shared/examples/libmy_device.so .
     "$build/bin/hrtc" --allow-no-rt ring.spm --device plugin:libmy_device.so,0.03 \
         --device-frame 0.028,0,0 --duration 4 >rail.log 2>&1 \
@@ -221,7 +220,7 @@ if [[ "$extent" == quick ]]; then
         "$build/bin/hrtc" --allow-no-rt ring.spm --device "plugin:$library/libtactus_core.so"
     refuses "nobody.so: can't be loaded" \
         "$build/bin/hrtc" --allow-no-rt ring.spm --device plugin:nobody.so
-    # The page's line for pkg-config, as it stands there.
+    # Line of the page for pkg-config, verbatim.
     mkdir by_hand
     cp "$project/touch.cpp" by_hand
     # shellcheck disable=SC2016 # Backquotes as they stand in the page.
@@ -229,7 +228,7 @@ if [[ "$extent" == quick ]]; then
     [[ -n "$line" ]] || fail 'docs/library.md shows no line for pkg-config'
     (cd by_hand && PKG_CONFIG_PATH=$library/pkgconfig quietly log bash -euc "$line")
     LD_LIBRARY_PATH=$library touches ./by_hand/a.out
-    # The lines of docs/install.md for a prefix, with this build folder and this prefix.
+    # Lines of docs/install.md for a prefix, with this build folder and this prefix.
     grep -E '^    cmake --install |`cmake --install ' "$source/docs/install.md" \
         | grep -oE 'cmake --install build/release( --[a-z]+ [a-z/-]+)*' \
         | sed "s| build/release| '$build'|;s| /opt/tactus| '$PWD/opt'|" >shown.sh
@@ -257,14 +256,14 @@ for each in "${compilers[@]}"; do
         try "$each-static-$static-native" "$each" "-O3 -march=native" "$static"
     done
 done
-# All public headers; that each compiles by itself is shown in the checkout.
+# All public headers; the checkout tests that each compiles by itself.
 export PKG_CONFIG_PATH=$library/pkgconfig
 read -ra flags < <(pkg-config --cflags tactus-host tactus-platform)
 find "$prefix/include/tactus" -name '*.hpp' -not -path '*/detail/*' | sort -r \
     | sed "s|^$prefix/include/\\(.*\\)|#include <\\1>|" >headers.cpp
 quietly headers.log "$compiler" -std=c++20 -fsyntax-only "${flags[@]}" headers.cpp
 echo "$(wc -l <headers.cpp) public headers"
-# By pkg-config; statically where the shared libraries are not there.
+# Built by pkg-config; statically if there are no shared libraries.
 by_pkg_config() { # by_pkg_config NAME OPTION...
     local libraries
     read -ra libraries < <(pkg-config "${@:2}" --libs tactus-transport tactus-platform)
@@ -275,7 +274,7 @@ by_pkg_config() { # by_pkg_config NAME OPTION...
 by_pkg_config pc-shared
 rm "$library"/libtactus_*.so*
 by_pkg_config pc-static --static
-# A component that was left out, and another version.
+# Missing component, and another version.
 rm "$library"/cmake/Tactus/Tactus-host-*.cmake
 refuses "the component 'host' is not installed; there are: core, transport, platform, c" \
     configure without_host "$compiler"

@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # replay_all.sh REPLAYER RECORDINGS ALTER ALTERED [EMULATOR]: replays all recordings with the best
-# and, beside that, with the portable kernels. One that ALTER changed in one frame, written to the
-# file ALTERED, must be told by that frame.
+# and, in parallel, with the portable kernels. A recording that ALTER changed in one frame, written
+# to the file ALTERED, must be reported with that frame.
 set -euo pipefail
 readonly replayer=$1 recordings=$2 alter=$3 altered=$4 emulator=${5:-}
 
 replay() { ${emulator:+"$emulator"} "$replayer" "$@"; }
 replay best "$recordings"/*.rec &
 best=$!
-if [[ -z "$emulator" ]]; then # Emulated is another processor, whose best kernels these are.
+if [[ -z "$emulator" ]]; then # An emulated processor is another one, whose best kernels these are.
     replay portable "$recordings"/*.rec
 fi
 wait "$best"

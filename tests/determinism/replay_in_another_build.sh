@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # replay_in_another_build.sh SOURCE BUILD RECORDINGS ALTER COMPILER LEVEL [EMULATOR PROCESSOR]:
-# builds the replay program with a compiler and level, for another processor if one is named (there
-# with the options of tests/portable), and lets it replay all recordings (replay_all.sh). Skips (77)
-# without the compiler or emulator.
+# builds the replay program with a compiler and level, for another processor if one is named (with
+# the options of tests/portable), and replays all recordings (replay_all.sh). Skips (77) without the
+# compiler or emulator.
 set -euo pipefail
 readonly source=$1 build=$2 recordings=$3 alter=$4 compiler=$5 level=$6
 readonly emulator=${7:-} processor=${8:-}
@@ -14,7 +14,7 @@ for tool in "$compiler" ${emulator:+"$emulator"}; do
         exit 77
     }
 done
-if [[ -n "$processor" ]]; then # The build of portable.aarch64, with what that has compiled.
+if [[ -n "$processor" ]]; then # The build of portable.aarch64, with its compiled objects.
     bash "$source/tests/portable/configure_for_another_processor.sh" \
         "$source" "$build" "$processor"
     export QEMU_LD_PREFIX=/usr/$processor-linux-gnu

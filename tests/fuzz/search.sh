@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# search.sh BUILD NAME FOLDER SECONDS: lets libFuzzer search with target NAME from its seeds in
-# FOLDER/corpus. What it learns goes to BUILD/learnt/NAME and is where the next run begins; an input
-# that breaks something goes to BUILD/found. Skips (77) when the target was not built.
+# search.sh BUILD NAME FOLDER SECONDS: runs libFuzzer with target NAME from its seeds in
+# FOLDER/corpus. New inputs are stored in BUILD/learnt/NAME, where the next run begins; an input
+# that breaks something is stored in BUILD/found. Skips (77) if the target was not built.
 set -euo pipefail
 readonly build=$1 name=$2 folder=$3 seconds=$4
 readonly target=$build/tests/fuzz_$name

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# at_the_door.sh BIN CHECK_REPORT SANITIZER ATTACK: strangers at the port of a udp device, and a
-# mesh that is made to keep spm_build busy.
+# at_the_door.sh BIN CHECK_REPORT SANITIZER ATTACK: unauthenticated peers at the port of a udp
+# device, and a mesh made to keep spm_build busy.
 docs=$(cd "$(dirname "$0")/../../docs" && pwd)
 flood=$(cd "$(dirname "$0")" && pwd)/datagrams.py
 readonly docs flood
@@ -9,13 +9,13 @@ source "$(dirname "$0")/../integration/hrtc/common.sh"
 readonly attack=$4
 readonly port=$((20000 + $$ % 20000))
 
-drive() { # drive [DRIVER]: a driver of its own; its id is in $driving.
+drive() { # drive [DRIVER]: starts a driver; its id is in $driving.
     PYTHONPATH=$docs/examples python3 "${1:-$docs/examples/udp_driver.py}" "$port" 0.02 \
         >driver.log 2>&1 &
     driving=$!
     started+=("$driving")
 }
-# What it names; no force from it above the device's, no own fault.
+# The refusal is named; no force exceeds the device's, and there is no overrun.
 end_well() { # end_well REFUSAL
     stop_hrtc
     check report.json frames '>' 300 force.max_n '<=' 8 "tools.0.traffic.refused.$1" '>=' 3
@@ -35,8 +35,8 @@ touch_by_udp() {
 
 case $attack in
     udp_impostor)
-        # It describes itself ten times a second, and waits for the driver to stumble: for longer
-        # than hrtc takes to miss it.
+        # It describes itself ten times a second, and waits for the driver to be silent longer than
+        # hrtc's limit.
         touch_by_udp
         true_one=$driving
         drive
@@ -46,13 +46,13 @@ case $attack in
         kill -CONT "$true_one"
         wait_for_more "$driving" 500
         end_well foreign
-        # The true one's instance alone, however often it stumbled: no force for the other.
+        # Only the true instance, despite its pauses: no force for the other.
         check report.json tools.0.traffic.samples '>' 100
         ;;
     udp_first_liar)
-        # First and better: a driver that says to make 1,000 N. While the true one describes itself,
-        # too, none is taken; when the liar is gone the true one is, with its own limits. Later a
-        # liar that comes in its place ends the run.
+        # First and stronger: a driver that claims 1,000 N. While the true one also describes
+        # itself, none is accepted; when the false one is gone the true one is, with its own limits.
+        # A later false one in its place ends the run.
         model bumpy-sphere-20000 bumpy.spm
         sed 's/force_max_n=8,/force_max_n=1000,/' "$docs/examples/udp_driver.py" >liar.py
         cmp -s liar.py "$docs/examples/udp_driver.py" && fail 'the driver tells its force otherwise'
@@ -85,7 +85,7 @@ case $attack in
         check report.json tools.0.traffic.samples '>' 100
         ;;
     edge_faces)
-        # 8,000 faces round one edge: as many pieces at one place, which vanish into one another.
+        # 8,000 faces around one edge: as many pieces at one place, which vanish into each other.
         awk 'BEGIN {
             print "v 0 0 0\nv 0 0 1"
             for (i = 0; i < 8000; ++i) {
@@ -94,7 +94,7 @@ case $attack in
                 printf "f 1 2 %d\n", i + 3
             }
         }' >fan.obj
-        # Half of them in each round. Ten minutes of a processor are for what hangs.
+        # Half of them in each round. Ten minutes of CPU time detect a hang.
         code=0
         (ulimit -t 600 && "$build" fan.obj --unit m -o fan.spm) >build.log 2>&1 || code=$?
         ((code == 0)) || fail "spm_build ended with $code: $(cat build.log)"

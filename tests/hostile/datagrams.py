@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Copyright the Tactus authors.
-"""datagrams.py PORT SECONDS: floods the port of a udp device, 20,000 times at least and for so long:
-empty datagrams, garbage of the right size and magic, large ones. Says how many it sent."""
+"""datagrams.py PORT SECONDS: floods the port of a udp device with at least 20,000 datagrams for at
+least SECONDS: empty ones, garbage of the right size and magic, large ones. Prints their number."""
 import random
 import socket
 import sys
@@ -18,7 +18,7 @@ print("begun", flush=True)
 while sent < 20_000 or time.monotonic() < end:
     try:
         out.sendto(kinds[sent % len(kinds)], ("127.0.0.1", int(sys.argv[1])))
-    except OSError:  # Its buffer is full.
+    except OSError:  # The buffer is full.
         pass
     sent += 1
 print(f"done {sent} times in {time.monotonic() - start:.2f} s")

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# dds_security.sh BIN CHECK_REPORT SANITIZER ATTACKER KEYS: the recipe of docs/security.md, made by
-# KEYS. Host and controller with certificates work as without; a program without one sees nobody,
-# and one with a controller's can't speak as a host. A host is known by its certificate.
+# dds_security.sh BIN CHECK_REPORT SANITIZER ATTACKER KEYS: the recipe of docs/security.md, executed
+# by KEYS. Server and controller with certificates work as without; a program without one discovers
+# no participant, and one with a controller's cannot act as a server. A server is identified by its
+# certificate.
 source "$(dirname "$0")/../integration/hrtc/common.sh"
 readonly attacker=$4 keys=$5
 if [[ -z "$(find /usr/lib -name libdds_security_auth.so -print -quit)" ]]; then
@@ -33,7 +34,7 @@ ATTACKER_PATIENCE_S=5 CYCLONEDDS_URI=$plain "$attacker" "$domain" 1 catalogue_fo
 { [[ $code == 2 ]] && grep -q 'saw no host and controller' outsider.log; } \
     || fault "an outsider ended with $code: $(cat outsider.log)"
 
-# A controller's certificate reads what controllers do and writes no more than they do.
+# A controller's certificate permits reading and writing a controller's topics only.
 for attack in catalogue_forged pose_swing; do
     code=0
     CYCLONEDDS_URI=file://$PWD/roles/controller.xml "$attacker" "$domain" 1 "$attack" \
@@ -50,7 +51,7 @@ check_contact report.json force.contact_share 0.3
 check_clean report.json
 stop_publisher
 
-# A host that is started again has the same certificate: it is the same one, without --failover.
+# A restarted server has the same certificate and counts as the same one, without --failover.
 secured_publisher() {
     CYCLONEDDS_URI=file://$PWD/roles/host.xml start_publisher bumpy.gltf --scene toy --watch
 }

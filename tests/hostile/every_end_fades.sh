@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # every_end_fades.sh BIN CHECK_REPORT SANITIZER DEVICE RECORDING_DEVICE BARE_DEVICE STAND_IN_DHD:
-# what the motors of a device do last when hrtc ends: by a signal, because nobody reads what it
-# says, because its recording is too large; and when it is killed or crashes. The motors are a file
-# that outlives hrtc. DEVICE: udp, plugin or dhd.
+# last commands of a device's motors when hrtc ends by a signal, a closed output or an oversized
+# recording, or when it is killed or crashes. The motors are a file that outlives hrtc. DEVICE: udp,
+# plugin or dhd.
 here=$(cd "$(dirname "$0")" && pwd)
 readonly here
 source "$here/../integration/hrtc/common.sh"
@@ -14,7 +14,7 @@ model bumpy-sphere-20000 bumpy.spm
 options=(--transport file --model bumpy.spm --device-frame "0,0,0.06" --duration 600)
 case $device in
     udp)
-        # The driver of the documents, which keeps what its motors do.
+        # Driver of the documents, with a log of its motors.
         python3 - "$here/../../docs/examples/udp_driver.py" >driver.py <<'EDIT'
 import sys
 text = open(sys.argv[1], encoding="utf-8").read()
@@ -45,7 +45,7 @@ EDIT
         ;;
 esac
 
-# Fresh motors; for udp with a driver of their own.
+# Starts new motors; for udp with their own driver.
 fresh_motors() {
     rm -f motors.log
     [[ "$device" == udp ]] || return 0
@@ -53,7 +53,7 @@ fresh_motors() {
     driving=$!
     started+=("$driving")
 }
-# judge SIGNAL HOW: of $controller; 1 when it is not so, with the reason in judged.txt.
+# judge SIGNAL HOW: checks $controller; returns 1 on a fault, with the reason in judged.txt.
 judge() {
     local code=0
     python3 "$here/last_force.py" motors.log "$controller" "$1" "$2" >judged.txt 2>&1 || code=1
@@ -62,8 +62,8 @@ judge() {
     return "$code"
 }
 has_forces() { [[ -f motors.log ]] && has_lines force motors.log "$1"; }
-# ends SIGNAL HOW CODE [START...]: of what START starts, or of hrtc. A machine that stops hrtc
-# meanwhile gets two more tries.
+# ends SIGNAL HOW CODE [START...]: ends the program that START starts, or hrtc. A machine that stops
+# hrtc meanwhile gets two more tries.
 ends() {
     local try code
     for try in 1 2 3; do
@@ -91,10 +91,10 @@ case $device in
         for signal in INT USR1 XCPU; do
             ends "$signal" fades 0
         done
-        # The driver's own watchdog: there is no other.
+        # The driver's own watchdog is the only one.
         ends KILL watchdog 137
 
-        # Who reads the words is gone after the first line; the next comes after two seconds.
+        # The reader of the output ends after the first line; the next is written after two seconds.
         start_unread() {
             "$hrtc" --allow-no-rt --domain "$domain" "${options[@]}" --report report.json \
                 > >(head -n 1 >first.log) 2>&1 &
@@ -105,7 +105,7 @@ case $device in
         ends TERM fades 0 start_unread
         check report.json frames '>' 3000 # A thousand after the output was closed.
 
-        # Nor do the other programs end so.
+        # The other programs do not end this way either.
         code=0
         "$publish" --domain "$domain" --watch --seconds 3 bumpy.spm > >(head -n 1 >host.log) 2>&1 \
             || code=$?
@@ -115,7 +115,7 @@ case $device in
         "$1/spm_view" --domain "$domain" --port 0 --seconds 3 > >(exec true) 2>&1 || code=$?
         ((code == 0)) || fault "without a reader spm_view ended with $code"
 
-        # A recording that grows beyond what is allowed: a line, and the force goes on.
+        # A recording that exceeds its limit: one line, and the force continues.
         start_small() {
             (
                 ulimit -f 64
@@ -124,7 +124,7 @@ case $device in
             ) &
             controller=$!
             started+=("$controller")
-            wait_until "some four seconds of forces" has_forces 4000 # 64 KiB last for one.
+            wait_until "some four seconds of forces" has_forces 4000 # 64 KiB suffice for one.
         }
         ends TERM fades 2 start_small
         has_lines "hrtc: --record: run.rec: can't be written: File too large" hrtc.log 1 \
@@ -143,7 +143,7 @@ case $device in
             || fault "nothing tells that there is no guard: $(cat bare.log)"
         ;;
     dhd)
-        # Another program can have the device when the system has closed it for the dead one.
+        # Another program can open the device after the system has closed it for the dead one.
         ends KILL opened 137
         ends SEGV opened 139
         ;;

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# floods.sh BIN CHECK_REPORT SANITIZER ATTACKER: what a host and a controller in contact spend on
-# floods of each kind, as fast as one process sends them: the table of docs/security.md. Whatever it
-# is, no force above the device's, no own fault, bounded memory, and both end well. Figures mean
-# little on a machine that does other things. Python measures the threads.
+# floods.sh BIN CHECK_REPORT SANITIZER ATTACKER: cost of floods of each kind, as fast as one process
+# sends them, for a server and a controller in contact: the table of docs/security.md. For each kind
+# no force exceeds the device's, there is no overrun, memory is bounded, and both end well. Figures
+# have little meaning on a busy machine. Python measures the threads.
 flood=$(cd "$(dirname "$0")" && pwd)/datagrams.py
 readonly flood
 source "$(dirname "$0")/../integration/hrtc/common.sh"
@@ -14,8 +14,8 @@ multicast="false"/></Interfaces><AllowMulticast>false</AllowMulticast></General>
 <LeaseDuration>1 s</LeaseDuration><Peers><Peer address="127.0.0.1"/></Peers></Discovery></Domain>
 </CycloneDDS>'
 
-# Processor time of each thread of host and controller over the flood, as a share of one processor,
-# and datagrams that the system delivered and dropped in this network namespace.
+# Processor time of each thread of server and controller during the flood, as a share of one
+# processor, and datagrams that the system delivered and dropped in this network namespace.
 cat >meter.py <<'PYTHON'
 import json
 import os
@@ -59,7 +59,7 @@ for who, pid in pids.items():
 json.dump(found, open(sys.argv[1], "w"))
 PYTHON
 
-udp_ports() { # udp_ports ID: the process has sockets there.
+udp_ports() { # udp_ports ID: prints the UDP ports of the process.
     local link inode
     for link in "/proc/$1/fd/"*; do
         inode=$(readlink "$link" || true)
@@ -70,7 +70,7 @@ udp_ports() { # udp_ports ID: the process has sockets there.
 }
 memory_kib() { awk '$1 == "VmHWM:" { print $2 }' "/proc/$1/status"; }
 
-row() { # row KIND: of report.json and meter.json.
+row() { # row KIND: prints a row from report.json and meter.json.
     python3 - "$1" <<'PYTHON'
 import json
 import re
@@ -106,7 +106,7 @@ end_well() { # end_well KIND
     row "$1"
 }
 
-by_dds() { # by_dds KIND: the attacker's, as often as it can; none for nobody.
+by_dds() { # by_dds KIND: the attacker's flood at its greatest rate; none: no attacker.
     local ports=() attacking=''
     start_publisher bumpy.spm --watch
     start_hrtc --model bumpy --no-static --name victim --device sim:touch \
@@ -130,7 +130,7 @@ by_dds() { # by_dds KIND: the attacker's, as often as it can; none for nobody.
     stop_publisher
 }
 
-by_udp() { # by_udp KIND SECONDS: of a udp device, whose port is flooded for so long.
+by_udp() { # by_udp KIND SECONDS: floods the port of a udp device.
     local port=$((20000 + $$ % 20000)) attacking=''
     python3 "$(dirname "$flood")/../../docs/examples/udp_driver.py" "$port" 0.02 >driver.log 2>&1 &
     local driving=$!

@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 # shellcheck shell=bash disable=SC2154 # It is sourced after common.sh.
-# A recording's force, period by period; sourced after common.sh.
+# Force of a recording, period by period; sourced after common.sh.
 
-# export_force NAME: of NAME.rec; into NAME.csv.
+# export_force NAME: exports NAME.rec to NAME.csv.
 export_force() {
     "$hrtc" --replay "$1.rec" --export "$1.csv" >replay.log 2>&1 \
         || fail "the recording of $1 doesn't replay: $(cat replay.log)"
 }
 
-# force_figures FILE [WALL SLEW]: the largest growth of the force a period, its largest fall a
-# period in touch, both in N, the share of the frames in contact, and the most by which a growth was
-# beyond what the law on change (docs/safety.md) allows: WALL in N/m times the way of the hand and
-# 0.5 mm a period of the object, and SLEW in N.
+# force_figures FILE [WALL SLEW]: prints the greatest growth of the force in a period, its greatest
+# decrease in a period in touch, both in N, the share of the frames in contact, and the greatest
+# excess of a growth over the law on change (docs/safety.md): WALL in N/m times the motion of the
+# hand and 0.5 mm a period of the object, and SLEW in N.
 force_figures() {
     awk -F, -v wall="${2:-0}" -v slew="${3:-0}" '
         NR == 1 {

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# host_lies.sh BIN CHECK_REPORT SANITIZER ATTACK: a host that is honest until the tool touches what
-# it serves; what is felt then.
+# host_lies.sh BIN CHECK_REPORT SANITIZER ATTACK: a server behaves correctly until the tool touches
+# its model; checks the force afterwards.
 source "$(dirname "$0")/../integration/hrtc/common.sh"
 readonly attack=$4
 model bumpy-sphere-20000 bumpy.spm
@@ -13,14 +13,14 @@ touch_it() { # touch_it ARGUMENT...
     wait_for_contact publish.log victim
 }
 poses=()
-end_well() { # end_well FRAMES: after so many more.
+end_well() { # end_well FRAMES: ends after this number of further frames.
     wait_for_more_frames "$1" publish.log victim
     stop_hrtc
     cat publish.log
     check_clean report.json
     stop_publisher
 }
-check_starved() { # Of what the host can't send. It is told, and the force fades.
+check_starved() { # For data that the server cannot send: reported, and the force fades.
     check report.json safety.begun.starved '>=' 1 models.0.pieces_overdue '>=' 1 \
         force.max_n '<' 3.3
     grep -Eq '^verdict .*starved [0-9]' hrtc.log || fault 'the verdict does not say starved'
@@ -29,7 +29,8 @@ check_starved() { # Of what the host can't send. It is told, and the force fades
 
 case $attack in
     host_swings)
-        # 4 mm to and fro, 250 times a second, for two of three seconds: 2 N a step at 500 N/m.
+        # Motion by 4 mm to and fro, 250 times a second, for two of three seconds: 2 N a step at 500
+        # N/m.
         awk 'BEGIN {
             print "0 bumpy 0 0 0 0 0 0 1"
             for (i = 250; i <= 750; ++i)
@@ -39,8 +40,9 @@ case $attack in
         touch_it --motion slide
         end_well 2500
         check report.json models.0.pose.outran_frames '>' 100 wire.host_lost == 0
-        # Steps of the force are held by test_hrtc MovedObject, on a touch that lasts: here the hand
-        # lets go at times, and what it then meets moves freely, 1 mm a frame, guard or not.
+        # Steps of the force are checked by test_hrtc MovedObject, on a lasting touch: here the hand
+        # sometimes releases, and the object it meets then moves freely, 1 mm a frame, with or
+        # without the guard.
         ;;
     file_cut)
         touch_it
@@ -50,8 +52,8 @@ case $attack in
         check_starved
         ;;
     second_host)
-        # Another host has the same model, so it steps in when the first one goes, and then sends
-        # nothing of it.
+        # Another server has the same model, so it takes over when the first one ends, and then
+        # sends nothing of it.
         touch_it
         first=$publisher
         mv publish.log first.log

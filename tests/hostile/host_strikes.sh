@@ -1,23 +1,24 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# host_strikes.sh BIN CHECK_REPORT SANITIZER LYING_HOST ATTACK: the host of a scene is honest
-# until a tool is near what it shows. The force is looked at period by period, in recordings, on a
-# device of the omega class and one of the touch class, beside that of an honest host.
+# host_strikes.sh BIN CHECK_REPORT SANITIZER LYING_HOST ATTACK: the server of a scene behaves
+# correctly until a tool is near its object. The force is checked period by period, in recordings,
+# on a device of the omega class and one of the touch class, compared with that of a correct server.
 source "$(dirname "$0")/../integration/hrtc/common.sh"
 source "$(dirname "$0")/force_figures.sh"
 readonly lying_host=$4 attack=${5#host_}
 readonly tool_m=0.002
 declare -A growth fall share excess
-# In N: what a force may grow by in a period. A hand that is dragged goes by 0.33 mm itself, and the
-# law on change counts that.
+# Greatest growth of a force in a period, in N. A dragged hand moves by 0.33 mm itself, and the law
+# on change counts that.
 declare -A growth_max_n=([omega]=0.5 [touch]=0.25)
 [[ "$attack" != drag ]] || growth_max_n=([omega]=0.55 [touch]=0.37)
 readonly growth_max_n
-# Of force_figures: the wall is the device's or 500 N/m, the slew a hundredth of the device's force.
+# Arguments of force_figures: the wall is the device's or 500 N/m, the slew a hundredth of the
+# device's force.
 readonly -A wall_n_per_m=([omega]=500 [touch]=400) slew_n=([omega]=0.12 [touch]=0.033)
 
-# run_against NAME DEVICE ATTACK [NUMBER]: a run of some seconds with that host. Its force is in
-# NAME.csv, what came of it in growth[NAME], fall[NAME], share[NAME] and excess[NAME].
+# run_against NAME DEVICE ATTACK [NUMBER]: a run of some seconds with that server. Its force is in
+# NAME.csv, its figures in growth[NAME], fall[NAME], share[NAME] and excess[NAME].
 run_against() {
     local name=$1 device=$2
     "$lying_host" "$domain" bumpy.spm "$tool_m" "${@:3}" >"$name-host.log" 2>&1 &
@@ -54,10 +55,10 @@ for device in omega touch; do
         at_most "what is beyond the law on change, $name," "${excess[$name]}" 0.0001
         [[ "$attack" != materials ]] || was_held_up "$name.json" \
             || at_most "the largest fall a period, $name," "${fall[$name]}" 0.5
-        # What outruns its limit is told.
+        # Motion above the limit is reported.
         [[ "$variant" != 'strike 0.025' ]] || was_held_up "$name.json" \
             || check "$name.json" safety.begun.jump '>=' 1
-        # A loop that is held up meets more of an object's way in a frame than a period's.
+        # A stalled loop sees more of an object's motion in a frame than in a period.
         was_held_up "$name.json" \
             || at_most "the largest growth a period, $name," "${growth[$name]}" \
                 "${growth_max_n[$device]}"

@@ -1,18 +1,18 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# hostile.sh BIN CHECK_REPORT SANITIZER ATTACKER ATTACK: a stranger on the domain attacks a host and
-# a controller in contact; both go on as if it were not there, and name it. What it floods has room
-# for another controller, which comes meanwhile.
+# hostile.sh BIN CHECK_REPORT SANITIZER ATTACKER ATTACK: an unauthenticated peer on the domain
+# attacks a server and a controller in contact; both continue unaffected, and name it. A flooded
+# server still has capacity for another controller, which joins meanwhile.
 source "$(dirname "$0")/../integration/hrtc/common.sh"
 readonly attacker=$4 attack=$5
-# It is found by everybody and finds hosts.
+# The attacker is discovered by all and discovers servers.
 readonly attacker_uri='<CycloneDDS><Domain id="any"><General><Interfaces><NetworkInterface name="lo"
 multicast="false"/></Interfaces><AllowMulticast>false</AllowMulticast></General><Discovery>
 <ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>9</MaxAutoParticipantIndex>
 <LeaseDuration>1 s</LeaseDuration><Peers><Peer address="127.0.0.1"/></Peers></Discovery></Domain>
 </CycloneDDS>'
 
-# udp_ports ID: the process has sockets there.
+# udp_ports ID: prints the UDP ports of the process.
 udp_ports() {
     local link inode
     for link in "/proc/$1/fd/"*; do
@@ -30,7 +30,7 @@ only_printable() { # only_printable FILE
 }
 memory_kib() { awk '$1 == "VmHWM:" { print $2 }' "/proc/$1/status"; }
 
-# Large enough for pieces to come all the time; it moves, so the force follows its poses.
+# Large enough that pieces arrive constantly; it moves, so the force follows its poses.
 model bumpy-sphere-20000 bumpy.spm
 awk 'BEGIN {
     for (i = 0; i <= 200; ++i)
@@ -58,9 +58,9 @@ code=0
 wait "$attacking" || code=$?
 ((code == 0)) || fail "the attacker ended badly: $(cat attacker.log)"
 least=10
-[[ "$attack" != *_deaf ]] || least=2 # One packet each time is enough.
+[[ "$attack" != *_deaf ]] || least=2 # One packet each time suffices.
 crowd='[0-9]{4,} participants are on this domain'
-forge_more() { # Of a flood the kernel drops what it has no room for.
+forge_more() { # The kernel drops the part of a flood that exceeds its buffers.
     grep -Eqs "$crowd" publish.log && return
     CYCLONEDDS_URI=$attacker_uri "$attacker" "$domain" 0 "$attack" "${ports[@]}" \
         >attacker.log 2>&1 || fail "the attacker ended badly: $(cat attacker.log)"
@@ -71,8 +71,8 @@ turns=$(sed -n 's/^done \([0-9]*\) times.*/\1/p' attacker.log)
 ((turns >= least)) || fault "the attacker: $(cat attacker.log)"
 [[ "$attack" == rtps_* ]] || wait_for_more_frames 0 publish.log victim
 stop_hrtc
-# A host takes its time while it is flooded. What comes and goes all the time uses up the lines of
-# that second, so that of the victim's end may be left out.
+# A flooded server is slow. Events that alternate constantly use up the lines of that second, so
+# that of the victim's end may be left out.
 goes=1
 [[ "$attack" != log_flooded && "$attack" != controllers_flooded ]] || goes=0
 ((goes == 0)) || wait_for_line publish.log 'controller victim left'
@@ -86,18 +86,18 @@ most_kib=60000
 [[ -n "$sanitizer" ]] || ((taken_kib < most_kib)) || fault "the host took $taken_kib KiB"
 check_sizes hrtc.log publish.log
 
-# The identity of somebody else can be forged on the wire: then what was said in it may end a
-# service, and the force fades.
+# A foreign identity can be forged on the wire: its earlier messages may then end a service, and the
+# force fades.
 if [[ "$attack" == rtps_* ]]; then
     check report.json frames '>' 500 force.max_n '>' 0 force.max_n '<=' 3.3
     case $attack in
         rtps_motion_deaf)
-            # Until the host tells what moves by another writer.
+            # Until the server reports the motion through another writer.
             grep -q 'controller victim hears no motion: another writer' publish.log \
                 || fault 'the host made no other writer'
             grep -Eq 'motion of host .* was lost for [0-9]+ ms though it was there' hrtc.log \
                 || fault 'hrtc tells nothing'
-            # What the other writer tells of the object is taken.
+            # Motion from the other writer is accepted.
             check report.json scene.motion_regained '>=' 2 models.0.pose.refused.not_newer '<=' 20
             ;;
         rtps_pieces_deaf)
@@ -114,14 +114,14 @@ if [[ "$attack" == rtps_* ]]; then
     exit 0
 fi
 
-# Nobody went, nothing was dropped, no pose but the host's was taken.
+# No participant left, nothing was dropped, only the server's poses were accepted.
 check report.json frames '>' 500 models.0.pose.followed == 1 models.0.pose.accepted '>' 50 \
     models.0.pose.step_max_m '<' 0.002 models.0.pose.refused.not_newer '<=' 3 \
     models.0.pieces_refused == 0 safety.begun.jump == 0 \
     scene.objects == 1 force.max_n '>' 0 force.max_n '<=' 3.3
-# What is felt is what is felt without it: 1.13 N at most, in steps of 0.09 N. Where the machine
-# kept loop or host waiting the force fades, and the hand sinks in meanwhile; it may hold the host
-# up for longer than its lease.
+# The force is that without the attack: 1.13 N at most, in steps of 0.09 N. If the machine stalled
+# the loop or the server, the force fades, and the hand sinks in meanwhile; it may stall the server
+# longer than its lease.
 if ! was_held_up report.json && "$check_report" report.json safety.begun.stale == 0 >/dev/null; then
     check report.json force.max_n '<' 1.4 force.max_step_n '<' 0.2 wire.host_lost == 0 \
         safety.begun.host == 0
@@ -132,15 +132,15 @@ left=$(grep -c 'controller victim left' publish.log) || true
 ((left >= goes && left <= 1)) || fault 'it was dropped'
 grep -q '^served victim: [0-9]* pieces/s' publish.log || fault '--watch tells no rates'
 
-# Who meets a lie counts it and names who told it.
+# A receiver of false data counts it and names its sender.
 case $attack in
-    wanted_flooded_epochs) ;; # To hosts that aren't there: nobody's business.
-    log_flooded) # It may come and go; the log says so 40 times a second at most.
+    wanted_flooded_epochs) ;; # For absent servers: ignored by all.
+    log_flooded) # It may be added and removed; the log reports that 40 times a second at most.
         grep -q 'controller stranger subscribed' publish.log || fault 'no stranger came'
         said=$(grep -c 'controller stranger' publish.log)
         ((said <= 40 * (SECONDS + 1))) || fault "$said lines of a stranger's visits"
         ;;
-    controllers_flooded) # More than a host takes in of one process.
+    controllers_flooded) # More than a server accepts of one process.
         grep -q 'refused of attacker .*: more pieces asked for in a second' publish.log \
             || fault 'the host tells of no rate'
         ;;&
@@ -157,8 +157,8 @@ case $attack in
         ! grep -q '77777777' publish.log || fault 'forged telemetry is shown'
         ;;
     *)
-        # What is disposed of already can't be again until its host speaks. Of a flood each is
-        # refused where it comes in, and not at its end; of its own names those beyond the limit.
+        # A disposed instance cannot be disposed again until its server writes. Each of a flood is
+        # refused on arrival, not at its end; of its own names those beyond the limit.
         least=10
         [[ $attack != *_disposed ]] || least=1
         [[ $attack != *_flooded ]] || least=$((turns / 2))

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 # Copyright the Tactus authors.
-"""last_force.py LOG PROCESS SIGNAL HOW: what a device's motors do when the program that drives them
-ends. LOG has a line a change: monotonic time in ns, force in N, and who gave it. Waits until there
-is a force of 0.3 N, sends the signal, waits for the end of the process and for a last
-line without a force. HOW: `fades` when the force has to fall in steps, or who has to give the
-last line. Ends with 1 and a line when that isn't so."""
+"""last_force.py LOG PROCESS SIGNAL HOW: commands of a device's motors when the program that drives
+them ends. LOG has one line a change: monotonic time in ns, force in N, and its source. Waits for a
+force of 0.3 N, sends the signal, waits for the end of the process and for a last line without a
+force. HOW: `fades` if the force must fall in steps, or the required source of the last line. Exits
+with 1 and a line otherwise."""
 import os
 import signal
 import sys
@@ -29,7 +29,7 @@ def lines():
 
 
 def newest():
-    """The last whole line alone: the log grows by a line a millisecond."""
+    """Only the last whole line: the log grows by a line a millisecond."""
     with open(log, "rb") as file:
         file.seek(max(0, os.path.getsize(log) - 400))
         whole = file.read().split(b"\n")[1:-1]

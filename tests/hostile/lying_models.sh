@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# lying_models.sh BIN CHECK_REPORT SANITIZER LIAR: models that say of themselves what isn't so,
-# signed as they should be. spm_inspect names the claim, or nobody opens it; what is touched all the
-# same is held back, and no force steps.
+# lying_models.sh BIN CHECK_REPORT SANITIZER LIAR: models with false content and valid hashes.
+# spm_inspect names the claim, or no program opens it; a touch of it is data-limited, and no force
+# has a step.
 source "$(dirname "$0")/../integration/hrtc/common.sh"
 readonly liar=$4
 model bumpy-sphere-20000 true.spm
 "$inspect" true.spm >true.txt || fault "spm_inspect: the true one ended with $?"
 
 lie() { "$liar" true.spm "$1.spm" "$1" || fail "liar $1 ended with $?"; }
-false_claim() { # false_claim LIE PATTERN: code 1 and one line, behind those of progress.
+false_claim() { # false_claim LIE PATTERN: expects code 1 and one line, after those of progress.
     local code=0
     lie "$1"
     "$inspect" "$1.spm" >said.txt 2>&1 || code=$?

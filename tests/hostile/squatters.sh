@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# squatters.sh BIN CHECK_REPORT SANITIZER SQUATTER LYING_HOST ATTACK: servers that aren't meant, of
-# the name that is. Whose word counts stays with the first; what a hash proves comes from any.
-# The force is looked at period by period, beside that of a run without them.
+# squatters.sh BIN CHECK_REPORT SANITIZER SQUATTER LYING_HOST ATTACK: unintended servers with the
+# intended name. The authority stays with the first; hashed pieces are taken from any. The force is
+# checked period by period, compared with a run without them.
 source "$(dirname "$0")/../integration/hrtc/common.sh"
 source "$(dirname "$0")/force_figures.sh"
 readonly squatter=$4 lying_host=$5 attack=$6
@@ -12,19 +12,19 @@ cat >toy.gltf <<'GLTF'
 {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [
     {"name": "toy", "extras": {"tactus": {"model": "bumpy.spm"}}}]}
 GLTF
-# A machine's name as DDS tells it.
+# Name of a machine in DDS.
 machine=$(hostname)
 readonly machine
 
-# squat LOG KIND NAME SCENE [COUNT]: its id is in $squatting.
+# squat LOG KIND NAME SCENE [COUNT]: starts a squatter; its id is in $squatting.
 squat() {
     "$squatter" "$domain" "$2" "$3" "$4" bumpy.spm "${@:5}" >"$1" 2>&1 &
     squatting=$!
     started+=("$squatting")
     wait_for_line "$1" 'ready on DDS domain'
 }
-# strike LOG: a host of the scene that is honest until a tool is near its object; its id is in
-# $striking.
+# strike LOG: starts a server of the scene that behaves correctly until a tool is near its object;
+# its id is in $striking.
 strike() {
     "$lying_host" "$domain" bumpy.spm 0.002 strike 0.015 >"$1" 2>&1 &
     striking=$!
@@ -32,12 +32,13 @@ strike() {
     wait_for_line "$1" 'ready on DDS domain'
 }
 readonly hand=(--name victim --device sim:touch --tool sphere:0.002)
-touch_scene() { # touch_scene ARGUMENT...: until stop_hrtc.
+touch_scene() { # touch_scene ARGUMENT...: runs until stop_hrtc.
     start_hrtc "${hand[@]}" --wait "$patience_s" --duration 600 --report report.json \
         --record attacked.rec "$@"
     wait_for_contact publish.log victim
 }
-# check_force [SHARE]: what was felt, and in contact for as much as this of the honest run's share.
+# check_force [SHARE]: checks the force, and contact for at least this part of the correct run's
+# share.
 check_force() {
     check_clean report.json
     export_force attacked
@@ -56,12 +57,12 @@ stop_publisher
 export_force honest
 read -r honest_growth honest_fall honest_share _ < <(force_figures honest.csv)
 
-# Of uptime.
+# Time by uptime.
 now_ms() { awk '{ printf "%.0f", $1 * 1000 }' /proc/uptime; }
 
 case $attack in
     squat_killed | squat_restarted)
-        # The chain: a stranger beside the true host, which then goes, and comes back.
+        # The chain: an unauthenticated server beside the true one, which then ends, and returns.
         start_publisher toy.gltf --scene toy --watch
         touch_scene --scene toy
         strike strike.log
@@ -84,7 +85,7 @@ case $attack in
         check_force
         ;;
     squat_allowed)
-        # The same where the stranger has gone and a restarted server is followed.
+        # The same if the former has ended and a restarted server is followed.
         start_publisher toy.gltf --scene toy --watch
         strike strike.log
         touch_scene --scene "toy@$machine:$publisher" --failover any
@@ -104,8 +105,8 @@ case $attack in
         stop_publisher
         ;;
     squat_first)
-        # Who comes first of the two is told, at the start and by the second server itself; who
-        # is meant can be said.
+        # The first of the two is reported, at the start and by the second server itself; the
+        # intended one can be named.
         strike strike.log
         start_publisher toy.gltf --scene toy --watch
         wait_for_line publish.log "warning: scene 'toy' is offered by lying_host"
@@ -120,7 +121,7 @@ case $attack in
         stop_publisher
         ;;
     twin_*)
-        # The same model, hash and scene, and seen first.
+        # The same model, hash and scene, discovered first.
         kind=${attack#twin_}
         count=
         [[ $kind != claque ]] || count=40
@@ -141,7 +142,7 @@ case $attack in
         stop_publisher
         ;;
     crowd)
-        # 40 participants with 256 models each, before the start and while the host restarts.
+        # 40 participants with 256 models each, before the start and during the server's restart.
         squat crowd.log crowd bumpy - 40
         start_publisher toy.gltf --scene toy --watch
         began=$(now_ms)

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# web_floods.sh BIN CHECK_REPORT SANITIZER: pages and alarms while others of this machine ask for
-# hundreds of parts at once, or keep the servers of spm_view and spm_publish --metrics waiting.
+# web_floods.sh BIN CHECK_REPORT SANITIZER: pages and metrics while other programs of this machine
+# request hundreds of parts together, or keep the servers of spm_view and spm_publish --metrics
+# waiting.
 here=$(cd "$(dirname "$0")" && pwd)
 readonly here
 source "$here/../integration/hrtc/common.sh"
@@ -34,7 +35,7 @@ done
 echo "the viewer's memory: $before KiB before, $after KiB after four requests for 300 parts"
 [[ -n "$sanitizer" ]] || ((after < before + 16 * 1024)) || fault "it took $((after - before)) KiB"
 
-# Forty that are slow, again and again: who asks is answered meanwhile.
+# Forty slow requests, repeatedly: others are answered meanwhile.
 for url in "$served" "$page/state" "$page/metrics"; do
     coproc slow { attack "$url" slow; }
     attacking=$!

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # Copyright the Tactus authors.
-"""web_peers.py URL ATTACK: what a page, or any program of this machine, may do to the server of a
-URL. With `parts` four ask at once for 300 parts of what is there; each answer's size is printed.
-With `slow`, 40 connections stay, are made again when they are closed, and send a byte of a request
-now and then, until standard input ends; `ready` is printed when all are there."""
+"""web_peers.py URL ATTACK: requests that a page, or any program of this machine, may send to the
+server of a URL. With `parts` four request 300 parts each at once; prints each answer's size. With
+`slow`, 40 connections stay, are reopened when closed, and send single bytes of a request until
+standard input ends; prints `ready` when all are open."""
 import select
 import socket
 import sys

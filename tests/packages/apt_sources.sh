@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # shellcheck shell=bash
-# For mmdebstrap; to be sourced.
+# Functions for mmdebstrap; to be sourced.
 
-# Lines of sources.list, of what this machine has of Debian's.
+# Lines of this machine's sources.list with Debian's packages.
 apt_sources() {
     # shellcheck disable=SC2016 # It is apt-get that knows these names.
     apt-get indextargets \

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Copyright the Tactus authors.
-"""check_man.py PROGRAMS PAGES HEADER: each option of a program's --help, with its range, choices and
-default, is in its page of the manual, and the other way round; so are the calls of tactus.h."""
+"""check_man.py PROGRAMS PAGES HEADER: each option of a program's --help, with its range, choices
+and default, is in its manual page, and vice versa; so are the calls of tactus.h."""
 import pathlib
 import re
 import subprocess
@@ -29,14 +29,14 @@ def options_of_help(*command):
                             option[2])
             numbers = [float(number) for number in kind.groups() if number] if kind else []
             if option[1] == "--threads":
-                numbers = numbers[:2]  # Its default is what the machine has.
+                numbers = numbers[:2]  # Its default depends on the machine.
             choices = re.match(r" TEXT:\{?(\w[\w-]*(?:[,|]\w[\w-]*)+)", option[2])
             found[option[1]] = numbers + (re.split("[,|]", choices[1]) if choices else [])
     return found
 
 
 def options_of_page(text):
-    """The same for one section of a page: what follows each .TP."""
+    """The same for one section of a page: text after each .TP."""
     found = {}
     for tag in re.findall(r"^\.TP\n(.*)$", text, re.MULTILINE):
         plain = re.sub(r"\\f.", "", tag).replace("\\-", "-")
@@ -75,7 +75,7 @@ for program in ("spm_build", "spm_inspect", "spm_publish", "spm_view", "hrtc"):
         for command in ("doctor", "load"):
             compare(f"hrtc {command}", options_of_help(program, command),
                     options_of_page(sections[f"HRTC {command.upper()}"]))
-        # It takes those of hrtc but some, and has one more.
+        # It takes most of hrtc's options, and one more.
         test = own | options_of_page(sections["HRTC DEADLINE\\-TEST"])
         for option in ("virtual-time", "record", "replay", "export", "trace", "histograms"):
             test.pop("--" + option)

@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 # debian.sh SOURCE BUILD FOLDER COMPILER: builds the Debian packages in FOLDER, lets lintian judge
 # them, and installs, upgrades, removes and purges them in a bare Debian that mmdebstrap makes there
-# from this machine's apt sources. BUILD is a build for another prefix, which cpack has to refuse.
-# Skips (77) without the tools, without root or without apt sources of Debian's.
+# from this machine's apt sources. BUILD is a build for another prefix, which cpack must refuse.
+# Skips (77) without the tools, without root or without apt sources of Debian.
 #
-# No systemd runs in that Debian: systemctl.sh stands in for it. It records its calls and starts and
-# stops what the units say, so a service that runs while it is upgraded is a process that runs.
+# No systemd runs in that Debian: systemctl.sh replaces it. It records its calls and starts and
+# stops the units' programs, so a service that runs during an upgrade is a running process.
 set -euo pipefail
 readonly source=$1 build=$2 folder=$3 compiler=$4
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -14,7 +14,7 @@ readonly here
 
 fail() { printf 'FAULT: %s\n' "$*"; exit 1; }
 skip() { printf 'skipped: %s\n' "$*"; exit 77; }
-quietly() { # quietly LOG COMMAND...: its output only when it fails.
+quietly() { # quietly LOG COMMAND...: prints the output only on failure.
     local log=$1
     shift
     "$@" >"$log" 2>&1 || { tail -n 40 "$log"; fail "this failed: $*"; }
@@ -55,7 +55,7 @@ packages=(libtactus0 libtactus-dev tactus-host tactus-controller tactus-doc pyth
 for package in "${packages[@]}"; do
     [[ -f $(echo "new/${package}_${version}"_*.deb) ]] || fail "no package $package $version"
 done
-# docs/install.md names the preset of all three steps, and a package as it is called.
+# docs/install.md names the preset of all three steps, and the name of a package.
 preset=$(sed -n 's/^    cmake --workflow --preset //p' "$source/docs/install.md")
 presets=$(cd "$source" && cmake --workflow --list-presets)
 [[ -n "$preset" && "$presets" == *"\"$preset\""* ]] || fail "docs/install.md: no preset '$preset'"
@@ -66,7 +66,7 @@ made=new/${named%_*}_$(dpkg --print-architecture).deb
 quietly lintian.log lintian --allow-root --fail-on error,warning --tag-display-limit 0 new/*.deb
 grep -v '^running with root privileges' lintian.log || true
 
-# holds PACKAGE FILE...: these files are in the package.
+# holds PACKAGE FILE...: expects these files in the package.
 holds() {
     local file package=$1
     dpkg-deb --fsys-tarfile "new/${package}_${version}"_*.deb | tar --list >contents.txt
@@ -92,7 +92,7 @@ holds python3-tactus 'usr/lib/python3/dist-packages/tactus\.cpython-3.*\.so'
 dpkg-deb --field new/libtactus0_*.deb Depends | grep -q 'libddsc' \
     || fail "libtactus0 does not depend on what it is linked to"
 
-# The same as of an older version.
+# The same content as an older version.
 for package in new/*.deb; do
     rm -rf unpacked
     dpkg-deb --raw-extract "$package" unpacked
@@ -115,7 +115,7 @@ cp -r new old "$root/packages"
 cp "$here/in_a_bare_debian.sh" "$root/packages"
 install -m 755 "$here/systemctl.sh" "$root/packages/systemctl"
 
-# Mounts and processes of its own; the kernel's settings are this machine's and stay as they are.
+# Separate mounts and processes; the kernel's settings are this machine's and stay unchanged.
 # shellcheck disable=SC2016 # It is the inner shell that knows $1.
 unshare --mount --pid --fork --kill-child bash -euc '
     mount -t proc proc "$1/proc"

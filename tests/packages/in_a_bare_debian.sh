@@ -1,17 +1,17 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# in_a_bare_debian.sh VERSION DOMAIN: run by debian.sh inside the system that it has made, as root.
+# in_a_bare_debian.sh VERSION DOMAIN: run by debian.sh inside its system, as root.
 set -euo pipefail
 readonly version=$1 domain=$2
 cd /packages
 
 fail() { printf 'FAULT: %s\n' "$*"; exit 1; }
-quietly() { # quietly LOG COMMAND...: its output only when it fails.
+quietly() { # quietly LOG COMMAND...: prints the output only on failure.
     local log=$1
     shift
     "$@" >"$log" 2>&1 || { tail -n 40 "$log"; fail "this failed: $*"; }
 }
-# What a purge has to leave as it was: names of files but caches and backups, users and groups.
+# State that a purge must restore: names of files except caches and backups, users and groups.
 state() {
     find / -xdev \( -path /packages -o -path /var/lib/dpkg -o -path /var/log -o -path /tmp \
         -o -path /etc/ld.so.cache -o -path /etc/group- -o -path /etc/gshadow- \
@@ -19,7 +19,7 @@ state() {
         -o -print | sort
     sort /etc/passwd /etc/group
 }
-called() { # called CALL: systemctl was, since the log was emptied.
+called() { # called CALL: true if systemctl got this call since the log was emptied.
     grep -qxF -- "$1" /run/systemctl.log \
         || fail "systemctl $1 was not called: $(</run/systemctl.log)"
 }
@@ -34,7 +34,7 @@ wait_for_line() { # wait_for_line FILE TEXT
 }
 
 mv systemctl /usr/bin/systemctl
-mkdir -p /run/systemd/system # What maintainer scripts take for a systemd that runs.
+mkdir -p /run/systemd/system # Maintainer scripts take this for a running systemd.
 state >before.txt
 
 # --- installed -----------------------------------------------------------------------------------
@@ -49,14 +49,14 @@ called '--system daemon-reload'
 ! grep -qE 'start|enable' /run/systemctl.log || fail "a service is started: $(</run/systemctl.log)"
 [[ -z $(find /etc/systemd -name 'hrtc*' -o -name 'spm_*') ]] || fail 'a service is enabled'
 
-# The programs, from a file and over DDS; the module.
+# Programs, from a file and over DDS; the module.
 spm_build --shape torus --faces 20000 -o torus.spm 2>&1
 spm_inspect torus.spm | grep -x 'mesh .*20000 faces.*' || fail 'spm_inspect'
 code=0
 hrtc deadline-test --allow-no-rt --transport file --model torus.spm --duration 2 --load none \
     --report test.json >test.log 2>&1 || code=$?
 cat test.log
-# 1: a fault of the loop's own, on a machine that is busy with this.
+# 1: an overrun, on a machine that is busy with this.
 ((code <= 1)) || fail "deadline-test ends with $code"
 [[ -s test.json && -s test.html ]] || fail 'deadline-test writes no report'
 python3 -c '
@@ -81,7 +81,7 @@ systemctl start hrtc.service
 wait_for_line /run/services/hrtc.service.log 'touch: '
 systemctl is-active spm_publish.service hrtc.service || fail 'the services do not run'
 
-upgrade() { # upgrade: with what systemctl is called for in its log, process ids in $old and $new.
+upgrade() { # upgrade: logs the calls of systemctl, with process ids in $old and $new.
     old=$(paste -sd' ' /run/services/*.service)
     : >/run/systemctl.log
     quietly upgrade.log dpkg --install new/*.deb
@@ -99,7 +99,7 @@ for id in $old; do
 done
 grep -qx 'model = "torus"' /etc/tactus/hrtc.toml || fail 'what was configured is lost'
 [[ -L /etc/systemd/system/multi-user.target.wants/hrtc.service ]] || fail 'no longer enabled'
-# Where the administrator forbids it nothing is restarted.
+# A policy that forbids it prevents restarts.
 printf '#!/bin/sh\nexit 101\n' >/usr/sbin/policy-rc.d
 chmod 755 /usr/sbin/policy-rc.d
 upgrade

@@ -1,8 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# systemctl [--quiet] [--system] ACTION UNIT...: stands in for systemd where none runs. Each call is
-# a line of /run/systemctl.log; services are started and stopped as their units say, but as root and
-# without limits.
+# systemctl [--quiet] [--system] ACTION UNIT...: replaces systemd. Each call is a line of
+# /run/systemctl.log; services are started and stopped as in their units, but as root and without
+# limits.
 set -euo pipefail
 echo "$*" >>/run/systemctl.log
 while [[ "${1:-}" == --* ]]; do

@@ -37,7 +37,7 @@ except ImportError:
     sys.exit(77)
 
 PATIENCE_S = 900
-# As on spm_view's page: base mesh to finest level.
+# Colours of spm_view's page: base mesh to finest level.
 RAMP = numpy.array([[168, 178, 196], [96, 146, 208], [46, 168, 158], [244, 190, 66],
                     [222, 88, 62]]) / 255
 TOOL, FORCE = "#d8822b", "#c94c4c"
@@ -55,7 +55,7 @@ def run(*command):
 
 
 class Cut:
-    """Faces of a model: corners as points, each face's level."""
+    """Faces of a model: corners as points, level of each face."""
 
     def __init__(self, points, corners, levels):
         self.triangles = points[corners]
@@ -85,7 +85,7 @@ class Cut:
 
 
 class Film:
-    """A recording, as spm_view shows it."""
+    """Recording, as spm_view shows it."""
 
     def __init__(self, programs, recording):
         self.log = recording.with_suffix(".log")
@@ -126,7 +126,7 @@ class Film:
 
 
 class Camera:
-    """Without perspective: x to the right, y up, z towards the eye."""
+    """View without perspective: x to the right, y up, z towards the eye."""
 
     def __init__(self, towards_eye, up=(0.0, 0.0, 1.0)):
         z = numpy.array(towards_eye, float)
@@ -140,7 +140,7 @@ class Camera:
 
 
 def turned(points, object_):
-    """From the model's frame to the world's."""
+    """Transform from the model's frame to the world's."""
     x, y, z, w = object_["rotation"]
     matrix = numpy.array([
         [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
@@ -157,7 +157,7 @@ def ramp(shares):
 
 
 def faces(axes, camera, triangles, colours, edge=0.15, within=None):
-    """Those that look towards the eye, the nearest last. `within`: of points seen, low and high."""
+    """Faces towards the eye, the nearest last. `within`: low and high of visible points."""
     seen = camera.see(triangles)
     normals = numpy.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     lengths = numpy.linalg.norm(normals, axis=1)
@@ -195,7 +195,7 @@ def box_lines(axes, camera, boxes, colour, width=0.6, alpha=0.8):
 
 
 def frame_axes(axes, middle, half, ratio=1.0):
-    """Shows so much round a point that is seen."""
+    """Shows a region of this size around a visible point."""
     axes.set(xlim=(middle[0] - half * ratio, middle[0] + half * ratio),
              ylim=(middle[1] - half, middle[1] + half), aspect="equal")
     axes.axis("off")
@@ -207,14 +207,14 @@ def window(middle, half, ratio=1.0):
 
 
 def touch_spans(axes, seconds, touching):
-    """A pale ground where it is so."""
+    """Pale background where the condition holds."""
     edges = numpy.flatnonzero(numpy.diff(numpy.concatenate([[0], touching.astype(int), [0]])))
     for begin, end in edges.reshape(-1, 2):
         axes.axvspan(seconds[begin], seconds[end - 1], color="#f6e9d8", linewidth=0, zorder=0)
 
 
 def tool_mark(axes, camera, tool, scale_m_per_n):
-    """The proxy, and the force on the hand as an arrow."""
+    """Proxy, and the force on the hand as an arrow."""
     place = camera.see(tool["proxy_m"])
     axes.add_patch(pyplot.Circle(place[:2], tool["radius_m"], facecolor=TOOL, edgecolor="#5c3510",
                                  linewidth=0.8, zorder=4))
@@ -233,14 +233,14 @@ def to_image(figure, dpi=100):
 
 
 def save(figure, path, dpi=110):
-    """As few bytes as a picture of few colours needs. Those that mean something stay."""
+    """Compresses a picture of few colours; significant colours stay exact."""
     image = to_image(figure, dpi)
     colours = [[round(255 * part) for part in colour] for colour in (
         *RAMP, *map(matplotlib.colors.to_rgb, (
             "white", "black", TOOL, FORCE, LOADED, FORETOLD, PRESENT, TREE)))]
     palette = Image.new("P", (1, 1))
     palette.putpalette(sum(colours, []) + image.quantize(160).getpalette()[:3 * 160])
-    # What is nearest in the palette is only about the nearest.
+    # The palette's nearest colour is only approximate.
     places = numpy.array(image.quantize(palette=palette, dither=Image.Dither.NONE))
     for place, colour in enumerate(colours):
         places[(numpy.asarray(image) == colour).all(axis=2)] = place
@@ -250,7 +250,7 @@ def save(figure, path, dpi=110):
 
 
 class Take:
-    """A recorded run: what its frames show, and their figures."""
+    """Recorded run: the content and the figures of its frames."""
 
     def __init__(self, studio, recording):
         self.studio, self.recording = studio, recording
@@ -259,7 +259,7 @@ class Take:
         return self.studio.film_of(self.recording)
 
     def rows(self):
-        """The run frame by frame."""
+        """Run, frame by frame."""
         def make():
             path = self.studio.file(f"{self.recording.stem}.csv", lambda to: run(
                 self.studio.programs / "hrtc", "--replay", self.recording, "--export", to))
@@ -277,7 +277,7 @@ class Take:
         return numpy.linalg.norm(self.points("tool0.sent_force_world_n"), axis=1)
 
     def pressing(self):
-        """A frame in the middle of the longest touch."""
+        """Frame in the middle of the longest touch."""
         touching = numpy.concatenate([[0], (self.forces() > 0.2).astype(int), [0]])
         begins = numpy.flatnonzero(numpy.diff(touching) == 1)
         ends = numpy.flatnonzero(numpy.diff(touching) == -1)
@@ -288,7 +288,7 @@ class Take:
 
 
 class Studio:
-    """Models, recordings and what came of them, made when they are first asked for."""
+    """Models, recordings and results, made at the first request."""
 
     def __init__(self, programs, folder, quick):
         self.programs, self.folder, self.quick = programs, folder, quick
@@ -296,7 +296,7 @@ class Studio:
         self.films = []
 
     def file(self, name, make):
-        """Of the scratch folder, made by `make(path)` unless it is there."""
+        """File of the scratch folder, made by `make(path)` unless it exists."""
         path = self.folder / name
         if not path.exists():
             make(path)
@@ -313,23 +313,23 @@ class Studio:
             5_000 if self.quick else 40_000, "-o", path))
 
     def figures(self, model, *words):
-        """What spm_inspect tells of a model."""
+        """Output of spm_inspect for a model."""
         return self.once(f"figures {model} {words}", lambda: json.loads(run(
             self.programs / "spm_inspect", model, "--json", *words)))
 
     def faces(self):
-        """Of the model, as its source has them."""
+        """Faces of the model, in the source's frame."""
         return self.figures(self.model())["faces"]
 
     def play(self, name, *words):
-        """A run of hrtc in virtual time, recorded."""
+        """Recorded run of hrtc in virtual time."""
         recording = self.file(f"{name}.rec", lambda path: run(
             self.programs / "hrtc", *words, "--device", "sim", "--virtual-time", "--allow-no-rt",
             "--record", path))
         return self.once(f"take {name}", lambda: Take(self, recording))
 
     def touch(self):
-        """A hand flies, lands, slides and lifts off, as in the demo."""
+        """Hand that flies, lands, slides and lifts off, as in the demo."""
         return self.play("touch", self.model(), "--no-static", "--tool", f"sphere:{RADIUS_M}",
                          "--duration", "1" if self.quick else "3")
 
@@ -354,7 +354,8 @@ def shown(film, frame):
 
 
 def camera_on(tool):
-    """From where the tool is, a little aside: it stands at the right of the model's middle."""
+    """View from the tool's side, slightly beside it: the tool is to the right of the model's
+    middle."""
     outward = numpy.array(tool["proxy_m"], float)
     outward /= numpy.linalg.norm(outward)
     aside = numpy.cross((0.0, 0.0, 1.0), outward)
@@ -363,7 +364,7 @@ def camera_on(tool):
 
 
 def touch(studio, path):
-    """The moving picture: the cut follows the tool; below, force and faces over time."""
+    """Animation: the cut follows the tool; below, force and faces over time."""
     take = studio.touch()
     film, forces = take.film(), take.forces()
     middle = take.pressing()
@@ -402,7 +403,7 @@ def touch(studio, path):
 
 
 def cut(studio, path):
-    """The whole cut, and a part of it at the tool."""
+    """Whole cut, and a part of it at the tool."""
     take = studio.touch()
     state, _, triangles, colours = shown(take.film(), take.pressing())
     tool = state["tools"][0]
@@ -458,7 +459,7 @@ def tree(studio, path):
     pale = 0.5 + 0.5 * colours
     for one, level in zip(axes, (1, 2, 3, 24)):
         boxes = film.boxes("boxes", state, object_["model"], level=level)
-        # The object isn't turned: its boxes stay boxes.
+        # The object is not rotated: its boxes stay boxes.
         moved = turned(boxes.reshape(-1, 3), object_).reshape(-1, 2, 3)
         faces(one, camera, triangles, pale, edge=0)
         box_lines(one, camera, moved, TREE, 0.7 if len(boxes) < 200 else 0.25)
@@ -469,7 +470,7 @@ def tree(studio, path):
 
 
 def regions(studio, path):
-    """Where chunks are looked for, and the boxes of those that are loaded."""
+    """Search regions of chunks, and the boxes of loaded ones."""
     film = studio.touch().film()
     state, object_, triangles, colours = shown(film, studio.touch().pressing())
     camera = camera_on(state["tools"][0])
@@ -497,7 +498,7 @@ def regions(studio, path):
 
 
 def bracket(studio, path):
-    """L and U against the true distance while the tool comes near."""
+    """L and U against the true distance while the tool approaches."""
     take = studio.touch()
     lower = take.column("tool0.nearest.lower_m")
     upper = take.column("tool0.nearest.upper_m")
@@ -537,7 +538,7 @@ def bracket(studio, path):
 
 
 def force(studio, path):
-    """What the hand feels, and what the frame did for it."""
+    """Force on the hand, and the frame's work for it."""
     take = studio.touch()
     seconds = numpy.arange(len(take.rows())) * 1e-3
     figure, axes = pyplot.subplots(3, 1, figsize=(9.0, 4.6), sharex=True)
@@ -556,7 +557,7 @@ def force(studio, path):
 
 
 def scene(studio, path):
-    """Objects of a scene, coarse but where a hand is."""
+    """Objects of a scene, coarse except at a hand."""
     root = pathlib.Path(__file__).resolve().parents[2]
     size = ("--models", "4", "--objects", "12", "--faces", "2000") if studio.quick else ()
     glb = studio.file("scene.glb", lambda to: run(sys.executable, root / "cmake/demo_scene.py", to,
@@ -597,7 +598,7 @@ def scene(studio, path):
 
 
 def forest(studio, path):
-    """Which vertex comes from which, and which of them one frame has."""
+    """Parents of the vertices, and the vertices present in one frame."""
     small = studio.file("small.spm", lambda to: run(
         studio.programs / "spm_build", "--shape", "bumpy-sphere", "--faces", 1_000, "--base-faces",
         60, "-o", to))
@@ -613,7 +614,7 @@ def forest(studio, path):
     for record in records:
         children.setdefault(record["parent"], []).append(record["vertex"])
     base = list(range(min(depth)))
-    # A vertex to the left of those that come from it, the latest next to it: no lines cross.
+    # A vertex is to the left of its children, the latest next to it: no lines cross.
     place, waiting = {}, base[::-1]
     while waiting:
         vertex = waiting.pop()
@@ -650,7 +651,7 @@ def forest(studio, path):
 
 
 def chunks(studio, path):
-    """Which vertices come together: those of a chunk are of one tier and near each other."""
+    """Order in which vertices are loaded: those of a chunk are of one tier and near each other."""
     records = studio.figures(studio.model(), "--records")["record_list"]
     points = numpy.array([record["position_m"] for record in records])
     out = studio.file("pale.obj", lambda to: run(
@@ -683,7 +684,7 @@ def chunks(studio, path):
 
 
 def stages(studio, path):
-    """What the stages of each frame take, on the machine that makes the picture."""
+    """Times of each frame's stages, on the machine that makes the picture."""
     trace = studio.file("touch.trace.json", lambda to: run(
         studio.programs / "hrtc", studio.model(), "--no-static", "--tool", f"sphere:{RADIUS_M}",
         "--device", "sim", "--allow-no-rt", "--duration", "1" if studio.quick else "3", "--trace",
@@ -709,7 +710,7 @@ def stages(studio, path):
     axes.stackplot(seconds, smoothed, linewidth=0,
                    labels=("T_L load", "T_R refine", "T_B refit", "T_Q query", "force"),
                    colors=(LOADED, TREE, FORETOLD, TOOL, FORCE))
-    half = window_frames // 2  # At the ends there are fewer frames.
+    half = window_frames // 2  # There are fewer frames at the ends.
     axes.set(xlabel="s", ylabel="us", xlim=(seconds[half], seconds[-1 - half]),
              ylim=(0, 1.2 * smoothed.sum(axis=0)[half:-half].max()))
     axes.legend(frameon=False, ncol=5, loc="upper right")
@@ -719,7 +720,7 @@ def stages(studio, path):
 
 
 def bursts(studio, path):
-    """Pages that come for a hand that is elsewhere twice a second, by how many have room."""
+    """Loaded pages for a hand that changes place twice a second, by capacity."""
     regimes = ((0.15, 1.5), (0.3, 1.5), (1.2, 3), (None, 16))
     figure, axes = pyplot.subplots(len(regimes), 1, figsize=(9.0, 1.3 * len(regimes) + 0.4),
                                    sharex=True)
@@ -749,7 +750,7 @@ def bursts(studio, path):
 
 
 def probe(studio, path):
-    """A tool that is a mesh: both surfaces are fine where they are near each other."""
+    """Mesh tool: both surfaces are fine where they are near each other."""
     tool_model = studio.file("probe.spm", lambda to: run(
         studio.programs / "spm_build", "--shape", "bumpy-sphere", "--faces",
         2_000 if studio.quick else 10_000, "--fit-diag", 0.03, "-o", to))

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# configure_for_another_processor.sh SOURCE BUILD PROCESSOR: for Debian's cross compiler, with the
-# portable tests and the replay program, which so share one rt_core at -O2. GoogleTest's sources are
-# looked for where Debian puts them; without them there is the replay program alone.
+# configure_for_another_processor.sh SOURCE BUILD PROCESSOR: configures for Debian's cross compiler,
+# with the portable tests and the replay program, which share one rt_core at -O2. GoogleTest's
+# sources are expected at Debian's path; without them only the replay program is built.
 set -euo pipefail
 readonly source=$1 build=$2 processor=$3
 readonly compiler=$processor-linux-gnu-g++

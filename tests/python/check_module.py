@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """check_module.py MODULE_FOLDER SPM_BUILD SPM_INSPECT SPM_PUBLISH POSE_LOOP PAGE: the module
-`tactus` against brute force over the whole mesh and against a loop in C++, of a file and of a host,
-and what it refuses. PAGE's programs run, those for a shell first."""
+`tactus` compared with brute force over the whole mesh and with a loop in C++, from a file and from
+a server, and its refusals. PAGE's programs run, those for a shell first."""
 import ast
 import doctest
 import os
@@ -52,7 +52,8 @@ def read_stl(path):
 
 
 def distance(place, corners):
-    """From a point to all triangles: to the plane where the foot is inside, else to the edges."""
+    """Distance from a point to all triangles: to the plane if the foot is inside, otherwise to the
+    edges."""
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     normal = np.cross(b - a, c - a)
     height = np.einsum("ij,ij->i", place - a, normal) / np.einsum("ij,ij->i", normal, normal)
@@ -78,7 +79,7 @@ def load_whole(frame, place, turn=None):
 
 
 def check_distances(path, corners):
-    """Every bracket holds the true distance; near the surface it is exact."""
+    """All bounds hold the true distance; near the surface they are exact."""
     rng = np.random.default_rng(int(os.environ.get("TACTUS_SEED", "1")))
     places = rng.uniform(-0.09, 0.09, (300, 3)) * [1, 1, 0.4]
     truth = np.array([distance(place, corners) for place in places])
@@ -86,7 +87,7 @@ def check_distances(path, corners):
                          [tactus.Object()], memory_mib=8)
     answers = frame.run(places, rounds=1000)
     expect(answers.lower_m.shape == (300, 1) and answers.force_n.shape == (300, 3), "shapes")
-    slack = 1e-7  # Corners of the file are single precision, in metres.
+    slack = 1e-7  # The file's corners are in single precision, in metres.
     expect(np.all(answers.lower_m[:, 0] <= truth + slack), "a lower bound is above the distance")
     expect(np.all(answers.upper_m[:, 0] >= truth - slack), "an upper bound is below the distance")
     near = truth < 0.02
@@ -95,7 +96,7 @@ def check_distances(path, corners):
     expect(np.all(kinds == tactus.EXACT), f"in reach, but of kind {kinds.max()}")
     off = np.linalg.norm(answers.nearest_m[near, 0] - places[near], axis=1) - truth[near]
     expect(np.max(np.abs(off)) < 1e-6, f"nearest points are off by {np.max(np.abs(off))}")
-    # A small tool that asks has the distance from anywhere, one that doesn't only in reach.
+    # A small tool that requests it has the distance from anywhere, another only in reach.
     for wants in (True, False):
         small = tactus.Frame([tactus.Model(path)],
                              [tactus.Tool(0.001, passes_through=True, wants_distance=wants)],
@@ -106,7 +107,7 @@ def check_distances(path, corners):
         far = np.array([distance(place, corners) for place in places[:60] * 3])
         off = np.abs(answers.lower_m[exact, 0] - far[exact])
         expect(np.max(off, initial=0) < 1e-6, f"distances from afar are off by {np.max(off, initial=0)}")
-    # Two tools, two objects that stand apart, one moved: the same distances, farther by nothing.
+    # Two tools, two separate objects, one displaced: the distances are the same.
     shift = np.array([0.3, 0.0, 0.0])
     two = tactus.Frame([tactus.Model(path)], [tactus.Tool(0.02, passes_through=True)] * 2,
                        [tactus.Object(), tactus.Object(translation_m=shift)], memory_mib=8)
@@ -123,14 +124,14 @@ def check_distances(path, corners):
 
 
 def check_static(path, corners):
-    """Any point, however far; sides of a torus by its equation, away from its facets."""
+    """Any point at any distance; sides of a torus by its equation, away from its facets."""
     rng = np.random.default_rng(7)
     model = tactus.StaticModel(path)
     low, high = corners.min((0, 1)), corners.max((0, 1))
     places = np.vstack([rng.uniform(low, high, (300, 3)), 100 * rng.uniform(low, high, (20, 3))])
     answer = model.distances(places)
     truth = np.array([distance(place, corners).min() for place in places])
-    slack = 1e-6 * np.linalg.norm(high - low)  # Of the STL's 32-bit corners.
+    slack = 1e-6 * np.linalg.norm(high - low)  # Error of the STL's 32-bit corners.
     expect(np.all(np.abs(answer.lower_m - truth) < slack)
            and np.all(answer.upper_m - answer.lower_m < 1e-12), "distances of the whole model")
     expect(np.allclose(np.linalg.norm(places - answer.nearest_m, axis=1), truth, atol=slack),
@@ -146,7 +147,7 @@ def check_static(path, corners):
 
 
 def check_loop(path, scratch, count):
-    """A call for many poses gives the bits of a loop in C++."""
+    """A call for many poses has the bits of a loop in C++."""
     angle = np.linspace(0, 40 * np.pi, count)
     poses = np.stack([0.05 * np.cos(angle), 0.05 * np.sin(angle),
                       0.021 + 0.003 * np.sin(7.1 * angle)], axis=1)
@@ -175,7 +176,7 @@ def check_loop(path, scratch, count):
 
 
 def python_work(frame, poses):
-    """What a call costs Python: entries into its functions and C's, bytes but for the arrays."""
+    """Cost of a call in Python: entries into its functions and C's, bytes without the arrays."""
     calls = []
     sys.setprofile(lambda scope, event, function: calls.append(event))
     frame.run(poses)
@@ -189,7 +190,7 @@ def python_work(frame, poses):
 
 
 def samples(shape, half):
-    """Points of a tool's core, and how far any other point of it is from one at most."""
+    """Points of a tool's core, and the greatest distance of any other point from one of them."""
     if shape == "capsule":
         return np.linspace(-1, 1, 201)[:, None] * half, np.linalg.norm(half) / 200
     steps = np.linspace(-1, 1, 13)
@@ -198,7 +199,7 @@ def samples(shape, half):
 
 
 def check_shapes(path, corners):
-    """A turned capsule and a turned box: exact distances are those of points of their cores."""
+    """Rotated capsule and box: exact distances are those of points of their cores."""
     rng = np.random.default_rng(int(os.environ.get("TACTUS_SEED", "1")))
     for shape, half in (("capsule", np.array([0.0, 0.004, 0.01])),
                         ("box", np.array([0.002, 0.004, 0.006]))):
@@ -224,12 +225,12 @@ def check_shapes(path, corners):
 
 
 def check_torque(path):
-    """A capsule that is pressed on with one end feels a torque about its centre, by the lever."""
+    """A capsule pressed on with one end has a torque about its centre, by the lever."""
     half = 0.02
     frame = tactus.Frame([tactus.Model(path)],
                          [tactus.Tool(0.002, shape="capsule", half_m=[half, 0, 0])],
                          [tactus.Object()], memory_mib=32, loads_whole=True)
-    top = np.array([0.0, 0.05 - half, 0.0])  # Along y, one end is over the top of the ring.
+    top = np.array([0.0, 0.05 - half, 0.0])  # One end along y is over the top of the ring.
     turn = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
     load_whole(frame, top + [[0, 0, 0.03]], turn[None])
     height = np.linspace(0.03, 0.0205, 2000)
@@ -243,7 +244,7 @@ def check_torque(path):
 
 
 def check_feel(path):
-    """A hand that presses a surface feels what it becomes, and gets there without a step."""
+    """A hand that presses a surface gets the new material's force, without a step."""
     frame = tactus.Frame([tactus.Model(path)], [tactus.Tool(0.002, stiffness_n_per_m=500)],
                          [tactus.Object()], memory_mib=32, loads_whole=True)
     load_whole(frame, [[0.05, 0, 0.03]])
@@ -262,7 +263,8 @@ def check_feel(path):
 
 
 def forces_when_shaken(path, speed_m_per_s):
-    """Of a hand 3 mm deep, under which the object goes up and down by 2 mm every four frames."""
+    """Forces on a hand 3 mm deep, under which the object moves up and down by 2 mm every four
+    frames."""
     frame = tactus.Frame([tactus.Model(path)], [tactus.Tool(0.002, stiffness_n_per_m=500)],
                          [tactus.Object()], memory_mib=32, loads_whole=True,
                          object_speed_max_m_per_s=speed_m_per_s)
@@ -278,13 +280,13 @@ def forces_when_shaken(path, speed_m_per_s):
 
 
 def check_carried(path, corners):
-    """An object that is touched is carried no faster than is believed, and gets where it is put."""
+    """A touched object moves at most at its speed limit, and reaches its target."""
     believed, flags = forces_when_shaken(path, 1e6)
     expect(believed > 1.5 and not np.any(flags & tactus.OUTRUN), f"a step of {believed} N")
     held, flags = forces_when_shaken(path, 0.5)
     expect(held <= 1.3 * 500 * 0.5 * 1e-3, f"a step of {held} N at 0.5 m/s")
     expect(not np.any(flags & tactus.OUTRUN), "4 mm are no 20 ms of 0.5 m/s")
-    # A hand 1 mm deep, and a probe above it that tells how high the top of the ring is.
+    # Hand 1 mm deep, and a probe above it that measures the height of the ring's top.
     probe = tactus.Tool(0.001, passes_through=True, wants_distance=True)
     frame = tactus.Frame([tactus.Model(path)], [tactus.Tool(0.002), probe], [tactus.Object()],
                          memory_mib=32, loads_whole=True)
@@ -308,7 +310,7 @@ def check_carried(path, corners):
     expect(np.all(rise < 0.501e-3), f"carried by {rise.max()} m in a frame")
     expect(abs(height[-1] - 0.012) < 1e-5, f"it is at {height[-1]} m, not where it was put")
     run(np.linspace(0.021, 1.0, 300))
-    for where in (-0.5, 0.0, -0.2):  # What nobody can touch within 20 ms goes at once.
+    for where in (-0.5, 0.0, -0.2):  # An object beyond reach within 20 ms moves at once.
         frame.place(0, translation_m=[0, 0, 1])  # The last place of an object counts.
         frame.place(0, translation_m=[0, 0, where])
         height, _ = run([1.0])
@@ -324,7 +326,7 @@ def check_carried(path, corners):
 
 
 def check_host(path):
-    """A model that a host publishes answers as its file does."""
+    """A model from a server has the same answers as its file."""
     host = subprocess.Popen([spm_publish, "--domain", str(DOMAIN), path],
                             stdout=subprocess.DEVNULL)
     try:
@@ -338,7 +340,7 @@ def check_host(path):
         end = time.monotonic() + PATIENCE_S
         answers = frame.run(places)
         while np.any(answers.kind != tactus.EXACT) and time.monotonic() < end:
-            frame.load()  # What was asked for is on its way.
+            frame.load()  # The requested data are in transit.
             answers = frame.run(places)
         same = tactus.Frame([tactus.Model(path)], [tactus.Tool(0.02, passes_through=True)],
                             [tactus.Object()], memory_mib=8).run(places, rounds=1000)
@@ -351,7 +353,8 @@ def check_host(path):
 
 
 def check_begins_inside(path):
-    """A tool in the tube of the torus is warned of, once; one in its hole isn't, nor one that measures."""
+    """A tool in the tube of the torus is warned of, once; one in its hole is not, nor a query-only
+    one."""
     def warned(place, **tool):
         frame = tactus.Frame([tactus.Model(path)], [tactus.Tool(0.001, **tool)], [tactus.Object()])
         with warnings.catch_warnings(record=True) as seen:
@@ -403,7 +406,7 @@ def check_refusals(path):
     refuses(ValueError, "shape: 'cone'", lambda: tactus.Tool(0.1, shape="cone"))
     refuses(ValueError, "tools[0].radius_m: -1",
             lambda: tactus.Frame([tactus.Model(path)], [tactus.Tool(-1)], [tactus.Object()]))
-    refuses(ValueError, "tools[0].radius_m: 2; 1e-06 to 1 is allowed",  # As hrtc --tool.
+    refuses(ValueError, "tools[0].radius_m: 2; 1e-06 to 1 is allowed",  # The limits of hrtc --tool.
             lambda: tactus.Frame([tactus.Model(path)], [tactus.Tool(2)], [tactus.Object()]))
     tactus.Frame([tactus.Model(path)], [tactus.Tool(2, passes_through=True)], [tactus.Object()])
     refuses(ValueError, "tools[0].smooth_m: 1; 0.0001 to 0.1",
@@ -432,7 +435,7 @@ def check_refusals(path):
 
 
 def arguments_of(function):
-    """(name, default) of each argument in the stub, those without a default with None."""
+    """(name, default) of each argument in the stub, None without a default."""
     plain = function.args.args
     defaults = [None] * (len(plain) - len(function.args.defaults)) + function.args.defaults
     both = [*zip(plain, defaults), *zip(function.args.kwonlyargs, function.args.kw_defaults)]
@@ -441,7 +444,7 @@ def arguments_of(function):
 
 
 def arguments_in(signature):
-    """The same of the line that the module says of itself."""
+    """The same from the module's own line."""
     found = []
     for name, default in re.findall(r"(\w+): [^=,()]*(?:\[[^=]*\])?(?: = ([^,)]+))?[,)]", signature):
         found.append((name, None if default == "" else ast.literal_eval(default)))
@@ -449,7 +452,7 @@ def arguments_in(signature):
 
 
 def check_documentation(scratch):
-    """The examples of the docstrings run; the stub has what the module has, with its arguments."""
+    """The examples of the docstrings run; the stub has the module's content and arguments."""
     os.chdir(scratch)
     result = doctest.testmod(tactus, extraglobs={"tactus": tactus})
     expect(result.failed == 0 and result.attempted >= 12, f"docstrings: {result}")
@@ -490,7 +493,8 @@ def check_page(scratch):
         if language == "sh":
             subprocess.run(["bash", "-euc", program], check=True, env=tools, capture_output=True)
         else:
-            exec(compile(program, page, "exec"), scope)  # One goes on where another ended.
+            # Each continues where the previous one ended.
+            exec(compile(program, page, "exec"), scope)
 
 
 def main():

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 # shellcheck shell=bash disable=SC2154 # What rt_machine.sh and job.sh set is used here.
-# Starts the machine; sourced after common.sh, with $folder holding image and kernel, and
-# $architecture what Debian calls its processor.
+# Starts the machine; sourced after common.sh, with image and kernel in $folder, and Debian's name
+# of its processor in $architecture.
 
-readonly machine_exit_port=0x501 # As in guest.sh.
+readonly machine_exit_port=0x501 # The same value as in guest.sh.
 
-# What QEMU counts is instructions: one is a nanosecond, time in which the machine has nothing to do
-# is skipped, and nothing of this machine shows. All threads are on one processor, there is no disk,
-# network or monitor, and seeds and clock are given. What is left is when QEMU's own threads take
-# turns: with $in_turn, where that is granted, only when one waits.
+# QEMU counts instructions: one is a nanosecond, idle time is skipped, and nothing of this machine
+# is visible. All threads are on one processor, there is no disk, network or monitor, and seeds and
+# clock are given. Only the scheduling of QEMU's own threads is left: with $in_turn, if permitted,
+# only when one waits.
 in_turn=()
 # shellcheck disable=SC2054 # QEMU's own commas.
 machine_options=(-accel tcg -icount shift=0,sleep=off -smp 1 -m 2048 -nodefaults -display none
@@ -29,9 +29,9 @@ esac
 readonly machine_kernel_line="rdinit=/sbin/init console=$machine_console quiet \
 systemd.show_status=0 panic=-1 mitigations=off nokaslr"
 
-# boot NAME SCENARIO[,ARGUMENT...] [QEMU-OPTION...]: runs a scenario of guest.sh. What it says is in
-# $folder/NAME/log, what it kept in the same folder. Its exit code is that of the scenario, or 2
-# where the machine did not come to an end of it.
+# boot NAME SCENARIO[,ARGUMENT...] [QEMU-OPTION...]: runs a scenario of guest.sh. Its output is in
+# $folder/NAME/log, its stored files in the same folder. The exit code is that of the scenario, or 2
+# if the machine did not complete it.
 boot() {
     local out=$folder/$1 code ended=0 line lines processor scenario=$2
     shift 2
@@ -41,7 +41,7 @@ boot() {
     for line in log kept; do
         if [[ "$architecture" == amd64 ]]; then
             lines+=(-serial "file:$out/$line")
-        else # That board has one line of its own.
+        else # That board has its own line.
             lines+=(-chardev "file,id=$line,path=$out/$line" -device "pci-serial,chardev=$line")
         fi
     done
@@ -50,18 +50,18 @@ boot() {
         -kernel "$folder/kernel" -initrd "$folder/initrd" \
         -append "$machine_kernel_line tactus=$scenario" "${lines[@]}" "$@" \
         >"$out/qemu" 2>&1 || ended=$?
-    # Code 1 is what the machine ends QEMU with, or QEMU's own of a wrong option.
+    # Code 1 is the machine's end of QEMU, or QEMU's own for a wrong option.
     if ((ended > 1)) || [[ $ended == 1 && -s "$out/qemu" ]]; then
         fail "QEMU ended with an error: $(tail -n 1 "$out/qemu")"
     fi
-    # Progress is many words on one line, each over the last one.
+    # Progress is many texts on one line, each over the last one.
     sed -i -e 's/\r$//' -e 's/.*\r//' -e 's/\x1b\[K//g' "$out"/{console,log}
     [[ ! -s "$out/kept" ]] || base64 -di "$out/kept" | tar -xzC "$out"
     code=$(sed -n 's/^the scenario ended with //p' "$out/log")
     return "${code:-2}"
 }
 
-# make_initrd SCENARIOS: the image, and the scenarios of that folder.
+# make_initrd SCENARIOS: makes the image with the scenarios of that folder.
 make_initrd() {
     local overlay=$folder/overlay
     rm -rf "$overlay"

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # shellcheck shell=bash
-# What the scripts of this folder share.
+# Functions of this folder's scripts.
 
-fail() { # fail TEXT: one line, then the end.
+fail() { # fail TEXT: prints one line, then ends.
     printf '%s: %s\n' "$(basename "$0")" "$1" >&2
     exit 2
 }
@@ -22,7 +22,7 @@ need_space() { # need_space FOLDER GB
     ((free_kb >= $2 * 1000000)) \
         || fail "$1 has $((free_kb / 1000)) MB free, this needs $2 GB"
 }
-# await COMMAND...: runs it, and ends it when this script is told to end.
+# await COMMAND...: runs it, and ends it when this script is ended.
 child=
 end_child() {
     [[ -z "$child" ]] || kill -TERM "$child" 2>/dev/null || true

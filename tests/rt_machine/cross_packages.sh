@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# cross_packages.sh ARCHITECTURE PACKAGES FOLDER: of this machine's Debian packages in PACKAGES
-# those that rt_machine.sh takes, for another ARCHITECTURE (arm64), in FOLDER. Their programs are
-# compiled by Debian's cross compiler against that architecture's libraries, taken apart in
-# FOLDER/sysroot, none of them run; all else of a package stays. So does what it depends on:
+# cross_packages.sh ARCHITECTURE PACKAGES FOLDER: makes the Debian packages that rt_machine.sh needs
+# for another ARCHITECTURE (arm64) in FOLDER, from this machine's in PACKAGES. Their programs are
+# compiled by Debian's cross compiler with that architecture's libraries, unpacked in
+# FOLDER/sysroot, none of them run; the rest of a package is unchanged. So are the dependencies:
 # Debian's libraries have the same names and versions there.
 # Exit codes: 0 done, 2 failed, 3 usage, 77 something is missing here.
 set -euo pipefail
@@ -38,7 +38,7 @@ if [[ "$(cat made_of 2>/dev/null)" != "$wanted" ]]; then
     await mmdebstrap --variant=extract --architectures="$architecture" --include="$wanted" \
         bookworm sysroot sources >mmdebstrap.log 2>&1 || fail "mmdebstrap failed, see \
 $folder/mmdebstrap.log: $(grep -m 1 '^E: ' mmdebstrap.log || tail -n 1 mmdebstrap.log)"
-    # The mathematics library, which libccd names by its place, is the compiler's.
+    # libccd names the mathematics library by path; the compiler's is used.
     sed -i "s|/usr/lib/$triplet/libm.so|m|" "$libraries/ccd/ccd-targets-none.cmake"
     echo "$wanted" >made_of
 fi

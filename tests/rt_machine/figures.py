@@ -17,8 +17,7 @@ RUNS = {"alone": "1 kHz, 200,000 faces", "load": "1 kHz, 200,000 faces, load bes
         "mesh": "1 kHz, 200,000 faces, a mesh of 1,000 faces as tool",
         "fast": "4 kHz, 2,000 faces, 60 us a frame", "minute": "1 kHz, 200,000 faces, over DDS",
         "network": "1 kHz, over DDS, 10 ms and 1 % lost each way", "services": "service", "faults": "service, killed, back inside a model"}
-# What no run may have but one whose hand is deep inside a model when it starts, and bounds that hold
-# for every image.
+# Limits of all runs except one whose hand starts deep inside a model, and bounds of every image.
 GOALS = {"missed": 0, "own faults": 0, "wake max": 20, "cyclictest max": 20}
 
 folder, commit, *options = sys.argv[1:]
@@ -75,7 +74,7 @@ if told.exists():
             add(f"{killed[1]} killed", "force gone after", int(killed[2]), "ms")
             add(f"{killed[1]} killed", "force back after", int(killed[3]), "ms")
 
-suite = "rt" if "x86_64" in kernel else "rt_arm64"  # For its file in docs/benchmarks.
+suite = "rt" if "x86_64" in kernel else "rt_arm64"  # Name of its file in docs/benchmarks.
 rows = [{"suite": suite} | row for row in rows]
 results = {
     "schema": 2, "commit": commit,

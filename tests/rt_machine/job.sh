@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # job.sh FOLDER ARCHITECTURE FULL JOB: one of the jobs of rt_machine.sh, which has made image and
-# initrd there; FULL is 0 for seconds instead of minutes. Says what the machine said.
+# initrd there; FULL is 0 for seconds instead of minutes. Prints the machine's output.
 # Exit codes: 0 done, 1 a criterion was not met, 2 failed.
 set -euo pipefail
 readonly folder=$1 architecture=$2 full=$3 job=$4
@@ -13,7 +13,7 @@ source "$here/common.sh"
 source "$here/boot.sh"
 
 faults=0
-# scenario NAME SCENARIO[,ARGUMENT...] [QEMU-OPTION...]: must end with 0.
+# scenario NAME SCENARIO[,ARGUMENT...] [QEMU-OPTION...]: expects exit code 0.
 scenario() {
     local code=0
     boot "$@" || code=$?
@@ -47,13 +47,14 @@ minute_twice() {
     fi
 }
 
-seconds=10 # Of virtual time.
+seconds=10 # Virtual time.
 ((!full)) || seconds=60
 case "$job" in
     services | faults) scenario "$job" "$job" ;;
     network) scenario network "network,$((seconds / 2)),10,1" ;;
     power_cut | minute_twice) "$job" ;;
-    # An instruction a nanosecond is some three times slower than a real processor: a smaller model.
+    # An instruction a nanosecond is about three times slower than a real processor, so the model is
+    # smaller.
     fast) scenario fast "deadline,$seconds,none,2000,--rate,4000,--frame-budget-us,60" ;;
     mesh)
         ring=mesh:/usr/share/tactus_models/ring.spm

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# make_image.sh FOLDER ARCHITECTURE PACKAGE.deb...: a Debian 12 for that architecture with the RT
-# kernel and these packages, as FOLDER/image (an initramfs) and FOLDER/kernel. It does nothing where
-# they are of the same packages already. Neither is there before it is whole. An initramfs, since
-# what a disk does takes the host's time: without one two runs are the same to the bit.
+# make_image.sh FOLDER ARCHITECTURE PACKAGE.deb...: makes a Debian 12 for that architecture with the
+# RT kernel and these packages, as FOLDER/image (an initramfs) and FOLDER/kernel, unless they
+# already have the same packages. Neither exists before it is complete. An initramfs is used since a
+# disk takes the host's time: without one two runs are equal to the bit.
 # Exit codes: 0 done, 2 failed, 77 something is missing here.
 set -euo pipefail
 readonly folder=$1 architecture=$2
@@ -15,9 +15,9 @@ source "$here/common.sh"
 # shellcheck source=../packages/apt_sources.sh
 source "$here/../packages/apt_sources.sh"
 
-# What the machine has besides: to look at it, to change its network, to drive its device.
+# Further packages of the machine: to inspect it, change its network, and drive its device.
 readonly more=systemd-sysv,udev,kmod,dbus,iproute2,procps,rt-tests,python3-minimal,e2fsprogs
-# Drivers that stay: of its network, of the disk whose power is cut.
+# Drivers that stay: of its network, and of the disk whose power is cut.
 readonly modules='sch_netem veth virtio_pci virtio_blk ext4 crypto-crc32c'
 
 need_tools mmdebstrap bsdtar mke2fs
@@ -42,7 +42,7 @@ mapfile -t sources < <(apt_sources)
 ((${#sources[@]} > 0)) || skip "this machine has no apt sources of Debian's"
 trap 'end_child; rm -f "$folder"/{root.tar,image.partial}' EXIT
 
-# strip ROOT: what the machine doesn't need, and what would differ from boot to boot.
+# strip ROOT: removes everything unneeded, and files that would differ between boots.
 cat >"$folder/strip.sh" <<STRIP
 set -eu
 root=\$1
@@ -74,7 +74,7 @@ done
 ln -sf /sbin/init "\$root/init"
 STRIP
 
-# docs/deploy.md: steps 1 and 2 are what is done here.
+# docs/deploy.md: steps 1 and 2 are executed here.
 debs=$(printf '%q ' "$@")
 printf '%s\n' "${sources[@]}" >"$folder/sources"
 readonly install='apt-get -q install --yes --no-install-recommends'

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# refusals.sh: rt_machine.sh and cross_packages.sh say in one line what is missing, leave nothing
-# half made and nothing running. Stand-ins say what the tools would. And the hand of the scenarios
-# can be made.
+# refusals.sh: rt_machine.sh and cross_packages.sh report missing tools in one line, and leave no
+# partial files and no processes. Stand-ins replace the tools. The hand of the scenarios can be
+# made.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 readonly here
@@ -17,12 +17,12 @@ done
 touch "$scratch/file"
 failures=0
 
-tool() { # tool NAME LINE...: a stand-in.
-    rm -f "$scratch/tools/$1" # It may be a link to the true one.
+tool() { # tool NAME LINE...: makes a stand-in.
+    rm -f "$scratch/tools/$1" # It may be a link to the real one.
     printf '%s\n' '#!/bin/bash' "${@:2}" >"$scratch/tools/$1"
     chmod +x "$scratch/tools/$1"
 }
-# A stand-in of everything that this machine may lack.
+# Stand-in of everything that this machine may lack.
 for name in qemu-system-{x86_64,aarch64} cpio bsdtar mke2fs mmdebstrap; do
     tool "$name" 'exit 0'
 done
@@ -38,7 +38,7 @@ for name in bash basename cat chmod cut dirname env grep id mkdir printf python3
 done
 
 script=rt_machine.sh
-run() { # run ARGUMENT...: with the stand-ins alone.
+run() { # run ARGUMENT...: runs with the stand-ins only.
     code=0
     said=$(PATH=$scratch/tools bash "$here/$script" "$@" 2>&1) || code=$?
 }
@@ -99,14 +99,14 @@ expect 2 "can't be written" arm64 "$scratch/amd64" "$scratch/file/cross"
 mv "$scratch/tools/aarch64-linux-gnu-g++" "$scratch/kept"
 expect 77 'aarch64-linux-gnu-g++ is missing (cmake/packages-rt*.txt)' "${cross[@]}"
 mv "$scratch/kept" "$scratch/tools/aarch64-linux-gnu-g++"
-expect 2 'mmdebstrap failed' "${cross[@]}" # Its stand-in finds no host.
+expect 2 'mmdebstrap failed' "${cross[@]}" # The stand-in finds no server.
 if [[ -e "$scratch/cross/made_of" ]]; then
     echo 'half a sysroot is taken for a whole one'
     failures=$((failures + 1))
 fi
 script=rt_machine.sh
 
-# Ended while the image is made: nothing runs on, and the next run begins anew and says so.
+# Ended during the image's creation: no process continues, and the next run restarts and reports it.
 # shellcheck disable=SC2016 # It is the stand-in's shell that knows $$.
 tool mmdebstrap 'echo $$ >"'"$scratch"'/id"' 'touch "'"$scratch"'/out/root.tar"' 'exec sleep 30'
 PATH=$scratch/tools bash "$here/rt_machine.sh" "${both[@]}" >"$scratch/said" 2>&1 &
@@ -128,7 +128,7 @@ tool mmdebstrap 'echo E: no such host; exit 1'
 run "${both[@]}"
 [[ "$said" == *'half made'* ]] || { echo "not said that it was half made: $said"; failures=1; }
 
-# The machine does not start; all machines are ended with the script that started them.
+# The machine does not start; all machines end with the script that started them.
 tool mmdebstrap 'exit 0'
 tool bsdtar 'touch "'"$scratch"'/out/image.partial"'
 tool qemu-system-x86_64 'echo no such board; exit 1'
@@ -157,7 +157,7 @@ while read -r id; do
     fi
 done <"$scratch/qemu"
 
-# The hand of its scenarios can be made of the driver that the documentation has.
+# The hand of its scenarios can be made from the documentation's driver.
 (
     cd "$scratch"
     # shellcheck source=scenarios/helpers.sh

@@ -1,10 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # rt_machine.sh FOLDER PACKAGES [--quick]: a machine with a PREEMPT_RT kernel and the Debian
-# packages of folder PACKAGES, of whose architecture it is, in QEMU, its time counted in
-# instructions: services, deadline tests, faults, and one run twice. What it prints is also in
-# FOLDER/rt.json, as tactus_bench --json has its results. --quick: seconds instead of minutes, for
-# what shows whether it works.
+# packages of folder PACKAGES, with their architecture, in QEMU, with time counted in instructions:
+# services, deadline tests, faults, and one run twice. The results are also in FOLDER/rt.json, in
+# the form of tactus_bench --json. --quick: seconds instead of minutes, to show whether it works.
 # Exit codes: 0 done, 1 a criterion was not met, 2 failed, 3 usage, 77 something is missing here.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -33,19 +32,19 @@ need_tools "$machine_program" taskset cpio python3
 await bash "$here/make_image.sh" "$folder" "$architecture" "${debs[@]}" || exit
 make_initrd "$here/scenarios"
 
-# A machine takes one processor and less than 3 GB, so there may be more than one at a time.
+# A machine takes one processor and less than 3 GB, so several may run at a time.
 mapfile -t free < <(python3 -c 'import os; print(*os.sched_getaffinity(0), sep="\n")')
 memory_kb=$(sed -n 's/^MemAvailable: *\([0-9]*\) kB/\1/p' /proc/meminfo)
 at_once=$((memory_kb / 3000000))
-free=("${free[@]:0:$((at_once > 1 ? at_once : 1))}") # Processors that none is on.
-declare -A processor job # Of what runs, by its process.
+free=("${free[@]:0:$((at_once > 1 ? at_once : 1))}") # Processors without a machine.
+declare -A processor job # Running jobs by process.
 end_jobs() {
     ((${#job[@]} == 0)) || kill -TERM "${!job[@]}" 2>/dev/null || true
     wait
 }
 trap 'end_child; end_jobs' EXIT
 faults=0
-await_job() { # Any of them.
+await_job() { # Waits for any of them.
     local code=0 ended name
     wait -n -p ended "${!job[@]}" || code=$?
     name=${job[$ended]}

@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # demo_shortened.sh SETUP BUILD_DIR [--scene | --view]: the README's demo with the programs of this
-# build, for a second: it ends well, prints the summary, names the report, and leaves no process
-# behind.
+# build, for a second: it ends well, prints the summary, names the report, and leaves no process.
 set -euo pipefail
 readonly setup=$1
 export TACTUS_BUILD_DIR=$2
@@ -16,7 +15,7 @@ fail() {
 
 output=$(mktemp)
 trap 'rm -f "$output"' EXIT
-# A session of its own tells the demo's processes from all others.
+# A separate session distinguishes the demo's processes from all others.
 code=0
 # shellcheck disable=SC2016 # The inner shell expands them.
 setsid --wait bash -c 'echo $$ >"$1"; shift; exec bash "$@"' demo "$output.session" \
@@ -40,12 +39,12 @@ done
 report=$(sed -n 's/^Report: //p' "$output")
 [[ -s "$report" ]] || fail "no report at '$report'"
 for stat in /proc/[0-9]*/stat; do
-    # Behind the name, which is in brackets: state, parent, group, session.
+    # Fields after the name, which is in parentheses: state, parent, group, session.
     read -r _ _ _ of_session _ 2>/dev/null < <(sed 's/.*) //' "$stat" 2>/dev/null) || continue
     [[ "$of_session" != "$session" ]] || fail "left running: $(cat "$stat")"
 done
 
-# A scene and a view are the demo's alone.
+# Only the demo takes a scene and a view.
 code=0
 refusal=$(unset TACTUS_BUILD_DIR && bash "$setup" bench --scene 2>&1) || code=$?
 [[ $code == 3 && "$refusal" == *"--scene and --view are for 'demo' only"* ]] \

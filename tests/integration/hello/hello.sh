@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# hello.sh HELLO SPM_BUILD PAGE: PAGE's lines for a shell touch a model as it says, and it shows the
-# program's source.
+# hello.sh HELLO SPM_BUILD PAGE: PAGE's lines for a shell touch a model with the stated output, and
+# it shows the program's source.
 set -euo pipefail
 readonly hello=$1 build=$2 page=$3
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -11,19 +11,19 @@ cd "$scratch"
 
 fail() { printf 'FAULT: %s\n' "$*"; exit 1; }
 
-# The page's one block of C++.
+# Single C++ block of the page.
 # shellcheck disable=SC2016 # Backquotes as they stand in the page.
 sed -n '/^```cpp$/,/^```$/p' "$page" | sed '1d;$d' >shown.cpp
 diff "$here/hello.cpp" shown.cpp || fail "$page shows another program than hello.cpp"
 
-# The page's lines, where the build folder is as they say.
+# Lines of the page, with the build folder at their path.
 mkdir -p build/release/{bin,tests}
 ln -s "$build" build/release/bin/spm_build
 ln -s "$hello" build/release/tests/hello
 # shellcheck disable=SC2016 # Backquotes as they stand in the page.
 sed -n '/^```sh$/,/^```$/p' "$page" | sed '1d;$d' >shown.sh
 said=$(bash -eu shown.sh 2>log.txt) || fail "the page's lines end with $?: $said $(<log.txt)"
-said=$(tail -n 1 <<<"$said") # spm_build has said its part.
+said=$(tail -n 1 <<<"$said") # The earlier lines are spm_build's.
 grep -qxF "$said" "$page" || fail "hello says '$said', the page something else"
 
 code=0

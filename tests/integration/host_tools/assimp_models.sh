@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # assimp_models.sh SPM_BUILD SPM_INSPECT: the sample files of Debian's package assimp-testmodels.
-# Each good one becomes a model, or models, that spm_inspect finds sound; each broken one is refused
-# with exit code 2 and one line that names it. Files of which that depends on the release of glTF or
-# of an extension are only held to one of the two.
+# Each valid one becomes one or more models that spm_inspect finds sound; each broken one is refused
+# with exit code 2 and one line that names it. Files whose validity depends on the release of glTF
+# or of an extension must satisfy one of the two.
 set -euo pipefail
 readonly build=$1 inspect=$2 models=/usr/share/assimp/models
 if [[ ! -d $models ]]; then
@@ -14,7 +14,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 failures=0
 
-# The engine is an assembly: one of its bodies has more than 500 faces that can't vanish.
+# The engine is an assembly: one of its parts has more than 500 faces that cannot vanish.
 good='OBJ/WusonOBJ.obj OBJ/box.obj OBJ/box_longline.obj OBJ/box_mat_with_spaces.obj
     OBJ/box_without_lineending.obj OBJ/concave_polygon.obj OBJ/cube_mtllib_after_g.obj
     OBJ/cube_usemtl.obj OBJ/cube_with_vertexcolors.obj OBJ/cube_with_vertexcolors_uni.obj
@@ -37,14 +37,14 @@ broken='OBJ/point_cloud.obj OBJ/testline.obj OBJ/testpoints.obj OFF/invalid.off 
     glTF2/TestNoRootNode/SceneWithoutNodes.gltf invalid/OutOfMemory.off invalid/empty.obj
     invalid/empty.off invalid/empty.ply invalid/malformed.obj'
 
-# fail NAME WHAT: the test goes on with the other files.
+# fail NAME WHAT: reports a failure; the test continues with the other files.
 fail() {
     printf '%s: %s\n' "$1" "$2"
     sed 's/^/    /' "$scratch/told"
     failures=$((failures + 1))
 }
 
-# try NAME: sets `code`; what is built is inspected, a refusal is one line with the file's name.
+# try NAME: sets `code`; a model is inspected, a refusal is one line with the file's name.
 try() {
     local out=$scratch/out.spm model
     [[ ${1,,} == *.gl* ]] && out=$scratch/scene

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # bad_input.sh SPM_BUILD SPM_INSPECT: every kind of bad input gives the right exit code and exactly
-# one line that begins with the program's name and says what is wrong; no file is left behind.
-# HostOptions refuses wrong options, and ReadMesh what is wrong within a mesh.
+# one line that begins with the program's name and states the fault; no file is left behind.
+# HostOptions covers wrong options, and ReadMesh faults within a mesh.
 set -euo pipefail
 readonly build=$1 inspect=$2
 scratch=$(mktemp -d)
@@ -11,7 +11,7 @@ cd "$scratch"
 mkdir in out
 failures=0
 
-# expect CODE TEXT PROGRAM ARGUMENT...: the one line holds TEXT, and out/ stays as it was.
+# expect CODE TEXT PROGRAM ARGUMENT...: expects one line with TEXT, and an unchanged out/.
 expect() {
     local code=0 wanted=$1 text=$2 output before
     shift 2
@@ -25,7 +25,7 @@ expect() {
     fi
 }
 
-# refuse_mesh TEXT NAME: in/NAME is refused by its name, with exit 2.
+# refuse_mesh TEXT NAME: expects in/NAME to be refused by its name, with exit 2.
 refuse_mesh() { expect 2 "$1" "$build" "in/$2" -o out/a.spm; }
 
 readonly vertices='v 0 0 0
@@ -50,7 +50,7 @@ if ((EUID != 0)); then # Root may write anywhere.
     expect 2 out/a.spm "$build" in/mesh.obj -o out/a.spm
     chmod u+w out
 fi
-# Rings keep their holes, so each keeps 14 faces or more: the base of 50 of them grows.
+# Rings keep their holes, so each keeps at least 14 faces: the base of 50 of them grows.
 awk 'BEGIN {
     for (ring = 0; ring < 50; ++ring) {
         for (i = 0; i < 16; ++i) {
@@ -72,7 +72,7 @@ awk 'BEGIN {
 "$build" in/rings.obj -o rings.spm >rings.log 2>&1 || failures=$((failures + 1))
 grep -q 'note: the base mesh has [0-9]* faces, 500 were wanted' rings.log ||
     { cat rings.log; failures=$((failures + 1)); }
-# Loose triangles vanish into one another.
+# Separate triangles vanish into each other.
 for ((i = 0; i < 600; ++i)); do
     printf 'v %d 0 0\nv %d 1 0\nv %d 0 1\nf -3 -2 -1\n' $((2 * i)) $((2 * i)) $((2 * i))
 done >in/soup.obj
@@ -94,7 +94,7 @@ expect 2 '--region: meets nothing of the model, which lies in x -' \
     "$inspect" out/sphere.spm --extract --region sphere:9,9,9,0.1 -o out/a.ply
 expect 2 nowhere/a.ply "$inspect" out/sphere.spm --json --extract --faces 100 -o nowhere/a.ply
 
-# refuse_points TEXT LINE...: points of a file, by the number of the line or of the point.
+# refuse_points TEXT LINE...: refuses points of a file, by the number of the line or of the point.
 refuse_points() {
     printf '%s\n' "${@:2}" >in/points.txt
     expect 2 "in/points.txt: $1" "$inspect" out/sphere.spm --distances in/points.txt
@@ -107,7 +107,7 @@ refuse_points 'point 1 (0 0 1e+300): not within' '0 0 0' '0 0 1e300'
 expect 2 'in/nowhere.txt: no such file' "$inspect" out/sphere.spm --distances in/nowhere.txt
 echo '0 0 0' >in/point.txt
 expect 2 'in/bent.spm: 1 piece is damaged' "$inspect" in/bent.spm --distances in/point.txt
-# So far from the origin that floats can't tell the vertices apart.
+# Vertices so far from the origin that floats cannot distinguish them.
 awk '/^v/ { printf "v %.3f %s %s\n", $2 + 5e7, $3, $4; next } 1' in/mesh.obj >in/far.obj
 "$build" in/far.obj --fit-diag 0.1 -o in/far.spm >/dev/null 2>&1
 expect 2 "out/a.stl: STL's 32-bit coordinates" \

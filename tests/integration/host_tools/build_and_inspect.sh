@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# build_and_inspect.sh SPM_BUILD SPM_INSPECT: what goes right: figures, extraction, replacing a
+# build_and_inspect.sh SPM_BUILD SPM_INSPECT: successful runs: figures, extraction, replacement of a
 # file, an interrupted run.
 set -euo pipefail
 readonly build=$1 inspect=$2
@@ -9,9 +9,9 @@ trap 'rm -rf "$scratch"' EXIT
 cd "$scratch"
 
 fail() { printf 'FAULT: %s\n' "$*"; exit 1; }
-# figure NAME: a number of spm_build's JSON, one flat line on stdin.
+# figure NAME: prints a number of spm_build's JSON, one flat line on stdin.
 figure() { sed -n "s/.*\"$1\": *\([-+.e0-9]*\).*/\1/p"; }
-# seen NAME: the same of spm_inspect's, whose outermost figures are indented by two.
+# seen NAME: the same for spm_inspect's JSON, whose outermost figures are indented by two.
 seen() { sed -n "s/^  \"$1\": \([-+.e0-9]*\),*$/\1/p" seen.json; }
 
 [[ $("$build" --version) == 'spm_build '* ]] || fail 'spm_build --version'
@@ -33,12 +33,12 @@ keys=$(grep -o '"[a-z_]*":' built.json | tr -d '":' | sort | paste -sd ' ')
 for name in $keys; do
     [[ -n $(figure "$name" <built.json) ]] || fail "$name is no number"
 done
-# What was sampled can't be beyond what is certified; and the base mesh of a torus is not exact.
+# Sampled distances cannot exceed certified ones; the base mesh of a torus is not exact.
 awk -v sampled="$(figure hausdorff_diag_sampled <built.json)" \
     -v bound="$(figure e_max_diag <built.json)" \
     'BEGIN { exit !(0 < sampled && sampled <= bound && bound < 10 * sampled) }' \
     || fail 'the sampled distance and the certified bound'
-# A size that is hardly meant is noted, with the unit that would mend it; one that was given is not.
+# An unlikely size is noted, with a better unit; an explicit one is not.
 printf 'v 0 0 0\nv 300 0 0\nv 0 400 0\nf 1 2 3\n' >large.obj
 "$build" large.obj -o large.spm >large.txt 2>notes.txt
 grep -q '^note: the model is 500 m across; .* --unit mm (0.5 m) or cm (5 m), --scale' notes.txt \
@@ -48,7 +48,8 @@ grep -q '^diagonal 0.5 m, a unit of the mesh is 0.001 m' large.txt || fail "$(ca
 "$build" large.obj -o large.spm --fit-diag 20 >large.txt 2>>notes.txt
 grep -q '^diagonal 20 m, a unit of the mesh is 0.04 m' large.txt || fail "$(cat large.txt)"
 [[ ! -s notes.txt ]] || fail "$(cat notes.txt)"
-# expect_placed LOW HIGH, of each axis, ARGUMENT...: where spm_inspect sees large.obj's model.
+# expect_placed LOW HIGH, for each axis, ARGUMENT...: expects large.obj's model at this place in
+# spm_inspect.
 expect_placed() {
     "$build" large.obj -o placed.spm "${@:7}" >/dev/null 2>notes.txt || fail "$(cat notes.txt)"
     "$inspect" placed.spm | awk -v expected="${*:1:6}" '
@@ -67,7 +68,7 @@ grep -qx 'note: moved by -1.15, -7.2, -0.005 m to the origin' notes.txt || fail 
 "$build" large.obj -o far.spm --fit-diag 0.2 >/dev/null 2>notes.txt
 grep -q '^note: the model stands [0-9.]* m from its origin, .* --center puts it there' notes.txt \
     || fail "$(cat notes.txt)"
-# What needs more memory than is allowed is refused before the work, with the least that works.
+# A need beyond the memory limit is refused before the work, with the least sufficient limit.
 "$build" --shape sphere --faces 100000 -o refused.spm --memory-mib 30 2>said.txt && fail '30 MiB'
 least=$(sed -n 's/.* faces needs \([0-9]*\) MiB; --memory-mib allows 30$/\1/p' said.txt)
 "$build" --shape sphere --faces 100000 -o refused.spm --memory-mib "$((least - 1))" 2>said.txt \

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# demo_scene.sh SPM_BUILD DEMO_SCENE: the script that makes the demo's scene writes the same bytes
-# each time, and a file that becomes 200 objects of 20 models. Skips (77) without python3.
+# demo_scene.sh SPM_BUILD DEMO_SCENE: the script of the demo's scene writes the same bytes each
+# time, in a file that becomes 200 objects of 20 models. Skips (77) without python3.
 set -euo pipefail
 readonly build=$1 script=$2
 command -v python3 >/dev/null || { echo 'no python3'; exit 77; }

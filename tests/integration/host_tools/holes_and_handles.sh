@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# holes_and_handles.sh SPM_BUILD SPM_INSPECT: a scan with pinholes, a sheet with many holes through
-# it and chain mail become models with a small base, which spm_inspect finds sound: every face is
-# there, what was closed is closed, and no bound is wrong in the cuts that it tries.
+# holes_and_handles.sh SPM_BUILD SPM_INSPECT: a scan with pinholes, a sheet with many holes and
+# chain mail become models with a small base, which spm_inspect finds sound: every face is present,
+# closed surfaces stay closed, and no bound is wrong in the tested cuts.
 set -euo pipefail
 readonly build=$1 inspect=$2
 scratch=$(mktemp -d)
@@ -10,7 +10,7 @@ trap 'rm -rf "$scratch"' EXIT
 cd "$scratch"
 failures=0
 
-# check NAME FACES CLOSED BASE NOTE: NAME.obj has so many faces, and the note is told.
+# check NAME FACES CLOSED BASE NOTE: expects the faces of NAME.obj, and the note.
 check() {
     local base
     "$build" "$1.obj" -o "$1.spm" --json >built.json 2>told || { cat told; exit 1; }
@@ -24,7 +24,7 @@ check() {
     fi
 }
 
-# 120 x 120 squares, from each ninth a face is missing: 1,600 holes of three edges.
+# 120 x 120 squares with a face missing in each ninth: 1,600 holes of three edges.
 awk 'BEGIN {
     for (y = 0; y <= 120; ++y) for (x = 0; x <= 120; ++x)
         print "v", x / 1000, y / 1000, sin(x / 9) * cos(y / 7) / 300
@@ -36,7 +36,7 @@ awk 'BEGIN {
 }' >scan.obj
 check scan 27200 false 500 ''
 
-# A closed sheet with 24 x 24 square holes: 576 handles, so a base of 2,306 faces at least.
+# Closed sheet with 24 x 24 square holes: 576 handles, so a base of at least 2,306 faces.
 awk 'function side(a, b, c, d) { print "f", a, b, c; print "f", a, c, d }
 function at(x, y, z) { return (y * (n + 1) + x) * 2 + z + 1 }
 function solid(x, y) { return x >= 0 && y >= 0 && x < n && y < n && (x % 2 == 0 || y % 2 == 0) }
@@ -59,7 +59,7 @@ BEGIN {
 }' >sheet.obj
 check sheet "$(grep -c '^f' sheet.obj)" true 2000 'handles cut open, without a gap, at'
 
-# 200 rings in rows; each keeps 14 faces or more while it is one.
+# 200 rings in rows; each keeps at least 14 faces while it is a ring.
 awk 'BEGIN {
     pi = atan2(0, -1)
     for (k = 0; k < 200; ++k) {

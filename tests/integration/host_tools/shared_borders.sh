@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # shared_borders.sh SPM_BUILD SPM_INSPECT: two tiles of a glTF scene, one four times as large as the
-# other, keep a border in common, wherever the scene is placed; placing changes no model.
+# other, keep a common border at any placement of the scene; placing changes no model.
 set -euo pipefail
 readonly build=$1 inspect=$2
 scratch=$(mktemp -d)
@@ -9,8 +9,8 @@ trap 'rm -rf "$scratch"' EXIT
 cd "$scratch"
 fail() { printf 'FAULT: %s\n' "$*"; exit 1; }
 
-# Fans of three faces on both sides of a line of four vertices near x = 0.1, by corners of whole
-# 2^-20 m that lie between the grid's steps of 2^-17 m.
+# Fans of three faces on both sides of a line of four vertices near x = 0.1, with corners at whole
+# 2^-20 m between the grid's steps of 2^-17 m.
 base64 -d >tiles.bin <<'BYTES'
 wJkZvgAAAAAAAPg3wJgZvgBJHD0AVpw8QJ0ZvoConj0AXBy8QJkZvoDo/T0AWJw7cD4JvwBtaj0AYPo6ODOzvwAAAECA8P+9
 GDOzvyRxAkCA6ti9qDOzv0T1BEDAxQm+KDOzv0TvB0CAOva9gFH4PcRFBEBAygi+AAABAAQAAQACAAQAAgADAAQAAQAAAAQA
@@ -33,7 +33,7 @@ cat >tiles.gltf <<'GLTF'
  "buffers": [{"byteLength": 156, "uri": "tiles.bin"}]}
 GLTF
 
-# border_of FOLDER TILE: the places of the tile's vertices in its scene's world, in 0.1 um.
+# border_of FOLDER TILE: prints the places of the tile's vertices in its scene's world, in 0.1 um.
 border_of() {
     local at
     "$inspect" "$1/$2.spm" --extract --error 0 -o "$1-$2.obj" >/dev/null
@@ -63,8 +63,8 @@ for folder in made--center turned; do
     cmp made/right.spm "$folder/right.spm" || fail "$folder: another model"
 done
 
-# Fans on both sides of 24 vertices in the middles of steps. Coordinates of floats in two frames are
-# as far apart as the last digit, and half of the vertices would be rounded to other places.
+# Fans on both sides of 24 vertices in the middles of steps. Float coordinates in two frames differ
+# by the last digit, and half of the vertices would be rounded to other places.
 base64 -d >floats.bin <<'BYTES'
 hevRvqAaLz7NzEy9UrievvvwdT7Nfiy9UrievvuRXj7NYlC9UrievvtPWz7N0nS9UrievvsgVz7NUk+9UrievvuDTD7Npi+9
 Urievvu6OD7NUmq9UrievvtQNz7N6lG9UrievvslLj7NIjm9UrievvuQHz7NFla9UrievvsAHD7N/l69UrievvvAGD7N5lW9
@@ -94,7 +94,7 @@ border_of floats right
 comm -12 floats-left.txt floats-right.txt >border.txt
 (($(wc -l <border.txt) == 24)) || fail "borders of floats: $(cat floats-{left,right}.txt)"
 
-# The same with one face on the right, on whose edge the vertices of the left lie: it gets them.
+# The same with one face on the right, whose edge contains the left's vertices: it gets them.
 base64 -d >floats.bin <<'BYTES'
 hevRvqAaLz7NzEy9UrievoLugj4VJx+9UrievgVNgD6C4yG9UrieviUncD4tcSq9UrievkxTaj7veC29UrievnbmST5fVT69
 UrievomRRT4DlkC9UrievqdKPD7zaEW9UrievpuxND5gXEm9UrievlhzLz5aFky9Urievn7ZIT7qKFO9UrievtkqID7ZCFS9
@@ -113,7 +113,7 @@ border_of edge right
 comm -12 edge-left.txt edge-right.txt >border.txt
 (($(wc -l <border.txt) == 24)) || fail "borders of edge: $(cat edge-{left,right}.txt)"
 
-# Bits that are asked for and too few are told so.
+# A request for too few bits is reported.
 printf 'OFF 3 1 0\n0 0 0\n0.1 0 0\n0.1 1e-5 0\n3 0 1 2\n' >needle.off
 "$build" needle.off -o needle.spm --position-bits 16 >/dev/null 2>needle.said
 grep -q '^note: 16 bits a coordinate, as asked for, .* without --position-bits they' needle.said \

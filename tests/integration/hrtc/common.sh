@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 # shellcheck shell=bash disable=SC2034 # The scripts use what is set here.
-# What the scripts of this folder share; sourced with "$@" being BIN CHECK_REPORT SANITIZER: the
-# folder of the programs, the report checker, and what -fsanitize= the build had, or none. It enters
-# a fresh folder that vanishes at the end together with every process that was started here.
+# Functions of this folder's scripts; sourced with "$@" being BIN CHECK_REPORT SANITIZER: the folder
+# of the programs, the report checker, and the build's -fsanitize=, or none. Enters a new folder
+# that is removed at the end together with every process that was started here.
 set -euo pipefail
 readonly build=$1/spm_build inspect=$1/spm_inspect publish=$1/spm_publish hrtc=$1/hrtc
 readonly check_report=$2 sanitizer=${3#none}
-# Our own domain, our own loopback: nobody else's models, and none of ours on a real interface.
+# A separate domain on loopback: no foreign models, and none of ours on a real interface.
 readonly domain=${TACTUS_TEST_DOMAIN:-$(($$ % 231))}
 unset CYCLONEDDS_URI
-# What the programs of either side are started by: two_networks.sh fills them.
+# Prefixes that start the programs of either side, set by two_networks.sh.
 on_host=()
 on_controller=()
 
@@ -19,14 +19,14 @@ leave() {
     local id
     for id in "${started[@]}"; do
         kill -KILL "$id" 2>/dev/null || true
-        wait "$id" 2>/dev/null || true # Without it bash tells of the kill.
+        wait "$id" 2>/dev/null || true # Otherwise bash reports the kill.
     done
     rm -rf "$scratch"
 }
 trap leave EXIT
 cd "$scratch"
 
-# model SHAPE-FACES FILE: of make_models.sh where it has run, otherwise made here.
+# model SHAPE-FACES FILE: links the model of make_models.sh if it exists, otherwise makes it.
 model() {
     local made=${TACTUS_TEST_MODELS:-}/$1.spm
     if [[ -f "$made" ]]; then
@@ -47,8 +47,8 @@ fail() {
 }
 finish() { ((failures == 0)) || fail "$failures faults in all"; }
 
-# expect CODE PATTERN PROGRAM ARGUMENT...: that exit code, and exactly one line, which begins with
-# the program's name, perhaps with a subcommand's, and holds what matches PATTERN.
+# expect CODE PATTERN PROGRAM ARGUMENT...: expects that exit code, and exactly one line, which
+# begins with the program's name, optionally a subcommand's, and matches PATTERN.
 expect() {
     local code=0 wanted=$1 pattern=$2 output name
     shift 2
@@ -64,8 +64,8 @@ expect() {
     fi
 }
 
-# expect_found CODE PATTERN ARGUMENT...: the same of an hrtc that first looks for what is on the
-# domain. It gets more time until it has found that.
+# expect_found CODE PATTERN ARGUMENT...: the same for an hrtc that first discovers the domain, which
+# gets more time.
 expect_found() {
     local code=$1 pattern=$2 wait_s
     shift 2
@@ -81,10 +81,10 @@ is_as_expected() {
     ((failures == 0))
 }
 
-# Waits are for events. The limit is there for what never comes, and no machine is too busy for it.
+# Waits are for events. The limit detects missing ones and exceeds the delays of any machine.
 readonly patience_s=150
 
-# wait_until WHAT COMMAND...: the command succeeds; WHAT is named when it never does.
+# wait_until WHAT COMMAND...: waits for success of the command; names WHAT otherwise.
 wait_until() {
     local what=$1 end=$((SECONDS + patience_s))
     shift
@@ -94,18 +94,19 @@ wait_until() {
     done
 }
 
-# lines TEXT FILE: how many lines hold it.
+# lines TEXT FILE: prints the number of lines that contain it.
 lines() { grep -csF -- "$1" "$2" || true; }
-# lines_of_host MODEL FILE: how many lines tell of the model's host; on a slow machine or a bad
-# network others name pieces that don't come.
+# lines_of_host MODEL FILE: prints the number of lines about the model's server; on a slow machine
+# or a bad network others name missing pieces.
 lines_of_host() { grep -sF -- "model '$1'" "$2" | grep -vcF ': chunk ' || true; }
 has_lines() { (($(lines "$1" "$2") >= $3)); }
 
-# wait_for_line FILE TEXT [COUNT]: so many lines at least, or one, hold the text.
+# wait_for_line FILE TEXT [COUNT]: waits for at least this number of lines with the text, by default
+# one.
 wait_for_line() { wait_until "'$2' in $1" has_lines "$2" "$1" "${3:-1}"; }
 
-# frames_in FILE [NAME]: the frames that a controller, or the one of that name, had run when the
-# host whose words are in FILE, one with --watch, last printed them. It does so once a second.
+# frames_in FILE [NAME]: prints the frames of a controller, or of NAME, in the last line of the
+# server with --watch whose output is in FILE. It prints once a second.
 frames_in() {
     awk -v name="${2:-}" '
         $1 == "watch" && (name == "" || $2 == name ":") && $3 > most { most = $3 + 0 }
@@ -113,32 +114,32 @@ frames_in() {
 }
 has_frames() { (($(frames_in "$2" "${3:-}") >= $1)); }
 
-# wait_for_frames COUNT FILE [NAME]: so many are printed there.
+# wait_for_frames COUNT FILE [NAME]: waits until that number is printed there.
 wait_for_frames() { wait_until "controller with $1 frames in $2" has_frames "$@"; }
 
-# wait_for_more_frames COUNT FILE [NAME]: so many are run after this call.
+# wait_for_more_frames COUNT FILE [NAME]: waits for that number of frames from now on.
 wait_for_more_frames() {
     wait_for_frames $(($(frames_in "${@:2}") + 1)) "${@:2}"
     wait_for_frames $(($(frames_in "${@:2}") + $1)) "${@:2}"
 }
 
-# wait_for_contact FILE [NAME]: that controller is printed as one that touches something.
+# wait_for_contact FILE [NAME]: waits until that controller is printed as touching.
 wait_for_contact() {
     wait_until "contact in $1" grep -Eqs "^watch ${2:-[^ ]*}: .* N in contact" "$1"
 }
 
-# wait_for_sleeps COUNT ID: a thread of that process has slept so often. One of hrtc's does so up to
-# three times a millisecond.
+# wait_for_sleeps COUNT ID: waits until a thread of that process has slept this often. One of hrtc's
+# does so up to three times a millisecond.
 wait_for_sleeps() { wait_until "thread of process $2 that slept $1 times" has_slept "$@"; }
 has_slept() { (($(sleeps_of "$2") >= $1)); }
 sleeps_of() {
     awk '$1 == "voluntary_ctxt_switches:" && $2 > most { most = $2 } END { print most + 0 }' \
         "/proc/$1/task/"*/status 2>/dev/null
 }
-# wait_for_more ID [SLEEPS]: that process goes on for so long, an hrtc for a second.
+# wait_for_more ID [SLEEPS]: lets that process continue for this time, an hrtc for a second.
 wait_for_more() { wait_for_sleeps $(($(sleeps_of "$1") + ${2:-3000})) "$1"; }
 
-# start_publisher ARGUMENT...: returns when it is ready; its id is in $publisher, its words in
+# start_publisher ARGUMENT...: returns when it is ready; its id is in $publisher, its output in
 # publish.log.
 start_publisher() {
     : >publish.log
@@ -154,36 +155,36 @@ stop() {
     kill -"$1" "$2" || fail "process $2 had ended before it was stopped"
     wait "$2" 2>/dev/null || stopped_with=$?
 }
-# stop_publisher: the one that was started last, which must end well.
+# stop_publisher: ends the last one started, which must end well.
 stop_publisher() {
     stop TERM "$publisher"
     ((stopped_with == 0)) || fault "spm_publish ended with $stopped_with: $(cat publish.log)"
 }
 
-# start_hrtc ARGUMENT...: in the background; its id is in $controller, its words in hrtc.log.
+# start_hrtc ARGUMENT...: starts it in the background; its id is in $controller, its output in
+# hrtc.log.
 start_hrtc() {
     "${on_controller[@]}" "$hrtc" --allow-no-rt --domain "$domain" "$@" >hrtc.log 2>&1 &
     controller=$!
     started+=("$controller")
 }
-# end_hrtc [CODE]: what start_hrtc started ends by itself with that code, or with 0.
+# end_hrtc [CODE]: waits until the program of start_hrtc ends by itself with that code, or 0.
 end_hrtc() {
     local code=0
     wait "$controller" || code=$?
     cat hrtc.log
     ((code == ${1:-0})) || fail "hrtc ended with $code"
 }
-# stop_hrtc: it is told to end, and ends well. A run in which the other side's events are waited for
-# is ended when they have come.
+# stop_hrtc: ends it, with success. Used for runs that wait for the other side's events.
 stop_hrtc() {
     kill -TERM "$controller" || fail "hrtc had ended before it was stopped: $(cat hrtc.log)"
     end_hrtc 0
 }
 
-# run_hrtc ARGUMENT...: to its end, which must be a good one; its words in hrtc.log. A machine that
-# holds the loop up ends the force each time, and the hand may lose what it touches; one that holds
-# a host up for longer than its liveliness makes it one that is lost. Then it says so and runs
-# again, five times in all. With contact=0 no touch is expected.
+# run_hrtc ARGUMENT...: runs to a successful end; the output is in hrtc.log. A machine that stalls
+# the loop ends the force each time, and the hand may lose the contact; one that stalls a server
+# longer than its liveliness makes it a lost one. The run is then repeated with a note, five times
+# in all. With contact=0 no touch is expected.
 run_hrtc() {
     local try
     for try in 1 2 3 4 5; do
@@ -194,7 +195,7 @@ run_hrtc() {
     done
 }
 
-# was_held_up FILE: whether the machine stalled the loop.
+# was_held_up FILE: true if the machine stalled the loop.
 was_held_up() { ! "$check_report" "$1" safety.begun.stall == 0 >/dev/null; }
 was_disturbed() {
     ! "$check_report" "$1" wire.host_lost == 0 >/dev/null || {
@@ -203,8 +204,8 @@ was_disturbed() {
     }
 }
 
-# check_contact FILE KEY SHARE: more than this share of the frames in contact; some are where the
-# loop was held up each time.
+# check_contact FILE KEY SHARE: expects more than this share of the frames in contact; some if the
+# loop was stalled each time.
 check_contact() {
     local share=$3
     ! was_held_up "$1" || share=0
@@ -216,7 +217,7 @@ check() {
     "$check_report" "$@" || fault "$1, see above"
 }
 
-# check_sizes FILE...: these logs hold a summary and no more than 40 lines a second.
+# check_sizes FILE...: expects a summary and at most 40 lines a second in these logs.
 check_sizes() {
     local file
     for file; do
@@ -224,8 +225,8 @@ check_sizes() {
     done
 }
 
-# check_clean FILE: what holds for every run. Under a sanitizer, which allocates and faults on its
-# own account, only that the keys are there.
+# check_clean FILE: checks the laws of every run; under a sanitizer, which allocates and faults
+# itself, only the presence of the keys.
 check_clean() {
     check "$1" schema == 3 realtime.allocations '>=' 0 realtime.page_faults '>=' 0 \
         deadline.own_fault '>=' 0
@@ -237,8 +238,8 @@ check_clean() {
     fi
 }
 
-# check_no_own_fault FILE: but where the kernel may move locked memory, a page that it moves is a
-# fault (docs/deadline-test.md): no more than a few, and those that it has moved meanwhile.
+# check_no_own_fault FILE: expects no overrun. If the kernel may move locked memory, a moved page is
+# a fault (docs/deadline-test.md): a few are permitted, and those that it has moved meanwhile.
 check_no_own_fault() {
     if [[ $(cat /proc/sys/vm/compact_unevictable_allowed 2>/dev/null) == 1 ]]; then
         check "$1" deadline.own_fault '<=' '1*deadline.cycles.page_fault' \
@@ -251,10 +252,10 @@ pages_moved() { awk '$1 == "pgmigrate_success" { print $2 }' /proc/vmstat; }
 pages_moved_before=$(pages_moved)
 readonly pages_moved_before
 
-# deadline_test ARGUMENT...: hrtc deadline-test with its report in run.json and its words in
-# test.log; its exit code, which the report agrees with, is in $ended_with. It is 0 unless the
-# machine was too busy for that three times. The loop does nothing in any try that no machine makes
-# it do. Without locked memory and SCHED_FIFO the loop has faults of its own, and a sanitizer makes
+# deadline_test ARGUMENT...: hrtc deadline-test with its report in run.json and its output in
+# test.log; its exit code, which agrees with the report, is in $ended_with. It is 0 unless the
+# machine was too busy three times. No try may contain actions of the loop that a machine cannot
+# cause. Without locked memory and SCHED_FIFO the loop has overruns of its own, and a sanitizer adds
 # more.
 deadline_test() {
     local try
@@ -274,11 +275,11 @@ deadline_test() {
     done
 }
 
-# is_realtime FILE: whether that run had SCHED_FIFO and locked memory.
+# is_realtime FILE: true if that run had SCHED_FIFO and locked memory.
 is_realtime() { "$check_report" "$1" machine.fifo == 1 machine.memory_locked == 1 >/dev/null; }
 
-# check_answers FILE: the figures that a run with a live host has to reach. How long a host is
-# silent, which makes answers stale, is the machine's matter.
+# check_answers FILE: checks the figures that a run with a live server must reach. Silence of a
+# server, which makes answers stale, depends on the machine.
 check_answers() {
     check_contact "$1" force.contact_share 0.6
     check "$1" answers.bracket '<' '0.01*frames' \

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# deploy.sh: an install into an empty folder has the programs, their services and an example of the
-# options that hrtc takes; under a service manager hrtc says when it is ready, that it is alive, and
-# that it stops. $4 is the build folder.
+# deploy.sh: an installation in an empty folder has the programs, their services and an example of
+# options that hrtc accepts; under a service manager hrtc reports when it is ready, that it is
+# alive, and that it stops. $4 is the build folder.
 source "$(dirname "$0")/common.sh"
 readonly folder=$4
 command -v python3 >/dev/null || exit 77
@@ -18,7 +18,7 @@ done
 [[ $(find root -name 'test_*' -o -name 'tactus_bench' | wc -l) == 0 ]] \
     || fault 'tests are installed, too'
 
-# The example's options, and the services.
+# Options of the example, and the services.
 "$installed/hrtc" --config "$documents/examples/hrtc.toml" --print-config >options.toml \
     || fault 'hrtc does not take the options of its example'
 grep -qx 'duration=86400' options.toml || fault 'the example is not read'
@@ -28,7 +28,7 @@ for unit in hrtc spm_publish spm_view; do
     [[ -s $scratch/root/share/man/man1/$unit.1 ]] || fault "no page of $unit in the manual"
     if command -v systemd-analyze >/dev/null; then
         sed -e "s|^ExecStart=[^ ]*|ExecStart=$installed/$unit|" "$service" >"$unit.service"
-        # It speaks of other units of the machine, too.
+        # It also reports other units of the machine.
         systemd-analyze verify --man=no "./$unit.service" >verify.log 2>&1 || true
         ! grep "$unit\.service" verify.log || fault "systemd does not like the service $unit"
         systemd-analyze security --offline=true --threshold=30 "./$unit.service" >exposure.log \
@@ -36,7 +36,7 @@ for unit in hrtc spm_publish spm_view; do
     fi
 done
 
-# What the example of docs/two-machines.md lets the publisher's service serve.
+# Models that the example of docs/two-machines.md lets the publisher's service serve.
 model bumpy-sphere-5000 ball.spm
 options=$(sed -n 's/^OPTIONS="\(.*\)"$/\1/p' "$documents/docs/examples/spm_publish.default")
 read -ra options <<<"${options/--domain 0/--domain $domain}"
@@ -44,7 +44,7 @@ read -ra options <<<"${options/--domain 0/--domain $domain}"
     || fault 'the example of the service'
 grep -q "^serving 'ball'" publish.log || fault "the example serves: $(cat publish.log)"
 
-# Under a manager that listens.
+# Run under a manager that listens.
 cat >manager.py <<'PYTHON'
 import os, signal, socket, subprocess, sys
 listener = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)

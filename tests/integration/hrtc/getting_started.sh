@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# getting_started.sh: docs/getting-started.md leads to a touched model, word for word.
+# getting_started.sh: docs/getting-started.md leads to a touched model, verbatim.
 page=$(cd "$(dirname "$0")/../../.." && pwd)/docs/getting-started.md
 readonly page
 source "$(dirname "$0")/common.sh"

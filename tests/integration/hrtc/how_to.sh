@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# how_to.sh: what docs/how-to.md shows of shell and Python is run as it stands there, in its order.
-# Its C++ is held by tests/consumer.
+# how_to.sh: runs the shell and Python blocks of docs/how-to.md verbatim, in order. tests/consumer
+# covers its C++.
 page=$(cd "$(dirname "$0")/../../.." && pwd)/docs/how-to.md
 readonly page
 source "$(dirname "$0")/common.sh"

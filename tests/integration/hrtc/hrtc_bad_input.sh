@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# hrtc_bad_input.sh: whatever is wrong with models, files or the report's path gives the right exit
-# code and one line that names it; nothing is left half-written. HrtcOptions refuses wrong options,
-# and decoder laws what is wrong within a file.
+# hrtc_bad_input.sh: any fault of models, files or the report's path gives the right exit code and
+# one line that names it; no file is left half-written. HrtcOptions covers wrong options, and
+# decoder laws faults within a file.
 source "$(dirname "$0")/common.sh"
 model bumpy-sphere-5000 good.spm
 mkdir out
@@ -10,7 +10,7 @@ mkdir out
 refuse() { expect "$1" "$2" "$hrtc" --allow-no-rt "${@:3}"; }
 run_file() { timeout 30 "$hrtc" --allow-no-rt --transport file --model good.spm "$@"; }
 
-# What the machine or the network doesn't have.
+# Resources that the machine or the network does not have.
 (($(nproc --all) > 1023)) || refuse 3 '--cpu: *it may use' --model bumpy --cpu 1023
 refuse 2 "model 'bumpy' is not published on domain $domain" --model bumpy --domain "$domain" \
     --wait 0.2
@@ -35,7 +35,7 @@ softest='0.01 N is 0.02 mm of a wall of 500 N/m, more than the radius'
 refuse 2 "--force-tolerance: $softest of the tool sphere:0.00001; 0 to 0.00495 N" good.spm \
     --tool sphere:0.00001 --force-tolerance 0.01
 
-# What nothing needs of the most memory isn't taken, nor locked.
+# Memory that nothing needs is neither taken nor locked.
 if [[ -z "$sanitizer" ]]; then
     (ulimit -v 2000000 \
         && run_file --pool-mib 4096 --duration 0.5 --report most.json >hrtc.log 2>&1) \
@@ -43,7 +43,7 @@ if [[ -z "$sanitizer" ]]; then
     check most.json frames == 500 pools.total_bytes '<' 20000000
 fi
 
-# A report that can't be written is known before the run.
+# An unwritable report is detected before the run.
 start=$SECONDS
 mkfifo pipe.json
 mkdir folder.json
@@ -54,12 +54,12 @@ done
 [[ -z $(ls -A out)$(ls -A folder.json) && -p pipe.json && -z $(compgen -G '*partial*') ]] \
     || fault "left behind: $(ls -A . out)"
 
-# A chunk that is damaged is refused when it comes; the run goes on with what is sound, says so, and
-# with --strict it has failed.
+# A damaged chunk is refused on arrival; the run continues with sound ones, reports it, and fails
+# with --strict.
 "$inspect" good.spm --json >/dev/null
 cp good.spm chunk.spm
 printf '\xff\xfe\xfd' | dd of=chunk.spm bs=1 seek=$((bytes - 50)) conv=notrunc status=none
-damaged() { # damaged CODE ARGUMENT...: ends with that code and names the damage once.
+damaged() { # damaged CODE ARGUMENT...: expects that code and one line about the damage.
     local code=0
     "$hrtc" --virtual-time --transport file --model chunk.spm --duration 3 \
         --report out/report.json "${@:2}" >hrtc.log 2>&1 || code=$?
@@ -72,7 +72,7 @@ damaged 0
 damaged 1 --strict
 rm -f out/report.json
 
-# A hand that is too fast gets no force, and the report says why.
+# A hand that is too fast gets no force, and the report gives the reason.
 run_file --virtual-time --duration 2 --speed-limit 0.01 --report out/report.json >hrtc.log 2>&1 \
     || { cat hrtc.log; fault 'a run with a speed limit ended badly'; }
 check out/report.json safety.begun.velocity '>' 0 safety.events '>' 2 \
@@ -81,7 +81,7 @@ check out/report.json safety.begun.velocity '>' 0 safety.events '>' 2 \
 grep -q '^safety .*velocity' hrtc.log || fault 'no word about the speed'
 rm -f out/report.json
 
-# A report in .html is a page, whole and with the run's figures.
+# A report in .html is a complete page with the run's figures.
 run_file --duration 0.5 --report out/run.html --report out/report.json >hrtc.log 2>&1 \
     || fault 'no page'
 [[ $(head -n 1 out/run.html) == '<!DOCTYPE html>' && $(tail -n 1 out/run.html) == '</html>' ]] \

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # hrtc_deadline_scene.sh: 200 objects of two models and four tools at 1 kHz, in pools of 2 MiB,
-# without a fault of the loop's own.
+# without an overrun.
 source "$(dirname "$0")/common.sh"
 model bumpy-sphere-5000 ball.spm
 model torus-10000 ring.spm

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# hrtc_deadline_test.sh: the accounting flags what is injected, alone and beside load; report,
+# hrtc_deadline_test.sh: the accounting flags injected faults, alone and beside load; report,
 # histograms and page are written and agree; nothing is left behind; wrong options are refused.
 source "$(dirname "$0")/common.sh"
 model bumpy-sphere-5000 good.spm
@@ -28,7 +28,7 @@ for kind in cpu memory disk; do
     "$hrtc" load $kind </dev/null || fault "load $kind did not end well at the end of its input"
 done
 
-# pass ARGUMENT...: what must hold of any test.
+# pass ARGUMENT...: checks the laws of any test.
 pass() {
     deadline_test --model good.spm --duration 1 "$@"
     [[ -z $(ls temporary) ]] || fault "left behind: $(ls temporary)"
@@ -56,9 +56,9 @@ for title in 'Woken' 'Processor time' 'From the deadline'; do
 done
 [[ $(tail -n 1 run.html) == '</html>' ]] || fault 'the page has no end'
 
-# Ended early it judges nothing, writes nothing and leaves no load behind.
-# Meanwhile the loop has its processor to itself: the last one allowed, with which a list of allowed
-# ones would end.
+# An interrupted test judges nothing, writes nothing and leaves no load.
+# Meanwhile the loop has its processor to itself: the last allowed one, the end of a list of allowed
+# ones.
 rm run.*
 cpu=$(taskset -cp $$ | sed 's/.*[ ,-]//')
 "$hrtc" deadline-test --allow-no-rt --transport file --model good.spm --report run.json \

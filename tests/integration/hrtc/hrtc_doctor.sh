@@ -1,12 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# hrtc_doctor.sh: whatever this machine is like, the doctor's exit code, text and JSON agree with
-# one another and with what the system does; what DDS can't be joined with is critical; wrong
-# options are refused.
+# hrtc_doctor.sh: on any machine the doctor's exit code, text and JSON agree with each other and
+# with the system; a DDS configuration that cannot be joined is critical; wrong options are refused.
 source "$(dirname "$0")/common.sh"
 
-# examine NAME [ARGUMENT...]: text and JSON into NAME.txt and NAME.json, which must agree; the exit
-# code is in $ended_with.
+# examine NAME [ARGUMENT...]: writes text and JSON to NAME.txt and NAME.json, which must agree; the
+# exit code is in $ended_with.
 examine() {
     local name=$1 verdict code=0
     shift
@@ -28,12 +27,12 @@ examine() {
     ! LC_ALL=C grep -q '[^[:print:]]' "$name.txt" || fault "doctor $* prints more than text"
 }
 
-# The counts come first; what is good has a line for all.
+# The counts are first; good checks share one line.
 "$hrtc" doctor >short.txt || true
 [[ $(sed -n 1p short.txt) == *' critical, '*' good' ]] || fault "first: $(sed -n 1p short.txt)"
 (($(grep -c '^good ' short.txt) == 1)) || fault 'more than one line is of what is good'
 
-# verdict_of NAME CHECK: what the text says of it.
+# verdict_of NAME CHECK: prints the verdict in the text.
 verdict_of() { awk -v check="$2" '$2 == check { print $1 }' "$1.txt"; }
 
 examine plain
@@ -41,7 +40,7 @@ cpu=$(taskset -cp $$ | sed 's/.*[ ,-]//')
 examine pinned --cpu "$cpu"
 check pinned.json cpu == "$cpu"
 
-# The system's own word.
+# Verdict of the system.
 wanted=critical
 ! chrt -f 81 true 2>/dev/null || wanted=good
 [[ $(verdict_of plain priority) == "$wanted" ]] || fault "priority is not $wanted"
@@ -49,8 +48,8 @@ wanted=advice
 [[ $(uname -v) != *PREEMPT_RT* ]] || wanted=good
 [[ $(verdict_of plain preemption) == "$wanted" ]] || fault "preemption is not $wanted"
 
-# Who is heard on a domain, and what is published there; by nobody at first.
-domain_says() { # domain_says PATTERN: of the check, which is the 18th.
+# Participants on a domain, and published models; none at first.
+domain_says() { # domain_says PATTERN: checks the 18th check.
     "$hrtc" doctor --domain "$domain" --wait 1 >domain.txt || true
     grep -A 3 -E "^(good|advice) +dds-domain" domain.txt | tr -s ' \n' ' ' | grep -q "$1"
 }
@@ -64,7 +63,7 @@ wait_until 'word of the doctor on the host' domain_says \
 "$hrtc" doctor --json --domain "$domain" --wait 0.5 >domain.json || true
 check domain.json checks == 18
 
-# What is critical of DDS is what hrtc does fail with.
+# A critical DDS finding is a failure of hrtc.
 readonly interface='<Interfaces><NetworkInterface name="nowhere0"/></Interfaces>'
 for uri in "file://$scratch/missing.xml" \
     "<CycloneDDS><Domain><General>$interface</General></Domain></CycloneDDS>"; do
@@ -92,10 +91,10 @@ refuse --fast --fast
 refuse extra extra
 "$hrtc" doctor --help >help.txt || fault 'hrtc doctor --help'
 grep -q -- --json help.txt || fault 'hrtc doctor --help'
-# Not by a pipe: grep leaves at the first match, and what is still written then fails.
+# No pipe: grep exits at the first match, and further writes then fail.
 "$hrtc" --help >help.txt
 grep -q 'hrtc doctor' help.txt || fault 'hrtc --help does not tell of the doctor'
-expect 3 doctor "$hrtc" --allow-no-rt doctor # Only as the first word.
+expect 3 doctor "$hrtc" --allow-no-rt doctor # Accepted only as the first word.
 code=0
 "$hrtc" doctor >/dev/full 2>full.txt || code=$?
 ((code == 2)) || fault "with a full disk doctor ended with $code"

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# hrtc_follows_a_scene.sh: a host's whole scene is touched: objects that are there, come, move and
-# go; a host that dies and one that steps in; objects that can't be touched; scenes that aren't
-# there.
+# hrtc_follows_a_scene.sh: touches a server's whole scene: objects that are added, moved and
+# removed; a server that dies and one that takes over; objects that cannot be touched; missing
+# scenes.
 source "$(dirname "$0")/common.sh"
 model bumpy-sphere-5000 ball.spm
 model torus-10000 ring.spm
@@ -31,7 +31,7 @@ cat >poses.txt <<'POSES'
 1.5 ring-2 1.0 0 0 0 0 0 1
 POSES
 
-# Everything that the host shows is there; what comes and goes does so here as well.
+# All of the server's objects are present, added and removed.
 start_publisher bench.gltf --scene workshop --poses poses.txt --poses-loop
 grep -qx "showing 3 objects as scene 'workshop'" publish.log || fault 'no name of the scene'
 run_hrtc --scene workshop --duration 4 --record scene.rec
@@ -45,19 +45,19 @@ check report.json models == 2 scene.objects_max == 3 scene.came '>=' 2 scene.wen
 "$hrtc" --replay scene.rec >replay.log 2>&1 || fault "another replay: $(cat replay.log)"
 grep -q '^scene .* objects, 3 at most' hrtc.log || fault 'the summary tells no scene'
 
-# With a tool that has a shape.
+# Run with a shaped tool.
 contact=0 run_hrtc --scene workshop --duration 2 --tool box:0.02,0.015,0.01,0.001
 check_clean report.json
 check report.json scene.objects_max == 3 tools.0.torque_max_nm '>' 0 tools.0.twist_max_rad '>' 0
 
-# Left where they are.
+# Objects stay in place.
 contact=0 run_hrtc --scene workshop --duration 1 --ignore-poses
 check report.json scene.objects_room == 512 scene.pairs_room == 32 \
     scene.objects_max '<=' 3 scene.came == 0 scene.went == 0 \
     models.0.pose.followed == 0
 
-# The host dies; one with the same scene steps in where that is allowed, with one object more than
-# there is room for.
+# The server dies; one with the same scene takes over if permitted, with one object more than the
+# capacity.
 stop KILL "$publisher"
 start_publisher bench.gltf --scene workshop --watch
 start_hrtc --scene workshop --failover any --objects 3 --duration 600 --report report.json
@@ -75,7 +75,7 @@ check report.json scene.objects == 3 scene.objects_max == 3 scene.objects_room =
     tools.0.contact_share '>' 0 answers.stale '>' 0 servers.replaced == 1
 check_clean report.json
 
-# What isn't there, or has no room.
+# Missing scenes, and exceeded capacities.
 expect_found 2 "--scene: 'kitchen' is not shown on domain $domain (scenes there: workshop)" \
     --scene kitchen
 expect_found 2 '--objects: 2; 4 are there from the start' --scene workshop --objects 2

@@ -1,22 +1,18 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# hrtc_follows_poses.sh: an object that its host moves while the tool touches it; poses that stop
-# and come again; a controller that doesn't want them; what the host sees of the controller; pose
-# files that are refused.
+# hrtc_follows_poses.sh: a server moves an object while the tool touches it; poses that stop and
+# resume; a controller that ignores them; the server's view of the controller; refused pose files.
 source "$(dirname "$0")/common.sh"
 model bumpy-sphere-5000 bumpy.spm
 
-# A swing of 4 mm in x within two seconds, 100 poses a second; the model is 173 mm across.
+# Swing of 4 mm in x within two seconds, 100 poses a second; the model is 173 mm across.
 awk 'BEGIN {
     print "# time name x y z qx qy qz qw"
     for (i = 0; i <= 200; ++i)
         printf "%.3f bumpy %.6f 0 0 0 0 0 1\n", i / 100, 0.002 * sin(i * 3.14159265 / 100)
 }' >swing.txt
 
-# check_steps: an object that is followed moves a little in each frame, where no frames were lost.
-check_steps() { was_held_up report.json || check report.json models.0.pose.step_max_m '<' 0.005; }
-
-# The object moves, the force follows, and the host sees it.
+# The object moves, the force follows, and the server reports it.
 start_publisher bumpy.spm --poses swing.txt --poses-loop --watch
 run_hrtc --model bumpy --duration 2.5 --record swing.rec
 "$hrtc" --replay swing.rec >replay.log 2>&1 || fault "another replay: $(cat replay.log)"
@@ -31,13 +27,13 @@ grep -q '^poses  *bumpy: moved in [0-9]* frames' hrtc.log || fault 'the summary 
 wait_until 'word of the host on a tool in contact and a pose that is followed' \
     grep -q '^watch hrtc-[0-9]*: .* N in contact.*; bumpy .* pages.* pose ' publish.log
 
-# A controller that is told to leave its models alone: still seen, but nothing moves.
+# A controller that ignores poses: still visible, but nothing moves.
 contact=0 run_hrtc --model bumpy --duration 1 --ignore-poses
 check report.json models.0.pose.followed == 0 models.0.pose.accepted == 0 \
     telemetry.sent '>' 10 answers.stale == 0
 
-# Poses that stop: the touched object grows stale and the force fades; they come again, and so does
-# the force. A model that is here as a whole needs no host for anything else.
+# Poses stop: the touched object becomes stale and the force fades; poses and force return. A fully
+# resident model needs no server for anything else.
 start_hrtc --model bumpy --duration 600 --report report.json
 wait_for_contact publish.log "hrtc-$controller"
 kill -STOP "$publisher"
@@ -51,11 +47,11 @@ check report.json frames '>' 1500 answers.stale '>' 300 models.0.pose.old_frames
 check_clean report.json
 stop_publisher
 
-# From files no pose comes, but a viewer of the domain sees the run.
+# Files have no poses, but a viewer of the domain sees the run.
 contact=0 run_hrtc --transport file --model bumpy.spm --duration 0.5
 check report.json models.0.pose.followed == 0 telemetry.sent '>' 0
 
-# An object that goes far at once while it is touched: the force fades and comes back by the ramp.
+# An object jumps far while it is touched: the force fades and returns by the ramp.
 printf '0 bumpy 0 0 0 0 0 0 1\n0.5 bumpy 0.04 0 0 0 0 0 1\n1 bumpy 0 0 0 0 0 0 1\n' >jump.txt
 start_publisher bumpy.spm --poses jump.txt --poses-loop --watch
 start_hrtc --model bumpy --duration 600 --motion slide --report report.json
@@ -66,8 +62,8 @@ check report.json safety.begun.jump '>=' 1 models.0.pose.step_max_m '>' 0.039
 check_clean report.json
 stop_publisher
 
-# Half a metre from where its file has it, told in lines a second apart: hand and object begin
-# there, the object glides, and the hand comes after.
+# Half a metre from its place in the file, sent in lines a second apart: hand and object begin
+# there, the motion is blended, and the hand follows.
 printf '%s\n' '0 bumpy 0.5 0 0 0 0 0 1' '1 bumpy 0.5 0.03 0 0 0 0.1 0.995' \
     '2 bumpy 0.5 0 0 0 0 0 1' >far.txt
 start_publisher bumpy.spm --poses far.txt --poses-loop --poses-rate 100

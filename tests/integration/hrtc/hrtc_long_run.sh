@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# hrtc_long_run.sh: SECONDS ($5) at RATE ($4) on the demo's scene over DDS, in real time: no fault
-# of the loop's own, every frame in the histograms, and no memory more at the end than at the start.
+# hrtc_long_run.sh: SECONDS ($5) at RATE ($4) on the demo's scene over DDS, in real time: no
+# overrun, every frame in the histograms, and no growth of memory.
 source "$(dirname "$0")/common.sh"
 readonly rate=$4 seconds=$5
 
@@ -10,10 +10,10 @@ resident_kib() { awk '/^VmRSS/ { print $2 }' "/proc/$1/status"; }
 model bumpy-sphere-200000 bumpy.spm
 start_publisher bumpy.spm --watch
 start_hrtc --model bumpy --rate "$rate" --duration 3600 --report report.json
-wait_for_frames $((5 * rate)) publish.log # All is laid out, the first wishes are served.
+wait_for_frames $((5 * rate)) publish.log # Everything is set up, the first requests are served.
 first=$(resident_kib "$controller")
 publisher_first=$(resident_kib "$publisher")
-for ((i = 10; i <= seconds; i += 5)); do # Each has a wait of its own.
+for ((i = 10; i <= seconds; i += 5)); do # Each has its own wait.
     wait_for_frames $((i * rate)) publish.log
 done
 last=$(resident_kib "$controller")
@@ -23,7 +23,7 @@ check_clean report.json
 check report.json frames '>=' $((rate * seconds))
 printf 'resident: hrtc %s to %s KiB, spm_publish %s to %s KiB\n' "$first" "$last" \
     "$publisher_first" "$publisher_last"
-if [[ -n "$sanitizer" ]]; then # It keeps what was freed.
+if [[ -n "$sanitizer" ]]; then # A sanitizer keeps freed memory.
     finish
     exit
 fi

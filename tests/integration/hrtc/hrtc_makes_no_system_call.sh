@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # hrtc_makes_no_system_call.sh: over DDS, with a model that does not fit, no frame makes a system
-# call, allocates or faults. Behind the shared arguments: RATE FRAMES. Skipped (77) where the kernel
-# takes no seccomp filter.
+# call, allocates or faults. Further arguments: RATE FRAMES. Skipped (77) if the kernel accepts no
+# seccomp filter.
 source "$(dirname "$0")/common.sh"
 readonly rate=$4 frames=$5
 
@@ -22,7 +22,7 @@ grep -q '^calls  *0 system calls in frames, [1-9]' hrtc.log || fault 'the summar
 check report.json frames == "$frames" realtime.system_calls_trapped == 1 \
     realtime.system_calls_in_frame == 0 cache.evictions '>' 0 wire.bytes_received '>' 0 \
     work.splits '>' 0
-# The loop itself sleeps and reads its counters: a trap that saw none of that saw nothing.
+# The loop itself sleeps and reads its counters, which the trap must have counted.
 check report.json realtime.system_calls_outside '>=' '2*frames'
 check_clean report.json
 if [[ -z "$sanitizer" ]] && is_realtime report.json; then

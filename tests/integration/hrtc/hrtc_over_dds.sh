@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# hrtc_over_dds.sh: from a shape to the report, over DDS on loopback; every key of the report's
-# schema 3 is there and the run was as it should be.
+# hrtc_over_dds.sh: from a shape to the report, over DDS on loopback; the report has every key of
+# schema 3, and the run was correct.
 source "$(dirname "$0")/common.sh"
 
 model bumpy-sphere-20000 bumpy.spm

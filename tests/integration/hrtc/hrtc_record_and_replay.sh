@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # hrtc_record_and_replay.sh: a run over DDS with governed budgets is recorded and replays bit for
-# bit without DDS; another input is told by its frame; damaged and foreign files, and options that
-# exclude each other, are refused in one line. $4 is the program that alters a recording.
+# bit without DDS; another input is reported with its frame; damaged and foreign files, and options
+# that exclude each other, are refused in one line. $4 is the program that alters a recording.
 here=$(cd "$(dirname "$0")" && pwd)
 readonly here
 source "$here/common.sh"
@@ -70,7 +70,7 @@ stop_publisher
 said=$("$hrtc" --replay run.rec) || fail "the replay ended with $?: $said"
 [[ "$said" == 'run.rec: 2000 frames agree bit for bit; recorded by '* ]] || fault "it says: $said"
 
-# The same with the instructions that every processor has, and with none that are known.
+# The same with portable and with unknown kernels.
 said=$("$hrtc" --replay run.rec --kernels portable) || fail "portable: ended with $?: $said"
 [[ "$said" == 'run.rec: 2000 frames agree bit for bit; '* ]] || fault "portable: it says: $said"
 for kind in --replay --model; do
@@ -78,7 +78,7 @@ for kind in --replay --model; do
         "$kind" run.rec --kernels sse
 done
 
-# For other tools, as readers of our own take it.
+# Export for other tools, read by our own readers.
 "$hrtc" --replay run.rec --export run.csv --export run.jsonl --export run.mcap >said.txt \
     || fail "the export ended with $?"
 grep -qx 'export      run.mcap' said.txt || fault "it says: $(<said.txt)"
@@ -100,7 +100,7 @@ code=0
 ((code == 1)) || fault "the export of a replay that differs ended with $code"
 [[ -z $(ls -A folder) ]] || fault "an export was left behind: $(ls -A folder)"
 
-# Cut while it was copied: what is whole is replayed, exported and played by a device.
+# Truncated copy: the complete part is replayed, exported and played by a device.
 head -c $(($(stat -c %s run.rec) - 100)) run.rec >cut.rec
 "$hrtc" --replay cut.rec --export cut.csv >said.txt 2>&1 || fault "a cut recording: $(<said.txt)"
 grep -q 'cut.rec: [0-9]* frames agree .*; the file was cut: behind frame ' said.txt \
@@ -118,13 +118,13 @@ for frame in 0 1234; do
     refuse 1 "altered.rec: frame $frame differs: " --replay altered.rec
 done
 
-# What is no recording, or not a whole one. The line names file, byte and what is allowed.
+# Files that are no recording, or not complete. The line names file, byte and allowed values.
 : >empty.rec
 head -c 5 run.rec >five.rec
 head -c 4000 run.rec >start.rec
 { cat run.rec; printf x; } >long.rec
 cp run.rec bent.rec
-printf '\xff\xfe' | dd of=bent.rec bs=1 seek=3000 conv=notrunc status=none # In the first model.
+printf '\xff\xfe' | dd of=bent.rec bs=1 seek=3000 conv=notrunc status=none # Inside the first model.
 cp run.rec newer.rec
 printf '\xff' | dd of=newer.rec bs=1 seek=8 conv=notrunc status=none
 refuse_file() { refuse 2 "$1: $2" --replay "$1"; }
@@ -139,9 +139,9 @@ refuse_file bent.rec 'at byte *: section of kind 2 and * bytes is damaged: its c
 refuse_file newer.rec 'at byte 8: format version 255 is unknown; this program reads 12'
 refuse 2 'no?where.rec: cannot be opened' --replay $'no\nwhere.rec'
 
-# A recording that can't be stored does not disturb the run, and is told at its end.
+# A recording that cannot be stored does not disturb the run, and is reported at its end.
 code=0
-( # Files of at most 64 KiB; without the signal that would end the program.
+( # Files of at most 64 KiB, without the signal that would end the program.
     trap '' XFSZ
     ulimit -f 64
     exec "$hrtc" --allow-no-rt --transport file --model bumpy.spm --duration 1 --report full.json \

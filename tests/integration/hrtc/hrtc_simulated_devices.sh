@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # hrtc_simulated_devices.sh: the controller on each kind of simulated device, in virtual time, which
-# each run repeats to the byte. The last argument is the stand-in of Force Dimension's SDK.
+# makes each run repeatable to the byte. The last argument is the stand-in of Force Dimension's SDK.
 source "$(dirname "$0")/common.sh"
 readonly stand_in=$4
 
 model bumpy-sphere-20000 bumpy.spm
 readonly model=(--virtual-time --model bumpy.spm)
 
-# One device of each class. Its largest stiffness is that of docs/stability.md.
+# One device of each class. Its greatest stiffness is that of docs/stability.md.
 run_hrtc "${model[@]}" --pool-mib 4 --duration 2 \
     --tool sphere:0.002 --tool sphere:0.002 --tool sphere:0.002 --tool sphere:0.002 \
     --device sim:touch --device sim:omega --device sim:delta --device sim
@@ -28,8 +28,8 @@ for i in 0 1 2 3; do
 done
 check_clean report.json
 
-# What is said of devices that don't tell it: of a simulated one, and of one of Force Dimension's,
-# for which a stand-in of its SDK is there. A wall is 0.9 x 2 b / (T + 2 delay), docs/stability.md.
+# Defaults of devices that do not report their limits: a simulated one, and one of Force
+# Dimension's, with a stand-in of its SDK. A wall is 0.9 x 2 b / (T + 2 delay), docs/stability.md.
 cp "$stand_in" libdhd.so
 LD_LIBRARY_PATH=$PWD "$hrtc" --allow-no-rt bumpy.spm --duration 0.3 --stiffness 3000 --tools 2 \
     --device sim --device dhd --device-limits damping_n_s_per_m=0.5,delay_s=125e-6 \
@@ -41,7 +41,7 @@ wanted='a wall of 947.4 N/m, of 3000 asked for: by its damping of 1 N s/m, delay
 grep -q "^tool .* on stand-in, .*; $wanted" limits.log \
     || fault "the true device has others: $(cat limits.log)"
 
-# What is out of reach says by how much, and what was left to its default says so.
+# An object out of reach is reported with the distance, and a default value is named as such.
 "$hrtc" "${model[@]}" --model bumpy.spm --place 0,0,0.5 --material 400 --duration 0.3 >start.log
 grep -q '^touches .*round (0, 0, 0.5)$' start.log || fault "the first object: $(cat start.log)"
 grep -q '^touches .*round (0, 0, 0); no --place: as in the file; no --material: as stiff as' \
@@ -59,7 +59,7 @@ beyond = float(re.search(r"WHERE NO OBJECT IS: bumpy is (\S+) m beyond its reach
 sys.exit(abs(beyond - (2 - across / 2 - radius - 0.5)) > 0.005)
 CHECK
 
-# A tool on more faces than a frame looks at says so at the start, and what it will feel.
+# A tool on more faces than a frame evaluates reports it at the start, with the effect.
 run_large() {
     "$hrtc" "${model[@]}" --tool box:0.05,0.05,0.05 --duration 0.1 "$@" >large.log \
         || fault "a large tool: $(cat large.log)"
@@ -72,7 +72,8 @@ grep -qE "$lies_on MAY BE HELD BACK" large.log || fault "without a tolerance: $(
 run_large --tool sphere:0.002
 [[ $(grep -cE "$lies_on" large.log) == 1 ]] || fault "a small tool, too: $(cat large.log)"
 
-# A damping that leaves no wall is refused, with what would do; one that leaves some goes.
+# A damping that leaves no wall is refused, with a sufficient value; one that leaves some is
+# accepted.
 expect 2 "--material: a damping of 2 N s/m on 'bumpy' leaves the device sim no wall at 1000 Hz; at \
 most 0.994 leave it one that is felt, 0.722 one of 500 N/m" \
     "$hrtc" --allow-no-rt "${model[@]}" --duration 0.5 --material 500,0,0,2
@@ -80,20 +81,20 @@ run_hrtc "${model[@]}" --duration 0.5 --material 500,0,0,0.722
 grep -q '^tool .*: 1 object in reach; a wall of 500 N/m$' hrtc.log \
     || fault 'less than that is not enough'
 
-# It is what a tool touches that softens its wall, and nothing else.
+# Only a touched object softens a tool's wall.
 run_hrtc "${model[@]}" --place 0,0,0 --place 1,0,0 --material 500 --material 500,0,0,0.9 \
     --tools 2 --pool-mib 4 --duration 2
 check report.json tools.0.conditioned.stiffness_capped == 0 \
     tools.1.conditioned.stiffness_capped '>' 100 tools.1.softest_wall_n_per_m '>' 179 \
     tools.1.softest_wall_n_per_m '<' 181
 
-# A run of which nothing came is a failure for who says so.
+# A run without a result is a failure under --strict.
 code=0
 "$hrtc" "${model[@]}" --duration 0.5 --motion free --strict >strict.log || code=$?
 ((code == 1)) || fault "--strict: a run without a touch ended with $code"
 grep -q '^verdict .*nothing was touched' strict.log || fault 'the verdict is silent'
 
-# Readings that go wrong while the hand slides.
+# Readings become wrong while the hand slides.
 run_hrtc "${model[@]}" --duration 3 --device-fault jitter@700+50 --device-fault nan@1000+50 \
     --device-fault dropout@1300+50 --device-fault disconnect@1600+50 \
     --device-fault time_jump@1900+50 --device-fault stuck@2400+20
@@ -105,8 +106,8 @@ check report.json frames == 3000 safety.begun.garbage '>=' 3 safety.begun.discon
     tools.0.force_max_n '>' 0.5 tools.0.force_max_n '<=' 8
 check_clean report.json
 
-# A machine on which the force is off again and again: the hand finds the surface again, and the
-# report tells contact from force.
+# On a machine with repeated stalls the hand finds the surface again, and the report distinguishes
+# contact from force.
 for length in 5 60; do
     dropouts=()
     for ((i = 0; i < 30; ++i)); do
@@ -130,7 +131,7 @@ done
 run_hrtc "${model[@]}" --duration 3 --motion teleport
 check report.json tools.0.force_max_n '>' 0 tools.0.force_max_n '<=' 8
 
-# The same run again is the same, and so is its replay; it is longer than what waits for the disk.
+# Repeated runs are equal, and so is their replay; a run is longer than the disk's queue.
 for run in 1 2; do
     run_hrtc "${model[@]}" --pool-mib 0.7 --duration 8 --record "$run.rec" --report page.html
     check report.json realtime.virtual_time == 1 recording.frames == 8000 frames == 8000 \
@@ -142,12 +143,12 @@ done
 cmp 1.rec 2.rec || fault 'virtual time does not repeat'
 "$hrtc" --replay 1.rec || fault 'its recording does not replay'
 
-# What keeps to the time of day has no place there.
+# Options tied to the time of day are refused.
 refuse() { expect 3 "--virtual-time: $1" "$hrtc" --virtual-time "${@:2}"; }
 refuse 'takes models from files' --model bumpy
 refuse 'takes devices that are simulated or recorded' bumpy.spm --device udp
 
-# A recorded hand touches the same, and is gone after its end.
+# A recorded hand has the same touch, and is gone after its end.
 run_hrtc "${model[@]}" --duration 2 --record run.rec
 check report.json tools.0.contact_share '>' 0.5
 run_hrtc "${model[@]}" --duration 3 --device replay:run.rec

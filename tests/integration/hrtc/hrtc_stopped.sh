@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# hrtc_stopped.sh: a run that is stopped and continued from outside missed its deadlines for that,
-# and neither by a fault of the loop's own nor by the machine.
+# hrtc_stopped.sh: a run that is stopped and continued from outside misses its deadlines for that
+# reason, neither as an overrun nor by the machine.
 source "$(dirname "$0")/common.sh"
 model bumpy-sphere-5000 good.spm
 
@@ -11,7 +11,7 @@ started+=($!)
 readonly run=${started[-1]}
 wait_for_line run.log 'touch: '
 wait_for_more "$run" 300
-# For some periods each time, once the kernel says that it is stopped.
+# For some periods each time, once the kernel reports the stop.
 readonly times=20
 for ((i = 0; i < times; ++i)); do
     kill -STOP "$run"
@@ -22,7 +22,7 @@ for ((i = 0; i < times; ++i)); do
 done
 stop INT "$run"
 ((stopped_with == 0)) || fault "it ended with $stopped_with"
-# A page fault makes the cycle of a stop one of the loop's own.
+# A page fault makes the cycle of a stop an overrun.
 check run.json deadline.stopped '<=' $times \
     deadline.stopped+deadline.cycles.page_fault '>=' $times
 [[ -n "$sanitizer" ]] || ! is_realtime run.json || check_no_own_fault run.json

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# hrtc_streams_a_large_model.sh: a model that does not fit in the pools is touched as well as a
-# small one; NAME@HASH takes this file and no other.
+# hrtc_streams_a_large_model.sh: a model larger than the pools is touched as well as a small one;
+# NAME@HASH takes this file and no other.
 source "$(dirname "$0")/common.sh"
 
 model bumpy-sphere-200000 large.spm

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# hrtc_survives_the_host.sh: a host that is killed in mid-run is one line and a note in the report,
-# and code 1 with --strict; pieces of one that comes back are used again, but its word isn't taken
-# without --failover, and a line says so.
+# hrtc_survives_the_host.sh: a server killed during the run is one line and a note in the report,
+# and code 1 with --strict; pieces of a restarted one are used again, but its authority is not
+# accepted without --failover, and a line reports that.
 source "$(dirname "$0")/common.sh"
 model bumpy-sphere-60000 bumpy.spm
 
-# lose_host ARGUMENT...: the host of a controller that touches is killed.
+# lose_host ARGUMENT...: kills the server of a touching controller.
 lose_host() {
     start_publisher bumpy.spm --watch
     start_hrtc --model bumpy --duration 600 --report report.json "$@"
@@ -14,8 +14,8 @@ lose_host() {
     stop KILL "$publisher"
     wait_for_line hrtc.log "host of model 'bumpy' is gone; going on with what is resident"
 }
-# check_loss LINES: the summary and the report tell of the one loss, in so many lines about the
-# model.
+# check_loss LINES: the summary and the report contain the one loss, with this number of lines about
+# the model.
 check_loss() {
     grep -q '^verdict .*the host went away' hrtc.log || fault 'the verdict does not tell'
     [[ $(lines "host of model 'bumpy' is gone; going on with what is resident" hrtc.log) == 1 ]] \

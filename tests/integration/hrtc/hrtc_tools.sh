@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# hrtc_tools.sh: a tool of each form touches a ball, with a torque where it has a shape, in the
-# default pools; hands turn it, go over edges with it, and put a peg into its hole by a clutch; one
-# that is a mesh streams like what it touches, and its recording replays; one larger than that, and
-# one in its very place, end well; hulls without a body are held; hulls and meshes that can't be
-# tools are refused by name. What needs no host is in virtual time.
+# hrtc_tools.sh: a tool of each form touches a sphere, with a torque if it has a shape, in the
+# default pools; hands rotate it, move over edges with it, and put a peg into its hole by a clutch;
+# a mesh tool streams like its object, and its recording replays; one larger than that, and one in
+# its exact place, end well; flat hulls have a proxy; hulls and meshes that cannot be tools are
+# refused by name. Parts without a server are in virtual time.
 docs=$(cd "$(dirname "$0")/../../../docs" && pwd)
 readonly docs
 source "$(dirname "$0")/common.sh"
@@ -24,7 +24,7 @@ OFF
 3 2 0 3
 END
 
-# touch TORQUE ARGUMENT...: the tool is in contact, and turns the hand if TORQUE is 1.
+# touch TORQUE ARGUMENT...: the tool is in contact, and rotates the hand if TORQUE is 1.
 touch() {
     local torque=$1
     shift
@@ -48,7 +48,7 @@ for tool in capsule:0.005,0.05 box:0.04,0.03,0.02,0.001 hull:wedge.off,0.001; do
     touch_file 1 "$tool"
 done
 
-# Smooth normals are a ball's; the report says whose.
+# Only a sphere has force shading; the report names the tool.
 run_hrtc --virtual-time --model ball.spm --tool sphere:0.02 --tool box:0.04,0.03,0.02,0.001 \
     --smooth 0.005 --duration 3
 check_clean report.json
@@ -56,10 +56,10 @@ check report.json tools.0.smooth_m == 0.005 tools.0.force_max_n '>' 0 tools.1.sm
 touch_file 0 sphere:0.02
 check report.json tools.0.smooth_m == 0
 
-# A device without torque gets the force alone.
+# A device without torque gets only the force.
 touch_file 0 capsule:0.005,0.05 --device sim:omega
 
-# Hulls that are flat, or no more than a line.
+# Hulls that are flat, or only a line.
 printf 'OFF\n3 1 0\n-0.02 -0.02 0\n0.02 -0.02 0\n0 0.02 0\n3 0 1 2\n' >flat.off
 printf 'OFF\n3 1 0\n0 0 -0.02\n0 0 0\n0 0 0.02\n3 0 1 2\n' >line.off
 for file in flat.off line.off; do
@@ -69,8 +69,8 @@ done
 expect 2 "--guide: 'gripper:0': the device sim makes no force at a gripper" \
     "$hrtc" --allow-no-rt ball.spm --guide gripper:0
 
-# How hands move tools that turn; these have a mass that the hand doesn't feel, and a
-# spring to the middle of the ball pulls at them, by its most.
+# Hands move 6-DoF tools; these have a mass that gravity compensation carries, and a spring pulls
+# them to the middle of the sphere with its greatest force.
 for motion in turn edge; do
     touch_file 1 box:0.04,0.03,0.02,0.001 --motion "$motion" --tool-mass 0.1,0,0.01,0 \
         --guide point:0,0,0,100,0.25
@@ -79,12 +79,12 @@ for motion in turn edge; do
         tools.0.guide_max_n '>' 0.249 tools.0.guide_max_n '<' 0.251
 done
 
-# A peg goes into its hole, and a button parts it from the hand that draws back.
+# A peg enters its hole, and a button separates it from the hand that retreats.
 "$build" --shape socket --faces 500 -o socket.spm >build.log 2>&1
 seconds=8 touch 1 --virtual-time --model socket.spm --tool capsule:0.0099,0.03 \
     --material 500,0.3,0.2 --motion peg --clutch 0 --guide gripper:0.01,100,0.5 --record peg.rec
 check report.json safety.begun.clutch '>=' 1
-# Its gripper, 20 mm open, is closed with half a newton, which is less than its spring would make.
+# The gripper, 20 mm open, is closed with half a newton, less than its spring's force.
 "$hrtc" --replay peg.rec --export peg.csv >replay.log || fault "no export: $(cat replay.log)"
 python3 - <<'PYTHON' || fault 'the gripper is not held'
 import csv
@@ -93,21 +93,21 @@ assert min(sent) == -0.5 and max(sent) == 0 and sent.count(-0.5) > 4000, (min(se
 PYTHON
 grep -q 'force off for: .*clutch' hrtc.log || fault 'nobody tells of the clutch'
 
-# The probe streams from the same host.
+# The probe streams from the same server.
 "$build" --shape torus --faces 3000 --fit-diag 0.1 -o probe.spm >build.log 2>&1
 start_publisher ball.spm probe.spm
 seconds=2.5 touch 1 --model ball --tool mesh:probe,0.001 --pool-mib 8 --record run.rec
 check report.json models == 2 models.1.bytes_received '>' 0 scene.objects == 1 pairs == 1
 "$hrtc" --replay run.rec >replay.log || fault "the recording of a mesh: $(tail -n 1 replay.log)"
 
-# What is touched is a tool as well when it has another name: it is streamed twice.
+# An object is also a tool under another name: it is streamed twice.
 hash=$(sed -n "s/^serving 'ball' hash \([0-9a-f]*\):.*/\1/p" publish.log)
 seconds=2.5 touch 1 --model ball --tool "mesh:ball@$hash,0.001" --pool-mib 8
 check report.json models == 2 models.1.bytes_received '>' 0
 stop_publisher
 touch_file 1 mesh:./ball.spm,0.001 --pool-mib 8
 
-# A probe larger than the default pools is as coarse as they allow, and its answers are brackets.
+# A probe larger than the default pools is as coarse as they permit, and its answers are bounds.
 model bumpy-sphere-200000 large.spm
 run_hrtc --virtual-time --model ball.spm --tool mesh:large.spm,0.001 --duration 3
 check_clean report.json
@@ -115,14 +115,14 @@ check report.json models.1.pages_used_max '>' 0 \
     answers.exact+answers.decided+answers.within_tolerance+answers.bracket '>' \
     '0.9*frames'
 
-# One larger than what it touches.
+# Larger than its object.
 "$build" --shape bumpy-sphere --faces 5000 --fit-diag 1.5 -o wide.spm >build.log 2>&1
 run_hrtc --virtual-time --model ball.spm --tool mesh:wide.spm,0.001 --pool-mib 8 --duration 2
 check_clean report.json
 check report.json tools.0.force_max_n '<=' 8 \
     answers.exact+answers.decided+answers.within_tolerance '>' '0.9*frames'
 
-# One equal to what it touches, in its place from the start: a device at rest in the middle.
+# Equal to its object, in its place from the start: a device at rest in the middle.
 readonly port=$((20000 + $$ % 20000))
 python3 "$docs/examples/udp_driver.py" "$port" >driver.log 2>&1 &
 started+=("$!")
@@ -133,7 +133,7 @@ started+=("$!")
 check report.json tools.0.force_max_n '<=' 8 realtime.allocations '>=' 0
 was_held_up report.json || check report.json answers.exact '>' 0
 
-# What is no tool.
+# Invalid tools.
 refuse() { expect 2 "$1" "$hrtc" --allow-no-rt --transport file --model ball.spm --tool "$2"; }
 refuse 'none.off' hull:none.off
 refuse 'none.spm' mesh:none.spm

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# hrtc_tools_on_the_bunny.sh: a tool of each form, and a probe that is a mesh, touch the Stanford
-# bunny, in virtual time. Skipped (77) without the meshes of TACTUS_MESHES.
+# hrtc_tools_on_the_bunny.sh: a tool of each form, and a mesh probe, touch the Stanford bunny, in
+# virtual time. Skipped (77) without the meshes of TACTUS_MESHES.
 source "$(dirname "$0")/common.sh"
 
 readonly bunny=${TACTUS_MESHES:-}/stanford-bunny.obj

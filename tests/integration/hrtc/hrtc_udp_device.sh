@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # hrtc_udp_device.sh: a program in another language moves the tool. The driver of docs/examples,
-# whose hand goes up and down, is killed; another one takes over. With a key one that has another is
-# not heard. What docs/udp-device.md shows of it is run as it stands there.
+# whose hand moves up and down, is killed; another one takes over. With a key, one with another key
+# is ignored. The commands of docs/udp-device.md are run verbatim.
 docs=$(cd "$(dirname "$0")/../../../docs" && pwd)
 readonly docs
 readonly in_c=$4
@@ -22,7 +22,7 @@ expect 2 'no device described itself' "${run[@]}" --device "udp:$port" --wait 0.
 expect 2 'dhd' "${run[@]}" --device dhd
 start_hrtc --transport file --model bumpy.spm --device "udp:$port" --wait 3600
 wait_until "program at UDP port $port" grep -qs "$(printf ':%04X 0' "$port")" /proc/net/udp
-stop TERM "$controller" # It waits for a device, and not for an hour.
+stop TERM "$controller" # It waits for a device, but not for an hour.
 ((stopped_with == 2)) || fault "told to end while it waited, hrtc ended with $stopped_with"
 grep -q 'no device described itself' hrtc.log || fault 'it does not say what it waited for'
 
@@ -43,7 +43,7 @@ check report.json frames '>' 1000 safety.begun.disconnect '>=' 1 tools.0.contact
     tools.0.traffic.samples '>' 300 tools.0.traffic.refused.tag == 0
 stop KILL "$driving"
 
-# With a key: a driver with another one, and one without, send all the time.
+# With a key: drivers with another one and without one send constantly.
 (umask 077 && printf '%064x\n' 7 >device.key && printf '%064x\n' 8 >other.key)
 drive other.key
 stranger=$driving
@@ -71,7 +71,7 @@ for text in ' ' 12 "$(printf '%063x' 7)" "$(printf '%065x' 7)" "$(printf '%063xg
 done
 expect 3 'there is no udp device' "${run[@]}" --device-key device.key
 
-# The driver in C.
+# Driver in C.
 "$in_c" "$port" 0.02 &
 driving=$!
 started+=("$driving")

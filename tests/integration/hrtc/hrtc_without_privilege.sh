@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# hrtc_without_privilege.sh: without the right to SCHED_FIFO or to lock memory the controller says
-# what is missing and does not run; --allow-no-rt runs and says it too; the doctor calls it
-# critical. Skipped (77) where the right can't be given up.
+# hrtc_without_privilege.sh: without the right to SCHED_FIFO or to lock memory the controller
+# reports the missing right and does not run; --allow-no-rt runs and reports it too; the doctor
+# finds it critical. Skipped (77) if the right cannot be dropped.
 source "$(dirname "$0")/common.sh"
 model bumpy-sphere-5000 good.spm
 
@@ -53,7 +53,7 @@ check doctor.json counts.critical '>=' 2
 output=$(unprivileged ./hrtc doctor 2>&1) || true
 [[ "$output" == *critical*priority*refused*rtprio* && "$output" == *critical*memlock*refused* ]] \
     || fault "hrtc doctor does not say what is missing: $output"
-# Both say the same line for the same file.
+# Both print the same line for the same file.
 for line in ' - rtprio 99' ' - memlock unlimited'; do
     for said in "$refused" "$output"; do
         [[ "$said" == *"$line"*/etc/security/limits.d/tactus.conf* ]] \

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# make_models.sh SPM_BUILD FOLDER: the models that the other scripts touch, once for all of them:
-# encoding takes both processors, and a loop that runs meanwhile is late.
+# make_models.sh SPM_BUILD FOLDER: makes the models of the other scripts once: encoding takes both
+# processors, and a loop beside it is late.
 set -euo pipefail
 readonly build=$1 folder=$2
 mkdir -p "$folder"

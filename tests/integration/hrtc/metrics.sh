@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# metrics.sh: what spm_publish --metrics and spm_view tell under /metrics is as promtool wants it,
-# and follows a controller that comes and goes.
+# metrics.sh: the metrics of spm_publish --metrics and spm_view satisfy promtool, and follow a
+# controller that is started and ended.
 source "$(dirname "$0")/common.sh"
 readonly view=$1/spm_view
 command -v promtool >/dev/null || {
@@ -9,7 +9,7 @@ command -v promtool >/dev/null || {
     exit 77
 }
 
-# get URL [HEADER: VALUE]: its text; fails on every other status than 200.
+# get URL [HEADER: VALUE]: prints the text; fails for every status except 200.
 get() {
     python3 - "$@" <<'PYTHON'
 import sys
@@ -22,14 +22,14 @@ print(urllib.request.build_opener(urllib.request.ProxyHandler({})).open(request)
       end="")
 PYTHON
 }
-# tells URL NAME OP VALUE: whether a sample of that name is so.
+# tells URL NAME OP VALUE: true if a sample of that name satisfies the comparison.
 tells() {
     get "$1" >metrics.txt && awk -v name="$2" -v op="$3" -v value="$4" '
         $1 == name || index($1, name "{") == 1 {
             found = (op == "==" && $2 == value) || (op == ">" && $2 > value) }
         END { exit !found }' metrics.txt
 }
-# check_metrics URL: promtool takes all of it.
+# check_metrics URL: promtool accepts all of it.
 check_metrics() {
     get "$1" >metrics.txt
     promtool check metrics <metrics.txt >promtool.txt 2>&1 || fault "$1: $(<promtool.txt)"
@@ -67,7 +67,7 @@ for url in "$served" "$shown"; do
     check_metrics "$url"
 done
 
-# Of this machine alone, and one program a port.
+# For this machine only, and one program a port.
 ! get "$served" 'Host: elsewhere:80' >/dev/null 2>&1 || fault 'another name is answered'
 ! get "$served" 'Origin: http://elsewhere' >/dev/null 2>&1 || fault 'another page is answered'
 port=${served##*:}

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# network_controllers.sh: controllers are killed and started again 10 ms from their host. It counts
-# each out and in and grows by none of them, another controller feels nothing of it, and the touch
-# of the one that is started last is as good as any.
+# network_controllers.sh: controllers are killed and started again 10 ms from their server. It
+# counts each and does not grow, another controller is not affected, and the touch of the last one
+# started is as good as any.
 source "$(dirname "$0")/two_networks.sh"
 readonly kills=3
 
-# start_controller NAME ARGUMENT...: its words in NAME.log, its id in $controller.
+# start_controller NAME ARGUMENT...: its output is in NAME.log, its id in $controller.
 start_controller() {
     "${on_controller[@]}" "$hrtc" --allow-no-rt --domain "$domain" --model large \
         --device sim:touch --pool-mib 2 --duration 600 --name "$@" >"$1.log" 2>&1 &

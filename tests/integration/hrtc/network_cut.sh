@@ -1,16 +1,16 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# network_cut.sh: the link is cut in mid-run, for longer than either side believes in the other.
-# Both notice; the force of a model that is here in part fades and comes back with the link, that of
-# one that is here as a whole stays.
+# network_cut.sh: the link is cut during the run, for longer than both sides' leases. Both detect
+# it; the force of a partly resident model fades and returns with the link, that of a fully resident
+# one stays.
 source "$(dirname "$0")/two_networks.sh"
 
-# is_felt_after LINE: the host has printed a force since.
+# is_felt_after LINE: true if the server has printed a force since.
 is_felt_after() {
     tail -n +$(($1 + 1)) publish.log | grep -Eq '^watch .*; (0\.0?[1-9]|[1-9])[0-9.]* N in contact'
 }
 
-# cut_in_mid_run MODEL ARGUMENT...: hrtc on that model, with a cut.
+# cut_in_mid_run MODEL ARGUMENT...: runs hrtc on that model, with a cut.
 cut_in_mid_run() {
     local model=$1
     shift
@@ -21,16 +21,16 @@ cut_in_mid_run() {
     relay_say cut
     wait_for_line hrtc.log "host of model '$model' is gone; going on with what is resident"
     wait_for_line publish.log ' left ('
-    wait_for_more "$controller" # The participants' lease ends as well.
+    wait_for_more "$controller" # The participants' lease also ends.
     [[ $(lines 'served again' hrtc.log) == 0 ]] || fault 'the host is back over a cut link'
     relay_say mend
     wait_for_line hrtc.log "model '$model' is served again by the same host"
     wait_for_line publish.log ' subscribed' 2
-    # A hand that has sunk in too deep comes out first.
+    # A hand that has sunk in too deep first moves out.
     wait_until 'force after the cut' is_felt_after "$(wc -l <publish.log)"
     stop_hrtc
     (($(lines_of_host "$model" hrtc.log) == 2)) || fault 'not two lines about the host'
-    pieces=$(sent_pieces) # Of the time after the cut.
+    pieces=$(sent_pieces) # Pieces of the time after the cut.
     cat publish.log
     [[ $(lines ' subscribed' publish.log) == 2 && $(lines ' left (' publish.log) == 2 ]] \
         || fault 'the controller was not counted in and out twice'
@@ -39,9 +39,9 @@ cut_in_mid_run() {
     check_wire_run report.json
 }
 
-# What the lines of list_safety say of the cause `host`: the frame in which it begins to hold, the
-# one in which there is no force any more, and the one in which it ends. Fails when there was force
-# between, or none afterwards. The supervisor's own events tell of its cause alone.
+# Frames of the cause `host` by list_safety: its start, the first without force, and its end. Fails
+# if there was force between, or none afterwards. The supervisor's own events contain only its
+# cause.
 fade() {
     awk '
         $2 == "-" { next }
@@ -66,7 +66,7 @@ check report.json safety.begun.host == 1 models.0.static == 0
 "$list_safety" report.json | tee events.txt
 read -r gone idle back < <(fade <events.txt) || fail 'the force did not fade and come back'
 echo "the host was gone from frame $gone to $back, the force off in $idle"
-# docs/safety.md, "The law", and five frames. Fewer, where the machine kept some from being run.
+# docs/safety.md, "The law", and five frames. Fewer if the machine kept some from being run.
 ((idle - gone <= 55)) || fault "there was force for $((idle - gone)) frames"
 judge_run large.spm "$gone" "$back"
 check_span_contact 0 0.1

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# network_delay.sh: host and controller 10 ms apart. A model that streams is touched, and no answer
-# is wrong for what is still under way. And the relay is as it says: options, answers, end.
+# network_delay.sh: server and controller 10 ms apart. A streamed model is touched, and no answer is
+# wrong because of data in transit. The relay's options, answers and end are also checked.
 source "$(dirname "$0")/two_networks.sh"
 
-# The command line, before anything is made.
+# Command line, before any setup.
 for option in --loss --duplicates; do
     for value in -0.1 1.1 nan many ''; do
         expect 3 "$option: *0 .. 1" "$network_relay" "$option" "$value"
@@ -31,7 +31,7 @@ for command in '' 'set loss 2' 'set speed 1' halt; do
     [[ "$relay_answer" == 'refused: '*'set loss 0..1'* ]] || fault "'$command': $relay_answer"
 done
 
-# A connection that nobody takes is refused after one round trip.
+# An unaccepted connection is refused after one round trip.
 for try in 1 2 3; do
     # shellcheck disable=SC2016 # For the other shell.
     passed_us=$(in_controller_network bash -c '
@@ -48,7 +48,7 @@ check counts.json to_controller.lost+to_controller.duplicated+to_controller.cut 
     to_host.lost+to_host.duplicated+to_host.cut == 0 \
     to_controller.udp_payload_bytes '>' '1*to_controller.udp_datagrams'
 
-exec {relay_in}>&- # As when whoever steers it has died.
+exec {relay_in}>&- # Simulates the death of its controlling process.
 code=0
 wait "$relay" || code=$?
 ((code == 0)) || fault "at the end of its commands the relay ended with $code"

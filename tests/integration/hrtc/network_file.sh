@@ -1,16 +1,16 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# network_file.sh: the file is cut, written over, or replaced by another one while it is touched. Of
-# the first two the host names what it can't serve any more; one that takes the name of a file in
-# use leaves that as it is. No answer is wrong, and the host goes on.
+# network_file.sh: the file is truncated, overwritten, or replaced by another one while it is
+# touched. For the first two the server names the unavailable data; a file with the name of one in
+# use leaves that unchanged. No answer is wrong, and the server continues.
 source "$(dirname "$0")/two_networks.sh"
 
 start_relay --delay-ms 2
 model bumpy-sphere-200000 large.spm
 model bumpy-sphere-100000 other.spm
 
-# touch_while COMMAND...: hrtc on served.spm, a fresh copy of large.spm, to which the command is
-# done when it is touched. $changed_at is a frame in which that is over.
+# touch_while COMMAND...: runs hrtc on served.spm, a copy of large.spm, and the command during the
+# touch. $changed_at is a frame after it.
 touch_while() {
     rm -f served.spm
     cp large.spm served.spm
@@ -23,7 +23,7 @@ touch_while() {
     changed_at=$(frames_in publish.log)
     wait_for_frames $((changed_at + 500)) publish.log
 }
-# end_touch: all of it ends, with the host there the whole time.
+# end_touch: ends everything, with the server present throughout.
 end_touch() {
     stop_hrtc
     cat publish.log
@@ -42,7 +42,7 @@ replace() {
     mv new.spm served.spm
 }
 
-# fail_to_serve PATTERN COMMAND...: what the host can't serve it names, and so does the controller.
+# fail_to_serve PATTERN COMMAND...: server and controller name the data that cannot be served.
 fail_to_serve() {
     touch_while "${@:2}"
     wait_until 'word of the host' grep -q "$1" publish.log

@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # network_guests.sh BIN CHECK_REPORT SANITIZER NETWORK_RELAY LIST_SAFETY JUDGE_RECORDING SCENE_RIDER
-# DEMO_SCENE: a hand flies over DDS, 10 ms each way, at 2 m/s through 200 objects and touches one
-# after the other. In pools of 8 MiB 20 models are all here, and of 200 some, whose base meshes come
-# and go with the hand. No frame is held up by a model that isn't here, but for one of which the
-# machine kept the base mesh waiting (scene_rider.cpp).
+# DEMO_SCENE: a hand flies over DDS, 10 ms each way, at 2 m/s through 200 objects and touches them
+# in turn. In pools of 8 MiB 20 models are all resident, and of 200 some, whose base meshes are
+# loaded and removed with the hand. No frame is blocked by a missing model, except one whose base
+# mesh the machine delayed (scene_rider.cpp).
 source "$(dirname "$0")/two_networks.sh"
 readonly scene_rider=$7 demo_scene=$8
 command -v python3 >/dev/null || { echo 'skipped: no python3'; exit 77; }
 
-# ride MODELS VISITS FIGURE...: figures of the ride through a scene of so many models, as for check.
+# ride MODELS VISITS FIGURE...: checks figures of the ride through a scene of this number of models.
 ride() {
     local models=$1 visits=$2
     python3 "$demo_scene" demo.glb --faces 1000 --models "$models" || fail 'no scene'

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# network_loss.sh: a link that loses one frame in a hundred each way, doubles another one, and lets
-# them overtake each other. Nothing is refused for its content, what comes twice is taken once, and
-# no answer is wrong.
+# network_loss.sh: a link that loses one frame in a hundred each way, duplicates another one, and
+# reorders them. Nothing is refused for its content, duplicates are taken once, and no answer is
+# wrong.
 source "$(dirname "$0")/two_networks.sh"
 
 start_relay --delay-ms 2 --jitter-ms 2 --loss 0.01 --duplicates 0.01 --seed 7

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# network_restart.sh: hosts are killed and started again 10 ms away. The same file is used again and
-# nothing of it is loaded twice; another file of that name is kept apart, and is what the next
-# controller takes. Of a model that is here as a whole the touch goes on.
+# network_restart.sh: servers are killed and started again 10 ms away. The same file is used again
+# and nothing of it is loaded twice; another file of that name is kept apart, and is taken by the
+# next controller. The touch of a fully resident model continues.
 source "$(dirname "$0")/two_networks.sh"
 
 start_relay --delay-ms 10
@@ -37,11 +37,11 @@ check report.json frames '>' 1500 wire.host_lost == 1 models.0.host_connected ==
     pools.pages.used_max+pools.index_pages.used_max == '1*cache.loads'
 check_wire_run report.json
 judge_run large.spm
-# Against another mesh the same answers are wrong.
+# The same answers are wrong for another mesh.
 "$judge_recording" run.rec other.spm >judged.json 2>/dev/null || fail 'it does not replay'
 check judged.json violations '>' 0
 
-# A controller that starts now takes the file that is there now.
+# A controller that starts now takes the present file.
 run_hrtc --model large --device sim:touch --pool-mib 2 --duration 2 --record run.rec
 check report.json wire.host_lost == 0 safety.begun.host == 0
 check_wire_run report.json
@@ -59,6 +59,6 @@ wait_for_more "$controller"
 stop_hrtc
 check report.json frames '>' 1000 wire.host_lost == 1 safety.begun.host == 0 models.0.static == 1
 check_wire_run report.json
-judge_run small.spm $(($(recorded_frames) - 500)) # The rest is without a host.
+judge_run small.spm $(($(recorded_frames) - 500)) # The rest is without a server.
 check_span_contact 1 0.3
 finish

@@ -1,17 +1,18 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# network_shared_object.sh: two controllers touch one object that moves, 10 ms from its host and
-# with one datagram in a hundred lost. Its host dies and takes it along; another host with the same
-# scene steps in, since --failover allows it, and both touch its object instead.
+# network_shared_object.sh: two controllers touch one moving object, 10 ms from its server and with
+# one datagram in a hundred lost. Its server dies, and the object with it; another server with the
+# same scene takes over by --failover, and both touch its object instead.
 source "$(dirname "$0")/two_networks.sh"
 
-# A swing of 3 mm to either side in x within a second, 100 poses a second.
+# Swing of 3 mm to either side in x within a second, 100 poses a second.
 awk 'BEGIN {
     for (i = 0; i <= 100; ++i)
         printf "%.3f ball %.6f 0 0 0 0 0 1\n", i / 100, 0.003 * sin(i * 3.14159265 / 50)
 }' >swing.txt
 
-# start_controller NAME: it is called so, its words are in NAME.log, its id in $controller.
+# start_controller NAME: starts a controller of that name; its output is in NAME.log, its id in
+# $controller.
 start_controller() {
     "${on_controller[@]}" "$hrtc" --allow-no-rt --domain "$domain" --scene shared --failover any \
         --name "$1" --device sim:touch --duration 600 --wait "$patience_s" \
@@ -20,13 +21,13 @@ start_controller() {
     started+=("$controller")
 }
 
-# start_host FILE: it stays, its words are in FILE.
+# start_host FILE: starts a server with its output in FILE.
 start_host() {
     start_publisher ball.spm --scene shared --poses swing.txt --poses-loop --watch
-    mv publish.log "$1" # The host goes on writing there.
+    mv publish.log "$1" # The server continues to write there.
 }
 
-# touch_both FILE: each of the two touches its host's object, and goes on.
+# touch_both FILE: both touch their server's object, and continue.
 touch_both() {
     local name
     for name in left right; do
@@ -37,8 +38,8 @@ touch_both() {
 
 start_relay --delay-ms 10 --loss 0.01 --seed 7
 model bumpy-sphere-5000 ball.spm
-# A machine that holds a host up for longer than its liveliness makes the controllers take the other
-# one: then it says so and begins again, five times in all.
+# A machine that stalls a server longer than its liveliness makes the controllers take the other
+# one: the run is then repeated with a note, five times in all.
 for try in 1 2 3 4 5; do
     start_host first.log
     first=$publisher
@@ -55,7 +56,7 @@ for try in 1 2 3 4 5; do
     for id in "$left" "$right" "$first" "$publisher"; do
         stop KILL "$id"
     done
-    sleep 2 # Longer than a lease: nothing tells that none believes in them any more.
+    sleep 2 # Longer than a lease: no event reports that both leases have ended.
 done
 stop KILL "$first"
 wait_for_line left.log "model 'ball' is served again, by another host"
@@ -65,8 +66,8 @@ for name in left right; do
     controller=${!name}
     mv "$name.log" hrtc.log
     stop_hrtc
-    # What both hosts showed was followed, one object at a time; nothing was mixed up, and the model
-    # was never without a host.
+    # Objects of both servers were followed, one at a time; nothing was mixed, and the model was
+    # never without a server.
     check "$name.json" frames '>' 1500 models == 1 scene.objects == 1 \
         scene.objects_max == 1 scene.came == 1 scene.went == 1 scene.passed_over == 0 \
         scene.changes_refused.not_here == 0 scene.changes_refused.already_here == 0 \
@@ -79,8 +80,8 @@ for name in left right; do
             == '1*frames'
     check_contact "$name.json" force.contact_share 0.3
     check_clean "$name.json"
-    # When the host died the object was stale after 100 ms, and then gone: the force faded for some
-    # 50 ms and was not let go at once.
+    # After the server's death the object was stale after 100 ms, and then gone: the force faded for
+    # about 50 ms and did not end at once.
     check "$name.json" answers.stale '>' 0
     "$list_safety" "$name.json" | awk '
         $4 == "stale" && $3 == "brake" { began = $2 }

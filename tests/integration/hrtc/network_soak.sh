@@ -1,19 +1,19 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# network_soak.sh: one controller lives through CYCLES ($7) of: another one that comes and is killed
-# or ended, and a link that is cut and mended; and as many of: its host killed and started again.
-# The host of the first half and the controller keep within what they had, and no answer was wrong.
+# network_soak.sh: one controller runs through CYCLES ($7) of another controller that starts and is
+# killed or ended, and of a link that is cut and restored; and as many of a killed and restarted
+# server. The server of the first half and the controller keep their resources, and no answer was
+# wrong.
 source "$(dirname "$0")/two_networks.sh"
 readonly cycles=$7
-# What a program may have more than after its first cycle, when all that is made once has been made:
-# the C library gives memory back late, Cyclone adds receive buffers of 1 MiB each, and keeps 0.8 KB
-# of each subscription that a host has served (docs/protocol.md, "Limits").
+# Permitted growth after the first cycle: the C library returns memory late, Cyclone adds receive
+# buffers of 1 MiB each, and keeps 0.8 KB of each subscription that a server has served
+# (docs/protocol.md, "Limits").
 declare -rA slack_kib=([host]=$((512 + 32 * cycles)) [controller]=$((1024 + 32 * cycles)))
 
 open_files() { find "/proc/$1/fd" -mindepth 1 | wc -l; }
 
-# check_holdings NAME ID CYCLE: a process comes back to what it had after cycle 1, which is
-# remembered.
+# check_holdings NAME ID CYCLE: a process returns to its resources after cycle 1, which are stored.
 declare -A first_kib first_files
 check_holdings() {
     local name=$1

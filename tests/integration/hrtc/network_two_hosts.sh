@@ -1,15 +1,14 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# network_two_hosts.sh: two hosts serve different files under one name. A controller stays with the
-# one that it found first or was pinned to, and is told of the other; nothing is mixed.
+# network_two_hosts.sh: two servers offer different files under one name. A controller stays with
+# the one that it discovered first or was pinned to, and is notified of the other; nothing is mixed.
 source "$(dirname "$0")/two_networks.sh"
 
 start_relay --delay-ms 10
 model bumpy-sphere-100000 first.spm
 model bumpy-sphere-60000 second.spm
 
-# check_touch FILE: what hrtc.log and run.rec are of was touched as this file, and by nobody else's
-# pieces.
+# check_touch FILE: the run of hrtc.log and run.rec touched this file, without pieces of others.
 check_touch() {
     check report.json wire.host_lost == 0 safety.begun.host == 0 models.0.host_connected == 1
     check_wire_run report.json
@@ -24,7 +23,7 @@ first=$publisher
 start_hrtc --model ball --device sim:touch --pool-mib 2 --duration 600 --record run.rec \
     --report report.json
 wait_for_contact publish.log
-mv publish.log first.log # The host goes on writing there.
+mv publish.log first.log # The server continues to write there.
 start_publisher second.spm --name ball
 mv publish.log second.log
 wait_for_line hrtc.log "warning: model 'ball' is offered by a second server, spm_publish"
@@ -34,7 +33,7 @@ stop_hrtc
 [[ $(subscriptions second.log) == 0 ]] || fault 'the second host was asked'
 check_touch first.spm
 "$judge_recording" run.rec second.spm >judged.json 2>/dev/null || fail 'it does not replay'
-check judged.json violations '>' 0 # The two can be told apart.
+check judged.json violations '>' 0 # The two are distinguishable.
 
 for which in first second; do
     before=$(subscriptions $which.log)
@@ -44,7 +43,7 @@ for which in first second; do
     check_touch $which.spm
 done
 
-# Without a pin any of the two, but one of them as a whole; the warning says which.
+# Without a pin either of the two, but only one; the warning names it.
 touch_ball --model ball
 other=$(sed -n "s/.*a second server, .*, with another hash, \([0-9a-f]*\); .*/\1/p" hrtc.log)
 which=first

@@ -21,7 +21,7 @@ STATISTICS, SUMMARY_OFFSET, DATA_END = 0x0B, 0x0E, 0x0F
 
 
 class Cursor:
-    """Little-endian values of a record's content, one after the other."""
+    """Little-endian values of a record's content, in turn."""
 
     def __init__(self, data):
         self.data, self.at = data, 0
@@ -38,7 +38,7 @@ class Cursor:
         return self.take(self.number("I")).decode("ascii")
 
     def array(self, form):
-        """An array of tuples, with its length in bytes before."""
+        """Array of tuples, after its length in bytes."""
         data, size = self.take(self.number("I")), struct.calcsize("<" + form)
         assert len(data) % size == 0, "an array ends within an item"
         return [struct.unpack_from("<" + form, data, at) for at in range(0, len(data), size)]
@@ -76,7 +76,7 @@ def read_channel(content):
 
 
 def add_same(table, item, is_repeated):
-    """Ids are told once in the data and again, alike, in the summary."""
+    """Ids occur once in the data and again, equal, in the summary."""
     key, value = item
     assert (table.get(key) == value) if is_repeated else (key not in table), item
     table[key] = value
@@ -202,7 +202,7 @@ def read_mcap(path):
 
 
 def cells_of(name, value):
-    """Columns and cells that stand for a value of JSON, but for a null."""
+    """Columns and cells of a JSON value, except for null."""
     if isinstance(value, list) and value and not isinstance(value[0], str):
         return [(f"{name}.{axis}", item) for axis, item in zip("xyzw", value)]
     return [(name, " ".join(value) if isinstance(value, list) else value)]
@@ -213,7 +213,7 @@ def same(cell, value):
         return cell == str(int(value))
     if isinstance(value, str):
         return cell == value
-    if value is None:  # Not known, or not finite.
+    if value is None:  # Unknown, or not finite.
         return cell == "" or not math.isfinite(float(cell))
     return float(cell) == value
 
@@ -221,7 +221,7 @@ def same(cell, value):
 def compare_row(row, prefix, told):
     for key, value in told.items():
         for column, item in cells_of(prefix + key, value):
-            if value is None and column not in row:  # A vector that is not known.
+            if value is None and column not in row:  # Unknown vector.
                 assert all(row[f"{column}.{axis}"] == "" for axis in "xyz"), column
             else:
                 assert same(row[column], item), (column, row[column], item)

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""read_trace.py TRACE REPORT: what `hrtc --trace` wrote is a trace of Chrome's format that tells of
-the run in the report: each frame's stages lie in it one after the other, no two frames overlap, and
-nothing is told twice or left out but what the report says."""
+"""read_trace.py TRACE REPORT: the output of `hrtc --trace` is a trace of Chrome's format for the
+run in the report: each frame's stages are in it in order, no two frames overlap, and nothing is
+duplicated or left out except as reported."""
 import json
 import sys
 

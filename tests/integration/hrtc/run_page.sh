@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 # shellcheck shell=bash disable=SC2154 # What common.sh sets is used here.
-# Runs what a page of docs shows; sourced after common.sh.
+# Runs the commands of a documentation page; sourced after common.sh.
 
-# run_page PAGE COUNT: the page's COUNT blocks of shell and Python, as they stand there, in its
-# order, in one shell that ends at the first failure. Programs are called as the page calls them,
-# on a domain of this test's, and on any machine. What they print is in page.log.
+# run_page PAGE COUNT: runs the page's COUNT blocks of shell and Python verbatim and in order, in
+# one shell that ends at the first failure. Programs are called as the page calls them, on a domain
+# of this test, and on any machine. Their output is in page.log.
 run_page() {
     local program
     command -v python3 >/dev/null || exit 77
@@ -22,7 +22,7 @@ SCRIPT
     for program in "$build" "$inspect"; do
         ln -s "$program" programs/
     done
-    # One of Python is a document for python3.
+    # A Python block is a document for python3.
     awk '/^```/ { kind = kind == "" ? substr($0, 4) : ""
                   blocks += kind == "sh" || kind == "python"
                   if (kind == "python") print "python3 - <<\"PYTHON\""

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # scene_files.sh: a glTF scene becomes models, is touched from files and is served; a second run
-# replaces the first; what is refused leaves everything as it was.
+# replaces the first; a refusal leaves everything unchanged.
 source "$(dirname "$0")/common.sh"
 
-# A tetrahedron: shown twice, once mirrored; and once more under another name.
+# Tetrahedron, shown twice, once mirrored, and once more under another name.
 base64 -d >tetra.bin <<<'AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAPgAAgD4AAIA/
 AAACAAEAAAABAAMAAQACAAMAAgAAAAMA'
 cat >scene.gltf <<'GLTF'

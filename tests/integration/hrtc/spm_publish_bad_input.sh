@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# spm_publish_bad_input.sh: files that can't be served give the right exit code and one line; a
-# chunk that is damaged while it is served does not end the host. HostOptions refuses wrong options,
-# and decoder laws what is wrong within a file.
+# spm_publish_bad_input.sh: files that cannot be served give the right exit code and one line; a
+# chunk damaged while it is served does not end the server. HostOptions covers wrong options, and
+# decoder laws faults within a file.
 source "$(dirname "$0")/common.sh"
 model bumpy-sphere-5000 good.spm
 
@@ -17,14 +17,14 @@ refuse 2 'missing.spm: cannot be opened: No such file or directory' missing.spm
 refuse 2 'other: is not a file but a directory' other
 refuse 2 'flip.spm: chunk 36 at offset' flip.spm
 refuse 2 'other: cannot be read' good.spm --poses other
-refuse 2 'cut.spm: *it is cut short' good.spm cut.spm # One that is good does not help.
+refuse 2 'cut.spm: *it is cut short' good.spm cut.spm # A valid one does not help.
 
-# Damage in every chunk: the host says so and goes on, the loop runs on the base mesh.
+# Damage in every chunk: the server reports it and continues, the loop runs on the base mesh.
 cp good.spm damaged.spm
 start_publisher damaged.spm
 dd if=/dev/zero of=damaged.spm bs=1 seek=$((bytes / 2)) count=$((bytes - bytes / 2)) \
     conv=notrunc status=none
-waits() { # waits CODE ARGUMENT...: a run ends with that code and tells what it waited for.
+waits() { # waits CODE ARGUMENT...: expects that exit code and the names of the awaited data.
     local code=0
     "$hrtc" --allow-no-rt --domain "$domain" --model damaged --duration 2 --report report.json \
         "${@:2}" >hrtc.log 2>&1 || code=$?

@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# ten_hosts.sh: a machine has room for ten hosts and watchers on a domain: each of ten is found and
-# touched, the eleventh is told whose ports are taken.
+# ten_hosts.sh: a machine has capacity for ten servers and watchers on a domain: each of ten is
+# found and touched, the eleventh reports the used ports.
 source "$(dirname "$0")/common.sh"
 model bumpy-sphere-5000 ball.spm
 
 hosts=10
 for ((i = 1; i <= hosts; ++i)); do
     start_publisher ball.spm --name "ball-$i"
-    mv publish.log "host-$i.log" # The host goes on writing there.
+    mv publish.log "host-$i.log" # The server continues to write there.
 done
 code=0
 "$publish" --domain "$domain" --seconds 5 ball.spm --name ball-11 >said.txt 2>&1 || code=$?

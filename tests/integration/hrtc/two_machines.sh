@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# two_machines.sh: the configuration that docs/two-machines.md has for a network, between two
-# networks of their own: a model is found and touched, at the ports that the page names.
+# two_machines.sh: the configuration of docs/two-machines.md for a network, between two separate
+# networks: a model is found and touched, at the ports of the page.
 source "$(dirname "$0")/two_networks.sh"
 example=$(cd "$(dirname "$0")/../../.." && pwd)/docs/examples/cyclonedds.xml
 readonly example
 
 start_relay --delay-ms 2 --loss 0.01 --seed 3
 
-# use_example ARRAY: its interface and the peers of the relay's own configuration in the example's.
+# use_example ARRAY: uses the interface and the peers of the relay's own configuration in the
+# example's.
 use_example() {
     local -n side=$1
     local peers interface
@@ -24,7 +25,7 @@ use_example on_controller
 
 touch_large_model
 
-# ports_of COMMAND...: what UDP ports a network hears on that lie in those of the domain.
+# ports_of COMMAND...: prints the UDP ports of a network within those of the domain.
 readonly first_port=$((7400 + 250 * domain)) next_port=$((7400 + 250 * (domain + 1)))
 ports_of() {
     "$@" cat /proc/net/udp | awk 'NR > 1 { split($2, at, ":"); print at[2] }' | while read -r port
@@ -36,14 +37,14 @@ ports_of() {
 heard=$(ports_of in_host_network)
 [[ "$heard" == '10 11 ' ]] || fault "the host hears on $first_port and: $heard"
 
-# The doctor hears the host, and what it publishes.
+# The doctor finds the server and its models.
 hears_host() {
     in_controller_network "$hrtc" doctor --json --domain "$domain" --wait 1 >doctor.json || true
     grep -q 'spm_publish (process .*models published: large' doctor.json
 }
 wait_until 'word of the doctor on the host' hears_host
 
-# Of another domain nothing comes through, and nothing is found.
+# From another domain nothing passes, and nothing is found.
 wrong=$(((domain + 7) % 200))
 if in_controller_network "$hrtc" --allow-no-rt --domain "$wrong" --model large --wait 1 \
     >wrong.log 2>&1; then

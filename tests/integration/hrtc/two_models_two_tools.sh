@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# two_models_two_tools.sh: every pair of a tool and a model is answered, and reported. The ring is
-# put upright through the ball, so that the hands, which feel their way over the ball, meet both.
+# two_models_two_tools.sh: every pair of a tool and a model is answered and reported. The ring is
+# upright through the sphere, so that the hands, which follow the sphere, meet both.
 source "$(dirname "$0")/common.sh"
 
 model bumpy-sphere-20000 first.spm
@@ -38,7 +38,7 @@ check report.json models == 1 tools == 2 scene.objects == 41 scene.objects_max =
     pools.total_bytes '<=' 4194304
 check_answers report.json
 check_clean report.json
-# Each hand as it is told, on the model that is named; where none is, on one of its own.
+# Each hand as configured, on the named model or its own.
 run_hrtc --virtual-time --model first.spm --model second.spm --place 0,0,0 --place 0.5,0,0 \
     --tools 3 --motion tap:second --motion slide:second --motion slide:first --duration 3 \
     --pool-mib 4

@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 # shellcheck shell=bash disable=SC2034 # The scripts use what is set here.
-# common.sh with host and controller in networks of their own and a relay between them; sourced with
+# common.sh with server and controller in separate networks and a relay between them; sourced with
 # "$@" being BIN CHECK_REPORT SANITIZER NETWORK_RELAY LIST_SAFETY JUDGE_RECORDING. After start_relay
-# whatever common.sh starts is where it belongs. A machine that can't make networks skips (77).
+# all programs of common.sh start in their networks. A machine that cannot create networks skips
+# (77).
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 readonly network_relay=$4 list_safety=$5 judge_recording=$6
-# What a device of the class touch can do: platform/devices/simulated/device_classes.hpp.
+# Limits of a device of the class touch: platform/devices/simulated/device_classes.hpp.
 readonly touch_force_max_n=3.3
 
-# skip_without_networks: ends the script where nobody may make a network.
+# skip_without_networks: ends the script if networks cannot be created.
 skip_without_networks() {
     local reason=''
     ((EUID == 0)) || reason='only root may make networks'
@@ -29,7 +30,7 @@ start_relay() {
     read -r -t "$patience_s" ready <&"$relay_out" || fail "network_relay $*: $(cat relay.log)"
     [[ "$ready" =~ \"host\":\{$side\},\"controller\":\{$side\} ]] || fail "not ready: $ready"
     local part=("${BASH_REMATCH[@]}")
-    # Both replace themselves by what they start, so that its id is that of the started process.
+    # Both exec the started program, so that its id is that of the process.
     on_host=(nsenter "--net=/proc/$relay/fd/${part[1]}" env "CYCLONEDDS_URI=${part[2]}")
     on_controller=(nsenter "--net=/proc/$relay/fd/${part[3]}" env "CYCLONEDDS_URI=${part[4]}")
 }
@@ -37,14 +38,14 @@ start_relay() {
 in_host_network() { "${on_host[@]}" "$@"; }
 in_controller_network() { "${on_controller[@]}" "$@"; }
 
-# relay_say COMMAND: its answer is in $relay_answer.
+# relay_say COMMAND: stores the answer in $relay_answer.
 relay_say() {
     printf '%s\n' "$*" >&"$relay_in"
     read -r -t "$patience_s" relay_answer <&"$relay_out" || fail "the relay says nothing to '$*'"
     [[ "$relay_answer" != refused* ]] || fail "the relay to '$*': $relay_answer"
 }
 
-# count_frames FILE: what the relay has counted so far, for check; nothing was lost but on purpose.
+# count_frames FILE: writes the relay's counts, for check; only intended losses occurred.
 count_frames() {
     relay_say count
     printf '%s\n' "$relay_answer" | tee "$1"
@@ -54,7 +55,7 @@ count_frames() {
     done
 }
 
-# touch_large_model: a model that streams is published and touched for two seconds, and no answer is
+# touch_large_model: a streamed model is published and touched for two seconds, and no answer is
 # wrong.
 touch_large_model() {
     model bumpy-sphere-100000 large.spm
@@ -67,22 +68,23 @@ touch_large_model() {
     judge_run large.spm
 }
 
-# judge_run MODEL_FILE [FRAME]...: what run.rec says, against the whole source, is in judged.json:
-# no answer was wrong. Named frames divide it into spans.
+# judge_run MODEL_FILE [FRAME]...: judges run.rec against the whole source into judged.json: no
+# answer was wrong. Given frames divide it into spans.
 judge_run() {
     "$judge_recording" run.rec "$@" >judged.json || fail 'the recording does not replay'
     check judged.json frames == "$(recorded_frames)" violations == 0
     cat judged.json
 }
-# check_span_contact SPAN SHARE: more than this share of that span of judged.json in contact, unless
-# the machine stalled the loop: then the force was off, and the hand lost what it touched.
+# check_span_contact SPAN SHARE: expects more than this share of that span of judged.json in
+# contact, unless the machine stalled the loop: then the force was off, and the hand lost the
+# contact.
 check_span_contact() {
     was_held_up report.json \
         || check judged.json "spans.$1.contact_frames" '>' "$2*spans.$1.frames"
 }
 recorded_frames() { sed -n 's/^recording *\([0-9]*\) frames.*/\1/p' hrtc.log; }
 
-# check_wire_run FILE: what holds of every run with a streamed model, however bad the link is.
+# check_wire_run FILE: checks the laws of every run with a streamed model on any link.
 check_wire_run() {
     check "$1" models.0.pieces_refused == 0 faults.model_inconsistent == 0 cache.loads '>' 0 \
         force.max_n '>' 0 force.max_n '<=' "$touch_force_max_n" \
@@ -93,7 +95,8 @@ check_wire_run() {
 
 resident_kib() { awk '/^VmRSS/ { print $2 }' "/proc/$1/status"; }
 
-# sent_pieces: what the host sent in the last subscription, once all have ended.
+# sent_pieces: prints the pieces that the server sent in the last subscription, after all have
+# ended.
 sent_pieces() {
     wait_for_line publish.log ' left (' "$(lines ' subscribed' publish.log)"
     sed -n 's/.* left (\([0-9]*\) pieces, .*/\1/p' publish.log | tail -n 1

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# wrong_usages.sh: wrong usage of each kind, and of each program, ends it with its code and one line
-# on stderr; nothing is left behind. What else is wrong usage, HrtcOptions and HostOptions refuse.
+# wrong_usages.sh: wrong usage of each kind and program ends it with its code and one line on
+# stderr; nothing is left behind. HrtcOptions and HostOptions cover further wrong usage.
 source "$(dirname "$0")/common.sh"
 readonly view=$1/spm_view
 : >mesh.obj
@@ -10,7 +10,7 @@ printf 'model = "ball.spm"\n\nrate = "1k"\n' >number.toml
 : >said.txt
 before=$(ls -A)
 
-# refuse CODE LINE PROGRAM ARGUMENT...: it ends with the code, and LINE is all that it says.
+# refuse CODE LINE PROGRAM ARGUMENT...: expects that code, and LINE as the only output.
 refuse() {
     local wanted=$1 line=$2 code=0
     shift 2
@@ -57,7 +57,7 @@ refuse 3 'spm_view: --domain excludes --replay; see --help' "$view" --replay a.r
 refuse 3 'spm_view: --replay: 3 recordings, two at most are compared' \
     "$view" --replay a --replay b --replay c
 
-# With --json-log what each says on stderr is one such object.
+# With --json-log each line on stderr is one JSON object.
 logged() { # logged LEVEL CODE TEXT PROGRAM ARGUMENT...
     local code=0
     "${@:4}" --json-log 2>said.txt >output.txt </dev/null || code=$?

@@ -1,12 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
 # browser.py BIN_DIR: the page of hrtc's report and that of spm_view, while hrtc touches a model, in
-# headless Chromium, clicked at through WebDriver. Exit code 77 without Debian's chromium and
-# chromium-driver.
-# With VIEW_PICTURES it leaves pictures of the page in that folder.
+# headless Chromium, operated through WebDriver. Exit code 77 without Debian's chromium and
+# chromium-driver. With VIEW_PICTURES it stores pictures of the page in that folder.
 #
-# Every wait is for an event and says what never came; all that was started is ended in any case,
-# browsers that have left their parents included.
+# Every wait is for an event and names a missing one; all started programs are ended in any case,
+# including browsers that have left their parents.
 import base64
 import ctypes
 import json
@@ -22,8 +21,8 @@ import time
 import urllib.error
 import urllib.request
 
-PATIENCE_S = 300  # Only what is broken waits this long.
-LOAD_S = 60  # Until a page that isn't there is loaded again.
+PATIENCE_S = 300  # Only a broken program waits this long.
+LOAD_S = 60  # Time until a missing page is loaded again.
 # No message bus, no network, no shared memory that a container may lack, and no watchdog that takes
 # a busy machine for a broken graphics card.
 FLAGS = ["--headless", "--no-sandbox", "--no-proxy-server", "--use-gl=angle",
@@ -37,7 +36,7 @@ PR_SET_CHILD_SUBREAPER = 36
 began_s = time.monotonic()
 system = ctypes.CDLL(None)
 browsers = []
-started = {}  # By their logs.
+started = {}  # Processes by log.
 
 
 def start(*command, log):
@@ -53,7 +52,7 @@ def start(*command, log):
 
 
 def children_of(parent):
-    """Of all that are there, and theirs."""
+    """All present processes, and their children."""
     parents = {}
     for status in pathlib.Path("/proc").glob("[0-9]*/stat"):
         try:
@@ -70,7 +69,7 @@ def children_of(parent):
 
 
 def end_all():
-    """Whatever was started, and what that has started: orphans are this process's children."""
+    """All started programs and their children: orphans are this process's children."""
     end = time.monotonic() + PATIENCE_S
     while left := children_of(os.getpid()):
         for child in left:
@@ -90,7 +89,7 @@ def end_all():
 
 
 def fail(what):
-    looked = browsers.pop() if browsers else None  # Once: asking may fail as well.
+    looked = browsers.pop() if browsers else None  # Once, since the request may also fail.
     if looked:
         print("--- the page:", looked.run(
             "return [document.readyState, document.body.innerText, performance.getEntries()"
@@ -105,7 +104,7 @@ def fail(what):
 
 
 def line_in(log, pattern):
-    """What the pattern's group is in a line of the file, once it is there."""
+    """Group of the pattern in a line of the file, once there is one."""
     return eventually(lambda: re.search(pattern, pathlib.Path(log).read_text(errors="replace")),
                       f"'{pattern}' in {log}").group(1)
 
@@ -127,8 +126,8 @@ class Browser:
         port = line_in(driver, r"successfully on port (\d+)")
         self.root = f"http://127.0.0.1:{port}/session"
         folder = f"--user-data-dir={os.getcwd()}/profile"
-        limits = {"pageLoad": PATIENCE_S * 900, "script": PATIENCE_S * 900}  # In ms.
-        # Waiting for a page to be loaded is ours: the driver's may never end on a busy machine.
+        limits = {"pageLoad": PATIENCE_S * 900, "script": PATIENCE_S * 900}  # Time limits in ms.
+        # This program waits for the page: the driver's wait may never end on a busy machine.
         wanted = {"alwaysMatch": {"pageLoadStrategy": "none", "goog:chromeOptions": {"args": [*FLAGS, folder]},
                                   "goog:loggingPrefs": {"browser": "ALL"}, "timeouts": limits}}
         self.root += "/" + self.call("POST", "", {"capabilities": wanted})["sessionId"]
@@ -149,7 +148,7 @@ class Browser:
             fail(f"chromedriver's answer to {method} {path or 'a new session'} never came: {error}")
 
     def open(self, url, is_there, what):
-        """Loads it again where it doesn't come: browsers lose a connection now and then."""
+        """Repeats the load if the page does not arrive: browsers sometimes lose a connection."""
         begun_s = [0.0]
 
         def try_it():
@@ -174,7 +173,8 @@ class Browser:
         self.call("POST", self.element(name) + "/click", {})
 
     def drag(self, selector, sideways):
-        """Presses the button in the middle of the first such element, moves so far, lets go."""
+        """Presses the button in the middle of the first such element, moves by this distance,
+        releases."""
         found = self.call("POST", "/element", {"using": "css selector", "value": selector})
         moves = [{"type": "pointerMove", "origin": found, "x": 0, "y": 0},
                  {"type": "pointerDown", "button": 0},
@@ -184,7 +184,7 @@ class Browser:
                                                     "actions": moves}]})
 
     def press(self, name, pressed):
-        """Clicks until it is so: a click that comes while the page moves may miss."""
+        """Clicks until the condition holds: a click while the page moves may miss."""
         def is_so():
             return self.run(f"return document.getElementById('{name}').ariaPressed") == pressed
 
@@ -195,7 +195,7 @@ class Browser:
         eventually(try_it, f"'{name}' pressed: {pressed}")
 
     def resize(self, width, height):
-        self.call("POST", "/goog/cdp/execute", {  # A window can't be as narrow as a telephone.
+        self.call("POST", "/goog/cdp/execute", {  # A window cannot be as narrow as a telephone.
             "cmd": "Emulation.setDeviceMetricsOverride",
             "params": {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}})
         eventually(lambda: self.run("return innerWidth") == width, f"a page {width} px wide")
@@ -210,7 +210,7 @@ class Browser:
                 print(f"no picture {name}: {error}", flush=True)
 
     def complaints(self):
-        """But those of fronts that aren't kept any more: of a controller that was silent."""
+        """Faults except those of outdated states, from a controller that was silent."""
         entries = self.call("POST", "/se/log", {"type": "browser"})
         return {entry["message"] for entry in entries if entry["level"] == "SEVERE" and
                 not re.search(r"/(front|boxes|loaded|wished)\?.* 4\d\d ", entry["message"])}
@@ -222,12 +222,12 @@ def expect(is_so, what):
 
 
 def fits(browser, what):
-    """Charts follow the window once they have heard of it."""
+    """Charts follow the window after its event."""
     eventually(lambda: browser.run("return document.documentElement.scrollWidth <= innerWidth"),
                what)
 
 
-# What is wider than its box, or beyond the page's edge: then some of it can't be read.
+# Elements wider than their box, or beyond the page's edge, cannot be read completely.
 CUT_OFF = """return [...document.querySelectorAll(
     "button, dt, dd, td, th, h2, label, p, .names, .marks, #words, #waits, #film-notes")]
   .filter((one) => one.offsetParent !== null && (one.scrollWidth > one.clientWidth + 1 &&
@@ -242,7 +242,7 @@ def nothing_cut_off(browser, what):
 
 
 def drawn(browser):
-    """Two pictures of the surface more: the first one may have been begun before."""
+    """Waits for two more pictures of the surface, since the first may have been begun before."""
     pictures = "return Number(document.getElementById('canvas').dataset.pictures)"
     seen = browser.run(pictures)
     eventually(lambda: browser.run(pictures) >= seen + 2, "pictures of the surface")
@@ -287,7 +287,7 @@ def look(browser, url, serve):
     expect(not browser.complaints(), f"the browser complains: {sorted(browser.complaints())[:3]}")
 
 
-# Of each chart whether something is drawn, and as far as it is zoomed in what it shows.
+# State of each chart: whether it is drawn, and its zoom.
 CHARTS = """return charts.map((graph) => ({
   is_drawn: [...graph.graphDiv.querySelectorAll("canvas")].some((canvas) => canvas.getContext("2d")
     .getImageData(0, 0, canvas.width, canvas.height).data.some((value) => value !== 0)),
@@ -296,7 +296,7 @@ CHARTS = """return charts.map((graph) => ({
 
 
 def reported(browser):
-    """One file: charts, those over the run zoomed together."""
+    """One file: charts, those over the run with a common zoom."""
     browser.resize(1440, 1000)
     browser.open(pathlib.Path("run.html").absolute().as_uri(),
                  lambda: browser.run("return document.querySelectorAll('.chart canvas').length")
@@ -333,7 +333,7 @@ def box_count(browser):
 
 
 def boxes(browser):
-    """Of the tree, level by level: one at the root, more and more below it."""
+    """Boxes of the tree, level by level: one at the root, more at each level below."""
     counts = []
     for level in ("0", "2", "24"):
         choose(browser, "level", level)
@@ -401,7 +401,7 @@ def frozen_page(browser):
 
 def main():
     programs = pathlib.Path(sys.argv[1]).resolve()
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # So that nothing is left running.
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # No process is left running.
     for needed in ("chromium", "chromedriver"):
         if shutil.which(needed) is None:
             print(f"no {needed}: install chromium and chromium-driver")

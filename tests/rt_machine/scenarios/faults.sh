@@ -1,19 +1,19 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# faults.sh: host killed, controller killed, clock set back, disk full; watched by a hand at the
+# faults.sh: server killed, controller killed, clock set back, disk full; watched by a hand at the
 # other end of the device.
 source ./helpers.sh
 take_model 200000
 serve bumpy.spm
 start_hand
-# The model does not fit as a whole, so that a host that is gone is missed.
+# The model is larger than the pools, so that a lost server has an effect.
 touch_it 'model = "bumpy"' 'tool = "sphere:0.004"' 'device = "udp"' 'wait = 60'
 wait_until 20 'force' feels
 
 ms_between() { awk -v a="$1" -v b="$2" 'BEGIN { printf "%.0f", (b - a) * 1000 }'; }
-# first_after SECONDS on|off: when a force came or went first after that time.
+# first_after SECONDS on|off: prints the first start or end of a force after that time.
 first_after() { awk -v t="$1" -v what="$2" '$1 >= t && $2 == what { print $1; exit }' hand.log; }
-# kill_it SERVICE: while a force is felt; $at is when. systemd starts it again.
+# kill_it SERVICE: kills it during a force; $at is the time. systemd starts it again.
 kill_it() {
     local id
     id=$(systemctl show -P MainPID "$1")
@@ -33,13 +33,13 @@ tell() { # tell SERVICE GONE BACK
     ((back <= 3000)) || fail 'contact comes back too late'
 }
 
-# What is left is the driver's watchdog: no datagram for 20 ms. /proc/uptime has hundredths, and
-# systemd works as well. Then no force before the next hrtc is there.
+# The driver's watchdog remains: no datagram for 20 ms. /proc/uptime has hundredths, and systemd
+# also takes time. Then no force before the next hrtc runs.
 kill_it hrtc
 gone=$(first_after "$at" off)
 tell hrtc "$gone" "$(first_after "$gone" on)" 60
 
-# Noticed after 500 ms; then the force fades within 50, and none comes before a host is back.
+# Detected after 500 ms; then the force fades within 50, and none returns before a server does.
 kill_it spm_publish
 gone=$(journalctl -o short-monotonic -u hrtc | grep -F 'is gone; going on' \
     | sed 's/^\[ *\([0-9.]*\)\].*/\1/')
@@ -51,7 +51,7 @@ felt=$(awk -v from="$gone" -v to="$again" '$1 > from + 0.06 && $1 < to && $2 == 
 [[ -z "$felt" ]] || fail "without a host a force is felt: $(tail -n 20 hand.log)"
 tell spm_publish "$gone" "$(first_after "$again" on)" 600
 
-# The clock of the wall goes back an hour: nothing here runs by it.
+# The wall clock is set back an hour: nothing here depends on it.
 wait_until 5 'force' feels
 restarts=$(systemctl show -P NRestarts hrtc)
 at=$(now)
@@ -65,7 +65,7 @@ cp /var/log/tactus/hrtc.json kept/report.json
 echo "clock set back an hour: $(journalctl -o cat -u hrtc | grep '^deadlines' | tail -n 1)" \
     | tee -a kept/faults.txt
 
-# No space: refused by name, nothing left, and what was there stays.
+# No space: refused by name, nothing left, and old files stay.
 mkdir /full
 mount -t tmpfs -o size=64k tmpfs /full
 cp /etc/os-release /full/small.spm

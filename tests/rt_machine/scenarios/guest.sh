@@ -1,10 +1,10 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# Inside the machine, as root: runs the script A.sh that the kernel's line names by
-# `tactus=A,ARGUMENT...`. Its words go to the second serial line, what it leaves in
+# Runs as root inside the machine: the script A.sh that the kernel's line names by
+# `tactus=A,ARGUMENT...`. Its output is sent to the second serial line, its files in
 # /rt_machine/kept to the third.
 set -uo pipefail
-second=0 # Of those that are called ttyS: on amd64 the console is one of them.
+second=0 # Number of that ttyS line: on amd64 the console is one of them.
 [[ $(uname -m) != x86_64 ]] || second=1
 exec </dev/null >/dev/ttyS$second 2>&1
 cd /rt_machine || exit
@@ -18,10 +18,10 @@ code=0
 bash "./${words[0]}.sh" "${words[@]:1}" || code=$?
 echo "the scenario ended with $code"
 tar --sort=name --mtime=@0 -czC kept . | base64 >/dev/ttyS$((second + 1))
-sleep 0.5 # The serial lines' last bytes.
+sleep 0.5 # Time for the serial lines' last bytes.
 if ((second == 1)); then
-    # Ends QEMU at once; to power off takes a thread of QEMU's that may not get its turn (boot.sh).
+    # Ends QEMU at once; a power-off needs a thread of QEMU that may not be scheduled (boot.sh).
     printf '\0' | dd of=/dev/port bs=1 seek=$((0x501)) conv=notrunc status=none
 else
-    poweroff --force --force # Where that stops the processor, too.
+    poweroff --force --force # This also stops the processor.
 fi

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 # shellcheck shell=bash disable=SC2034 # The scenarios use what is set here.
-# What the scenarios share; sourced first.
+# Functions of the scenarios; sourced first.
 set -euo pipefail
 
 fail() { printf 'FAULT: %s\n' "$*"; exit 1; }
 now() { cut -d' ' -f1 /proc/uptime; } # Seconds since the boot.
-# wait_until SECONDS WHAT COMMAND...: it succeeds.
+# wait_until SECONDS WHAT COMMAND...: waits for success of the command.
 wait_until() {
     local i most_s=$1 what=$2
     shift 2
@@ -15,7 +15,7 @@ wait_until() {
     done
     fail "no $what after $most_s s"
 }
-# expect CODE TEXT COMMAND...: that exit code, and TEXT in what it says last.
+# expect CODE TEXT COMMAND...: expects that exit code, and TEXT in the last output.
 expect() {
     local code=0 wanted=$1 text=$2 output
     shift 2
@@ -24,22 +24,22 @@ expect() {
         || fail "$*: code $code and '$output'; expected $wanted and '$text'"
 }
 
-# The services as docs/deploy.md has them, with what they serve and touch.
+# Services as in docs/deploy.md, with their model and tool.
 serve() { # serve MODEL OPTION...
     printf 'OPTIONS="%s"\n' "$*" >/etc/default/spm_publish
     systemctl start spm_publish
 }
-touch_it() { # touch_it LINE...: of hrtc.toml
+touch_it() { # touch_it LINE...: sets the lines of hrtc.toml
     printf '%s\n' "$@" 'report = "/var/log/tactus/hrtc.json"' >/etc/tactus/hrtc.toml
     systemctl start hrtc
 }
-take_model() { # take_model FACES: one of those of the image, as /var/lib/tactus/bumpy.spm
+take_model() { # take_model FACES: copies one of the image's models to /var/lib/tactus/bumpy.spm
     cp "/usr/share/tactus_models/bumpy-$1.spm" /var/lib/tactus/bumpy.spm
 }
 
-# A hand on the device of docs/examples/udp_driver.py that leans on the model and lets it go, once
-# a second. hand.log has a line with the time, in s since the boot, whenever a force comes or goes.
-make_hand() { # make_hand DRIVER: as hand.py
+# Hand on the device of docs/examples/udp_driver.py that leans on the model and releases it, once a
+# second. hand.log has a line with the time, in s since the boot, for each start and end of a force.
+make_hand() { # make_hand DRIVER: writes hand.py
     sed -e 's/^    hand = .*/    hand = [0.055 + 0.012 * math.cos(6.28 * now), 0.0, 0.0]/' \
         -e 's/\[0.0, 0.0, height_m\]/[0.08, 0.0, 0.0]/' -e 's/^began = /was = False\n&/' \
         -e '/^    for i in range(3):/{' \
@@ -53,6 +53,6 @@ make_hand() { # make_hand DRIVER: as hand.py
 start_hand() {
     make_hand /usr/share/doc/tactus/docs/examples/udp_driver.py
     PYTHONPATH=/usr/share/doc/tactus/docs/examples python3 hand.py 48500 >hand.log &
-    hand=$! # Process of it.
+    hand=$! # Its process.
 }
 feels() { [[ "$(tail -n 1 hand.log)" == *" on" ]]; }

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# minute.sh SECONDS: host and controller over DDS. Two runs of it are the same to the bit.
+# minute.sh SECONDS: server and controller over DDS. Two runs are equal to the bit.
 source ./helpers.sh
 take_model 200000
 cyclictest -q -m -p 90 -i 1000 -l 5000 | tee kept/cyclictest.txt

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# network.sh SECONDS DELAY_MS LOSS_PERCENT: host and controller in networks of their own, with the
+# network.sh SECONDS DELAY_MS LOSS_PERCENT: server and controller in separate networks, with the
 # configuration of docs/two-machines.md; netem delays and loses on both ends.
 source ./helpers.sh
 modprobe -a veth sch_netem

@@ -1,8 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# power_cut.sh MS: looks at what the last cut has left on the disk. Then spm_build, --record and
-# --report write there again and again, until the power goes after so many ms; with 0 it does not.
-# What has its name must be whole.
+# power_cut.sh MS: checks the files on the disk after the last cut. Then spm_build, --record and
+# --report write there repeatedly, until the power is cut after this number of ms, with 0 never.
+# Every named file must be complete.
 source ./helpers.sh
 readonly disk=/disk model=/var/lib/tactus/bumpy.spm
 modprobe -a virtio_pci virtio_blk ext4
@@ -18,7 +18,7 @@ if [[ -e "$disk/told" ]]; then
     tail -n 1 replay.log
     python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))["frames"], "frames told")' \
         "$disk/run.json" || fail 'a torn report'
-    # That it was a cut: of what nobody flushed something is gone.
+    # Proof of a cut: unflushed data are missing.
     left=$(stat -c %s "$disk/unflushed" 2>/dev/null || echo 0)
     echo "of 1000000 bytes that nobody flushed $left are left"
     ((left < 1000000)) || fail 'no power was cut'
@@ -32,7 +32,7 @@ run() {
 }
 build 2000
 run
-touch "$disk/told" # From here on all three are there.
+touch "$disk/told" # All three exist from here on.
 sync
 if (($1 > 0)); then
     (while true; do build $((2000 + RANDOM)); done) &

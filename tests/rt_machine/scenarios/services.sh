@@ -1,12 +1,12 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# services.sh: each command of docs/deploy.md that isn't one of installing, as the page has it; then
-# what the services are.
+# services.sh: each command of docs/deploy.md except installing ones, verbatim; then the state of
+# the services.
 source ./helpers.sh
 page=/usr/share/doc/tactus/docs/deploy.md
 # shellcheck disable=SC2016 # The page's own marks.
 sed -n '/^```sh$/,/^```$/{/^```/!p}' "$page" >commands.sh
-# Minutes are another scenario's.
+# Another scenario runs for minutes.
 sed -i 's/--duration 600/--duration 5/' commands.sh
 grep -q 'duration 5' commands.sh || fail 'the page has another deadline test'
 bash -eux commands.sh || fail 'a command of docs/deploy.md'
@@ -18,7 +18,7 @@ policies=$(for task in /proc/"$(systemctl show -P MainPID hrtc)"/task/*; do
 done)
 echo "policies: $policies"
 [[ $(grep -o SCHED_FIFO <<<"$policies" | wc -l) == 2 ]] || fail 'not two threads of SCHED_FIFO'
-# Hangs: systemd's watchdog ends it and starts it anew.
+# Hangs: systemd's watchdog ends and restarts it.
 systemctl kill -s STOP hrtc
 is_restarted() { [[ $(systemctl show -P NRestarts hrtc) == 1 ]]; }
 wait_until 10 'restart by the watchdog' is_restarted
