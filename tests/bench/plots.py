@@ -187,7 +187,7 @@ def error_time(data):
 
 
 def faces_of(data, case):
-    """Faces of the whole mesh: the greatest number of a contestant."""
+    """Faces of the whole mesh: the greatest number in the settings."""
     counts = [int(setting.removesuffix(" faces")) for _, setting, _ in points_of(data, case)
               if setting.endswith(" faces")]
     if not counts:

@@ -33,7 +33,7 @@ void keep_splits(FrameRun& run)
     run.budgets.scanned = 0;
 }
 
-/// Radius, in place of certificates, that includes every face; nearly every answer on these scenes
+/// Radius in place of certificates, with all faces within it; nearly every answer on these scenes
 /// is exact in it.
 constexpr double kFixedRadius = 1.5;
 

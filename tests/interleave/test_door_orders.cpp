@@ -52,7 +52,7 @@ Exploration two_threads(const DoorBody& transport, const DoorBody& haptic,
 /// Fills free pages with ascending numbers and hands them over, `turns` times.
 void lend_and_fill(Door& door, std::uint32_t pages, int turns)
 {
-    std::uint32_t free = pages; // Stack of the pages in `stack`, like the loader's.
+    std::uint32_t free = pages; // Number of pages on `stack`, as in the loader.
     std::array<std::uint32_t, 2> stack{0, 1};
     std::uint32_t number = 0;
     for (int turn = 0; turn < turns; ++turn)

@@ -318,7 +318,7 @@ class Studio:
             self.programs / "spm_inspect", model, "--json", *words)))
 
     def faces(self):
-        """Faces of the model, in the source's frame."""
+        """Number of faces of the model's source mesh."""
         return self.figures(self.model())["faces"]
 
     def play(self, name, *words):
@@ -651,7 +651,7 @@ def forest(studio, path):
 
 
 def chunks(studio, path):
-    """Order in which vertices are loaded: those of a chunk are of one tier and near each other."""
+    """Vertices that are loaded together: those of a chunk are of one tier and near each other."""
     records = studio.figures(studio.model(), "--records")["record_list"]
     points = numpy.array([record["position_m"] for record in records])
     out = studio.file("pale.obj", lambda to: run(

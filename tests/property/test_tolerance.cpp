@@ -37,7 +37,7 @@ struct ToleranceCase
     bool is_held_by_exact_faces;
 };
 
-/// Model of a case: a flat one fits as a whole, and a rougher one fits too.
+/// Flat plate if the pool holds the whole model, otherwise the bumpy sphere.
 const TestModel& model_of(const ToleranceCase& test_case)
 {
     static const TestModel& bumpy =

@@ -105,7 +105,7 @@ public:
         axis_ = (random.in_cube(1.0) + Vec3(0, 0, 1e-3)).normalized();
         if (stage_ == RigidStage::closing)
         {
-            // The second object does not come from the start of the hand.
+            // The second object comes from the side opposite to the hand's start.
             axis_ = -axis_.cwiseAbs();
         }
         if (stage_ == RigidStage::far)

@@ -26,7 +26,7 @@ leave() {
 trap leave EXIT
 cd "$scratch"
 
-# model SHAPE-FACES FILE: links the model of make_models.sh if it exists, otherwise makes it.
+# model SHAPE-FACES FILE: copies the model of make_models.sh if it exists, otherwise makes it.
 model() {
     local made=${TACTUS_TEST_MODELS:-}/$1.spm
     if [[ -f "$made" ]]; then

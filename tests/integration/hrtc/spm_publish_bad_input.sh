@@ -24,7 +24,7 @@ cp good.spm damaged.spm
 start_publisher damaged.spm
 dd if=/dev/zero of=damaged.spm bs=1 seek=$((bytes / 2)) count=$((bytes - bytes / 2)) \
     conv=notrunc status=none
-waits() { # waits CODE ARGUMENT...: expects that exit code and the names of the awaited data.
+waits() { # waits CODE ARGUMENT...: expects that exit code and reports of missing pieces.
     local code=0
     "$hrtc" --allow-no-rt --domain "$domain" --model damaged --duration 2 --report report.json \
         "${@:2}" >hrtc.log 2>&1 || code=$?

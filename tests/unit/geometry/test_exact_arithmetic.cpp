@@ -187,7 +187,7 @@ TEST(Orientation, a_volume_is_right_however_much_cancels)
         GridPoint b{};
         GridPoint c{};
         GridPoint d{};
-        double terms = 1.0; // Size of the terms.
+        double terms = 1.0; // Product of the lengths.
         for (std::size_t k = 0; k < 3; ++k)
         {
             b[k] = a[k] + u[k];

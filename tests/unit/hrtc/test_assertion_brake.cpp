@@ -222,8 +222,8 @@ private:
         }
     }
 
-    /// Waits for a later frame: the supervisor may have braked already in that of the bug, and does
-    /// so once a silence.
+    /// Waits for the supervisor's failure, in a later frame than the bug's: it may have braked
+    /// already in that one, and brakes once a silence.
     void wait_for_supervisor() const noexcept
     {
         while (!supervisor_failed_.load())

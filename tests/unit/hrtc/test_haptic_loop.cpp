@@ -143,7 +143,7 @@ struct Course
     double own_step;      ///< Change between frames without disturbance.
     double damping;       ///< Damping of the hand that sinks into the wall while the force fades.
     double back_step_max; ///< Greatest change during the return.
-    double off;           ///< Final deviation from the previous value.
+    double off;           ///< Final deviation as a share of the value before.
 };
 
 /// Expects a linear fade from the frame in which the trouble can be detected, and a ramp back.
@@ -282,7 +282,7 @@ TEST(HapticLoop, time_that_falls_back_ends_the_force_until_the_clock_is_believed
     options.faults = {{DeviceFaultKind::time_jump, kSettled - 200, 200}};
     LoopRig rig(options);
     rig.run();
-    // A forward jump is allowed, since the state was lost.
+    // The clock may jump ahead, since samples may be lost.
     const double before_n = rig.written_n(kSettled - 1).norm();
     EXPECT_GT(before_n, 1.0);
     EXPECT_LE(rig.largest_step_n(kSettled - 202, kSettled - 1), kOwnStep_n);
@@ -481,7 +481,7 @@ TEST(HapticLoop, a_wall_that_the_device_may_have_goes_through_as_it_is)
     {
         EXPECT_EQ(rig.frames_with(action), 0U) << static_cast<int>(action);
     }
-    EXPECT_LT(rig.frames_with(ForceAction::damped), 100U); // Frames of the entry in a period.
+    EXPECT_LT(rig.frames_with(ForceAction::damped), 100U); // The entry's energy only.
 }
 
 TEST(HapticLoop, a_stiffer_wall_than_the_device_may_have_is_as_stiff_as_it_may_be)
