@@ -14,7 +14,7 @@
 enum
 {
     BYTES = 4 << 20,
-    PATIENCE = 50000, /* Rounds of 2 ms: what a host sends takes its time. */
+    PATIENCE = 50000, /* Rounds of 2 ms; data from a server take time. */
     STEPS = 600
 };
 
@@ -35,7 +35,7 @@ static void done(tactus_result result, const char* what)
     need(result == TACTUS_DONE, what);
 }
 
-/* The call was refused in this way, with one line that has these words. */
+/* Expects a refusal of this kind, in one line with these words. */
 static void refused(tactus_result result, tactus_result expected, const char* words)
 {
     const int is_one_line = strchr(error.text, '\n') == NULL;
@@ -46,7 +46,7 @@ static void bad(tactus_result result, const char* words)
     refused(result, TACTUS_BAD_ARGUMENT, words);
 }
 
-/* A tool of a frame of its own at one place, and all that the frame says of it there. */
+/* Tool in a separate frame at one place, with all answers of the frame. */
 typedef struct probe
 {
     tactus_tool tool;
@@ -84,8 +84,7 @@ static void run(probe* p)
 {
     done(tactus_frame_run(p->frame, &p->poses, &error), "run");
 }
-/* Runs until the answer is exact, or, of a frame that loads wholly, until all of the model is here.
- */
+/* Runs until the answer is exact, or with `is_whole` until the whole model is loaded. */
 static void run_until(probe* p, int is_whole)
 {
     const struct timespec while_s = {0, 2000000};
@@ -106,7 +105,7 @@ static void run_until(probe* p, int is_whole)
     need(0, is_whole ? "never whole" : "never exact");
 }
 
-/* Half a metre above the top of the ring, by a small tool that asks, or that doesn't. */
+/* Distance of a small tool half a metre above the top of the ring, requested or not. */
 static void ask_from_afar(tactus_tool tool, int wants_distance)
 {
     probe p;
@@ -129,7 +128,7 @@ static void ask_from_afar(tactus_tool tool, int wants_distance)
     tactus_frame_end(p.frame);
 }
 
-/* Distances of a tool of this shape that stands upright, 9.8 mm above the top of the ring. */
+/* Distances of an upright tool of this shape, 9.8 mm above the top of the ring. */
 static void ask_upright(tactus_tool tool, tactus_shape shape, double x_m, double y_m, double z_m)
 {
     probe p;
@@ -144,8 +143,8 @@ static void ask_upright(tactus_tool tool, tactus_shape shape, double x_m, double
     tactus_frame_end(p.frame);
 }
 
-/* A capsule that lies across the ring is pressed down with one end: that at x = 0.028 m is over the
- * top, 0.013 m high; it is lowered from 5 to -1 mm. */
+/* Capsule across the ring, pressed down with one end: that at x = 0.028 m is over the top, 0.013 m
+ * high, and moves from 5 to -1 mm. */
 static void press_one_end(void)
 {
     static double places_m[STEPS][3];
@@ -163,7 +162,7 @@ static void press_one_end(void)
     tactus_tool_default(&stick);
     stick.shape = TACTUS_CAPSULE;
     stick.radius_m = 0.002;
-    stick.half_m[1] = 0.01; /* Turned by a quarter, so that it lies along -x. */
+    stick.half_m[1] = 0.01; /* A quarter turn puts it along -x. */
     probe p;
     begin(&p, &stick, 0.018, 0.1);
     run_until(&p, 1);
@@ -186,8 +185,8 @@ static void press_one_end(void)
     tactus_frame_end(p.frame);
 }
 
-/* A hand in the tube of the ring would be held there; one in its hole would not, nor one that
- * passes through. */
+/* Tests for the inside: true for a hand in the tube of the ring, false for one in its hole and for
+ * a query-only tool. */
 static void ask_inside(void)
 {
     tactus_tool hand;
@@ -208,8 +207,8 @@ static void ask_inside(void)
     }
 }
 
-/* The largest step of the force of a hand 3 mm deep, under which the ring goes up and down by 2 mm
- * every four frames; of a ring that is believed to move at that speed at most. */
+/* Greatest step of the force on a hand 3 mm deep, while the ring moves up and down by 2 mm every
+ * four frames, with this object speed limit. */
 static double shake(double speed_m_per_s)
 {
     tactus_tool hand;
@@ -244,7 +243,7 @@ static double shake(double speed_m_per_s)
     return step_max_n;
 }
 
-/* While `p` has the memory and the model. */
+/* Refusals while `p` has the memory and the model. */
 static void ask_for_what_is_refused(probe* p, const char* file, tactus_model* model)
 {
     /* Another version of library, records or frame. */
@@ -264,7 +263,7 @@ static void ask_for_what_is_refused(probe* p, const char* file, tactus_model* mo
             "tools[0].: its size is");
     tool.size += 8;
 
-    /* What another frame has; memory that is too small, or starts anywhere. */
+    /* Memory and model of another frame; memory that is too small or not aligned. */
     refused(tactus_frame_make(&bad_setup, memory, BYTES, &second, &error), TACTUS_BUSY,
             "memory: a frame that has not ended uses it");
     refused(tactus_model_close(model, &error), TACTUS_BUSY, "serves a frame");
@@ -281,7 +280,7 @@ static void ask_for_what_is_refused(probe* p, const char* file, tactus_model* mo
         "setup.object_speed_max_m_per_s: 0; 1e-06 to 1000000 is allowed");
     free(more);
 
-    /* Numbers. */
+    /* Numbers out of range. */
     double bad_m[3] = {0.0, NAN, 0.0};
     p->poses.positions_m = bad_m;
     bad(tactus_frame_run(p->frame, &p->poses, &error), "poses.positions_m: element 1 is nan");
@@ -339,7 +338,7 @@ int main(int argc, char** argv)
     setup.object_count = 1;
     memory = aligned_alloc(TACTUS_ALIGNMENT, BYTES);
 
-    /* In the middle of its hole, and 9.8 mm above the top of the ring. */
+    /* Points in the middle of its hole, and 9.8 mm above the top of the ring. */
     probe p;
     begin(&p, &ball, 0.0, 0.0);
     for (int i = 0; i < 2; ++i)
@@ -356,7 +355,7 @@ int main(int argc, char** argv)
     const double before_m = p.lower_m;
     ring.pose.translation_m[2] = -0.005;
     done(tactus_frame_place(p.frame, 0, &ring.pose, &error), "place");
-    p.poses.rounds = 1000; /* It is carried there, 0.5 mm a frame. */
+    p.poses.rounds = 1000; /* It moves there by 0.5 mm a frame. */
     run(&p);
     need(fabs(p.lower_m - before_m - 0.005) < 1e-3, "not farther away");
     tactus_frame_end(p.frame);
