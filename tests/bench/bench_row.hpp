@@ -65,7 +65,6 @@ struct GoalCount
 };
 [[nodiscard]] GoalCount count_goals(const Rows& rows);
 
-/// Results of the suites.
 struct Results
 {
     Rows rows;

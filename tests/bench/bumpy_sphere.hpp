@@ -40,8 +40,8 @@ struct SurfaceFoot
 /// Sphere that rests on a surface without friction while a device pulls it.
 struct Touch
 {
-    double radius_m{0.0}; ///< Radius of the sphere.
-    double depth_m{0.0};  ///< Depth of the device below the rest position of the sphere's centre.
+    double radius_m{0.0};
+    double depth_m{0.0}; ///< Depth of the device below the rest position of the sphere's centre.
     double stiffness_n_per_m{0.0};
 
     [[nodiscard]] double force_n() const { return stiffness_n_per_m * depth_m; }

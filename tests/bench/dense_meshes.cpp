@@ -71,8 +71,8 @@ struct DenseTool
     const char* name;
     ToolCore core;
     double radius_m;
-    std::vector<Vec3> corners_m; ///< Corners of the core.
-    std::uint32_t times{1};      ///< Factor of the usual frame budget.
+    std::vector<Vec3> corners_m;
+    std::uint32_t times{1}; ///< Factor of the usual frame budget.
 
     /// Extent of the tool along a direction, from its frame's origin.
     [[nodiscard]] double reach_m(const Vec3& direction) const

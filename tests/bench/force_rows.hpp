@@ -21,7 +21,7 @@ struct ForceFigures
     /// Frames in which the sphere is stuck: halted, without contact, or farther than `lag_m` from
     /// its rest position.
     std::uint64_t stuck{0};
-    std::uint64_t without_force{0}; ///< Frames without force.
+    std::uint64_t without_force{0};
 };
 /// Accuracy of a trace; `rests_m` of the counted frames, in the frame of the trace.
 [[nodiscard]] ForceFigures measure_forces(const ForceTrace& trace, const std::vector<Vec3>& goals_m,

@@ -50,7 +50,7 @@ struct FrameRun
 struct FrameWork
 {
     std::uint64_t frames{0};
-    WorkCounters counters;        ///< Sum of the counters.
+    WorkCounters counters;
     std::uint64_t coded_bytes{0}; ///< Bytes received over the link.
     std::uint64_t contacts{0};    ///< Frames in contact.
     std::uint64_t uncertified{0}; ///< Frames in contact without an exact answer.

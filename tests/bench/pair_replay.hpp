@@ -32,10 +32,10 @@ struct PairFrames
     std::array<LeastTimes, kStages> stage_us;
     LeastTimes sum_us; ///< T = T_R + T_B + T_Q + T_L.
     std::vector<PairOutput> answers;
-    WorkCounters work;              ///< Work of all frames.
-    std::uint32_t active_faces{0};  ///< Most active faces of the object.
-    std::uint64_t meeting_pairs{0}; ///< Meeting pairs of all frames.
-    std::uint64_t hash{0};          ///< Hash of answers and states.
+    WorkCounters work;
+    std::uint32_t active_faces{0}; ///< Most active faces of the object.
+    std::uint64_t meeting_pairs{0};
+    std::uint64_t hash{0}; ///< Hash of answers and states.
 };
 
 /// Replays a run `passes` times, after some frames at its first pose. A failure if passes differ.

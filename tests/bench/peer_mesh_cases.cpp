@@ -179,7 +179,6 @@ void add_times(const MeshTrial& trial, const std::string& name, CaseRows& rows,
     }
 }
 
-/// Adds the rows of one contestant.
 void add_contestant(const MeshTrial& trial, PairQuery& query, PairSpreads& spreads)
 {
     for (const PairQuestion question : kPairQuestions)

@@ -117,7 +117,6 @@ void add_cost(const TouchTrial& trial, CaseRows& rows, double build_ms, double b
     rows.add("memory", bytes / static_cast<double>(trial.scene.model.faces.size()), "B a face");
 }
 
-/// Adds all rows of one built contestant.
 void add_contestant(TouchTrial& trial, const std::string& by, const BuiltQuery& built)
 {
     const bool is_banded = built.query->needs_band();

@@ -18,7 +18,6 @@ public:
     void begin() { last_ = BenchClock::now(); }
     [[nodiscard]] StageMark mark() { return {&end_stage, this}; }
     [[nodiscard]] double us(Stage stage) const { return us_[static_cast<std::size_t>(stage)]; }
-    /// Sum of all stages.
     [[nodiscard]] double sum_us() const { return std::accumulate(us_.begin(), us_.end(), 0.0); }
 
 private:

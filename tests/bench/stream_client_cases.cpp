@@ -42,7 +42,6 @@ Program start_client(const std::filesystem::path& folder, std::uint32_t number, 
                      fmt::format("{}", rate_hz), "--seconds", fmt::format("{}", seconds)});
 }
 
-/// Final report of a client.
 Json client_report(Program& client, const std::filesystem::path& folder, std::uint32_t number)
 {
     client.wait();

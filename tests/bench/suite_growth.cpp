@@ -35,7 +35,6 @@ struct Size
     double k;
 };
 
-/// One figure at each size.
 struct Figure
 {
     const char* name;
@@ -104,7 +103,6 @@ std::vector<double> fitted_law(const Figure& figure, const std::vector<Size>& si
     return law;
 }
 
-/// All figures at one size.
 struct SizeFigures
 {
     Size size;

@@ -51,7 +51,6 @@ Vec3 point_on(const Corners& corners, double s, double t)
     return corners[0] + s * (corners[1] - corners[0]) + t * (corners[2] - corners[0]);
 }
 
-/// Adds the distances of points to a surface.
 void add_distances(const std::vector<Vec3>& points, const test::FaceTree& tree, SurfaceError& sum)
 {
     for (const Vec3& point : points)

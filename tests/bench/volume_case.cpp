@@ -110,7 +110,6 @@ private:
     test::NearestWalk<Tree> walk_;
 };
 
-/// Figures of one volume.
 struct VolumeFigures
 {
     Spread near_us;

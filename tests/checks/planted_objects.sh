@@ -45,7 +45,7 @@ archive heap <<<'int* make() { return new int(1); }'
 expect 1 'operator new(unsigned long) in heap.cpp.o' bash "$checks/check_rt_core_symbols.sh" lib.a \
     "$checks/rt_core_symbols.txt"
 
-platform() { # platform CODE TEXT OBJECT CALL: of an archive whose object makes the call.
+platform() { # platform CODE TEXT OBJECT CALL: checks an archive whose object makes the call.
     archive "$3" -w <<<"extern \"C\" int $4(...); int run() { return $4(1); }"
     expect "$1" "$2" bash "$checks/check_platform_symbols.sh" lib.a "$checks/platform_symbols.txt"
 }
@@ -140,7 +140,7 @@ int run(int n)
 int a(int n) { return n; } int b(int n) { return n + 1; } int c(int n) { return n + 2; }
 int d(int n) { return n + 3; } int e(int n) { volatile char x[500]; x[n] = 1; return x[n / 2]; }
 EOC
-stack 0 'e(int)' # The jump of the switch is no call through a pointer.
+stack 0 'e(int)' # A switch's jump is no call through a pointer.
 
 # --- AVX.
 avx() { expect "$1" "$2" bash "$checks/check_no_avx.sh" '*kernel*avx2*' lib.a; }
@@ -161,7 +161,7 @@ archive my_kernels_avx2 -mfma <<<'float f(float a, float b, float c) {
 avx 1 'f(float, float, float): vfm'
 expect 3 'usage' bash "$checks/check_no_avx.sh" lib.a
 
-# A program may hold the kernels' code and no other of the kind.
+# A program may contain AVX code of the kernels only.
 archive my_kernels_avx2 -mavx2 <<<"$sum"
 printf 'float sum(const float*); float one[8] = {}; int main() { return int(sum(one)); }\n' >m.cpp
 "$cxx" -O1 m.cpp lib.a -o program

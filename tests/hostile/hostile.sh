@@ -92,7 +92,7 @@ if [[ "$attack" == rtps_* ]]; then
     check report.json frames '>' 500 force.max_n '>' 0 force.max_n '<=' 3.3
     case $attack in
         rtps_motion_deaf)
-            # Until the server reports the motion through another writer.
+            # Waits until the server reports the motion through another writer.
             grep -q 'controller victim hears no motion: another writer' publish.log \
                 || fault 'the host made no other writer'
             grep -Eq 'motion of host .* was lost for [0-9]+ ms though it was there' hrtc.log \
@@ -135,7 +135,7 @@ grep -q '^served victim: [0-9]* pieces/s' publish.log || fault '--watch tells no
 # A receiver of false data counts it and names its sender.
 case $attack in
     wanted_flooded_epochs) ;; # For absent servers: ignored by all.
-    log_flooded) # It may be added and removed; the log reports that 40 times a second at most.
+    log_flooded) # The log reports added and removed models 40 times a second at most.
         grep -q 'controller stranger subscribed' publish.log || fault 'no stranger came'
         said=$(grep -c 'controller stranger' publish.log)
         ((said <= 40 * (SECONDS + 1))) || fault "$said lines of a stranger's visits"

@@ -29,9 +29,9 @@ enum class Verb : std::uint8_t
     want_all, ///< Frame that needs the whole model, one page more than there are slots.
     evict,    ///< Evicts every page that is not pinned.
     pin,      ///< Pins an unpinned page by refining a record.
-    unpin,    ///< Unpins all.
-    be_late,  ///< Frame so late that unanswered requests expire.
-    step,     ///< Step; this and the next verbs are in the order of Weather.
+    unpin,
+    be_late, ///< Frame so late that unanswered requests expire.
+    step,    ///< Step; this and the next verbs are in the order of Weather.
     step_holding,
     step_losing,
     step_damaging,

@@ -33,7 +33,7 @@ struct Compared
     std::uint32_t frames_rested{0}; ///< Resting frames, with all shortcuts.
     std::uint32_t outputs{0};       ///< Outputs of tools.
     std::uint32_t touches{0};       ///< Outputs in contact.
-    std::uint32_t answers{0};       ///< Exact answers.
+    std::uint32_t answers{0};
     std::uint32_t contacts{0};
     std::uint32_t came{0}; ///< Objects with the number of an earlier one.
 };

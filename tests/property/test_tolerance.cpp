@@ -77,7 +77,7 @@ protected:
         int known{0};  ///< Frames with a known nearest place.
         int tolerated{0};
         std::uint32_t refined{0}; ///< Refined records at the end.
-        std::uint32_t records{0}; ///< All records.
+        std::uint32_t records{0};
     };
 
     static constexpr int kPressed = 400;

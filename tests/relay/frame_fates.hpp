@@ -12,11 +12,10 @@
 namespace tactus::relay
 {
 
-/// Fate of one frame.
 struct FrameFate
 {
     std::size_t copies{0}; ///< Copies that arrive: 0 if it is lost, 2 if it is duplicated.
-    std::array<Duration, 2> delays{}; ///< Delay of each copy.
+    std::array<Duration, 2> delays{};
 };
 
 /// Fates of the frames of one direction. That of frame n is a function of seed, n and condition

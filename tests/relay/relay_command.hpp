@@ -13,7 +13,6 @@ namespace tactus::relay
 
 inline constexpr double kDelayMax_ms = 10'000.0;
 
-/// Condition of a link, for each direction.
 struct LinkCondition
 {
     double delay_ms{0.0}; ///< Delay of every frame, one way, 0 .. kDelayMax_ms.

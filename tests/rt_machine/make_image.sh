@@ -56,7 +56,7 @@ done
 rm -rf "\$root"/boot/initrd* "\$root"/usr/share/locale "\$root"/var/cache/apt/* \\
     "\$root"/var/lib/apt/lists/* "\$root"/usr/lib/udev/hwdb.bin "\$root"/usr/lib/*/gconv \\
     "\$root"/packages
-# Models: building one takes the machine longer than most of what it is for.
+# Models are built here, since building one takes the machine longer than most scenarios.
 mkdir "\$root/usr/share/tactus_models"
 for faces in 2000 20000 200000; do
     chroot "\$root" spm_build --shape bumpy-sphere --faces "\$faces" \\
@@ -65,7 +65,7 @@ done
 chroot "\$root" spm_build --shape torus --faces 1000 --fit-diag 0.02 \\
     -o /usr/share/tactus_models/ring.spm
 find "\$root"/usr/share/doc -mindepth 1 -maxdepth 1 ! -name 'tactus*' -exec rm -rf {} +
-# As on a machine that was booted before: services are those that somebody enabled.
+# The machine looks already booted once: only enabled services run.
 echo 0123456789abcdef0123456789abcdef >"\$root/etc/machine-id"
 echo controller >"\$root/etc/hostname"
 for getty in serial-getty@ttyS0 serial-getty@ttyAMA0 getty@tty1; do

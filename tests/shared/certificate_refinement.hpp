@@ -21,8 +21,8 @@ public:
 
     struct Answer
     {
-        double distance_m{0.0};       ///< Distance to the nearest face that was found exact.
-        std::vector<RecordId> splits; ///< Splits in their order.
+        double distance_m{0.0}; ///< Distance to the nearest face that was found exact.
+        std::vector<RecordId> splits;
     };
 
     /// Splits until no coarse face can be nearer than the nearest exact one. 20 B a face of the

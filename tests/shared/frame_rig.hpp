@@ -20,8 +20,8 @@ namespace tactus::test
 
 struct RigOptions
 {
-    std::size_t pool_bytes{std::size_t{8} << 20U}; ///< Pools of all models.
-    std::size_t cache_bytes{0};                    ///< Page cache of all models.
+    std::size_t pool_bytes{std::size_t{8} << 20U};
+    std::size_t cache_bytes{0}; ///< Page cache of all models.
     std::vector<ToolSpec> tools;
     std::vector<ObjectSpec> objects; ///< Objects; empty: one that shows the first model.
     /// Poses of the objects' models at the start; by default the world frame.

@@ -51,7 +51,6 @@ public:
     [[nodiscard]] std::vector<FacePair> within(double distance_m, std::size_t enough) const;
 
     [[nodiscard]] bool do_meet(const FacePair& faces) const;
-    /// Distance of one pair in the world.
     template <typename Real = long double>
     [[nodiscard]] Real distance(const FacePair& faces) const;
 

@@ -16,8 +16,8 @@ namespace tactus::test
 struct BracketTrial
 {
     const TestModel& model;
-    const FaceTree& tree;     ///< Tree of the model, for the motion.
-    const ToolOracle& oracle; ///< Oracle of the tool.
+    const FaceTree& tree; ///< Tree of the model, for the motion.
+    const ToolOracle& oracle;
     Hardship hardship;
     std::uint64_t seed{0};
     std::uint32_t frames{0};

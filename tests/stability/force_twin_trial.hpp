@@ -19,7 +19,7 @@ namespace tactus::test
 struct ForceTwinTrial
 {
     const TestModel& model;
-    const FaceTree& tree; ///< Tree of the model.
+    const FaceTree& tree;
     Hardship hardship;
     std::uint64_t seed{0};
     std::uint32_t frames{0};

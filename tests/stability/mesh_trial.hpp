@@ -19,7 +19,7 @@ struct MeshTrial
     const FaceTree& tree; ///< Tree of the object, for the motion.
     /// Hardship with pools for each model; its radius is the skin in diagonals of the tool.
     Hardship hardship;
-    double scale{1.0}; ///< Scale of the object.
+    double scale{1.0};
     std::uint64_t seed{0};
     std::uint32_t frames{0};
 };

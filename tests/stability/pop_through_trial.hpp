@@ -16,7 +16,7 @@ namespace tactus::test
 struct PopThroughTrial
 {
     const TestModel& model;
-    const FaceTree& tree; ///< Tree of the model.
+    const FaceTree& tree;
     Hardship hardship;
     std::uint64_t seed{0};
     std::uint32_t frames{0};
@@ -60,7 +60,7 @@ struct PopThroughFigures
 struct ClosingTrial
 {
     const TestModel& model;
-    const FaceTree& tree; ///< Tree of the model.
+    const FaceTree& tree;
     std::uint64_t seed{0};
     std::uint32_t rounds{0};
     bool is_smooth{false}; ///< True if the tool has force shading.

@@ -32,7 +32,7 @@ struct SceneFigures
     /// distance's excess over the reported bounds, relative to the allowed rounding.
     TrialFigures truth;
     std::uint64_t exact{0};
-    std::uint64_t refused{0};  ///< Refused changes.
+    std::uint64_t refused{0};
     std::uint64_t gone{0};     ///< Absent tools, summed over the frames.
     std::uint64_t variants{0}; ///< Starts without some shortcut.
 

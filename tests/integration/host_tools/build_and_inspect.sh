@@ -78,11 +78,11 @@ least=$(sed -n 's/.* faces needs \([0-9]*\) MiB; --memory-mib allows 30$/\1/p' s
     2>said.txt || fail "$(cat said.txt)"
 (($(figure peak_bytes <allowed.json) <= least << 20)) || fail "it took $(cat allowed.json)"
 [[ $(figure file_bytes <built.json) == $(stat -c %s torus.spm) ]] || fail 'file_bytes'
-# Through a file: grep -q would end the pipe, and so the program, too early.
+# A file replaces the pipe, which grep -q would close too early for the program.
 "$inspect" torus.spm --regions >text.txt
 grep -q 'chunks sound' text.txt || fail 'the text says nothing of sound chunks'
 grep -q '^region [0-9]*: cell' text.txt || fail '--regions'
-# Each record's vertex is new, comes from one that is there before, and is one of the source's.
+# Each record's vertex is new, has an existing parent, and is one of the source's.
 "$inspect" torus.spm --records >records.txt
 "$inspect" torus.spm --extract --error 0 -o whole.obj >/dev/null 2>&1
 awk -v records="$(figure records <built.json)" -v vertices="$(figure vertices <built.json)" '
@@ -100,7 +100,7 @@ awk -v records="$(figure records <built.json)" -v vertices="$(figure vertices <b
         }
     }' whole.obj records.txt || fail "--records: $(tail -n 3 records.txt)"
 
-# Outside of a ring: its middle, and a point far above.
+# Points outside of a ring: its middle, and one far above.
 printf '# three\n0 0 0\n\n0 0 10\n' >points.txt
 "$inspect" torus.spm --distances points.txt >distances.txt
 [[ $(grep -c ' outside ' distances.txt) == 2 ]] || fail "$(cat distances.txt)"
@@ -109,7 +109,7 @@ awk '/^#/ { next } { if ($2 - $1 > 1e-12 * $2) exit 1; d[++n] = $1 }
 "$inspect" torus.spm --distances points.txt --json >distances.json
 [[ $(grep -c '"side": "outside"' distances.json) == 2 ]] || fail "$(cat distances.json)"
 
-# At, below and above what the model has, and between.
+# Face counts at, below and above the model's, and between.
 faces=$(figure faces <built.json)
 base=$(figure base_faces <built.json)
 readonly faces base
@@ -130,10 +130,10 @@ extract() {
     "$build" "$1" -o again.spm --json --base-faces 16384 >again.json 2>/dev/null
     [[ $(figure faces <again.json) == "$has" ]] || fail "$1 does not have $has faces"
 }
-# bound: the largest error bound of what was extracted last, in metres.
+# bound: prints the greatest error bound of the last extraction, in metres.
 bound() { sed -n 's/^error bound *\([^ ]*\) m at most$/\1/p' said.txt; }
 
-# The formats hold the same mesh; an error bound is kept; no error is the whole model.
+# The formats contain the same mesh; an error bound is kept; a bound of zero gives the whole model.
 extract some.ply --error 5e-4
 some=$has
 ((some > base && some < faces)) || fail "--error 5e-4 gave $some faces"
@@ -146,7 +146,7 @@ done
 extract all.stl --error 0
 [[ $has == "$faces" && $(bound) == 0 ]] || fail "--error 0 gave $has faces, bound $(bound)"
 
-# A region: fine inside, with the outside as it is asked for.
+# A region is fine inside, with the requested outside.
 extract ball.ply --region sphere:0.05,0,0,0.02
 ball=$has
 inside=$(sed -n 's/^region *\([0-9]*\) faces of the source$/\1/p' said.txt)
@@ -158,7 +158,7 @@ cmp ball.ply few.ply || fail 'a ball and too few faces'
 extract close.ply --region box:0,-1,-1,1,1,1 --error 5e-4
 ((has > some && has < faces)) || fail "a box and an error: $has faces"
 
-# A mesh through a pipe gives the same model, and points come through one, too.
+# A mesh from a pipe gives the same model; points may come from a pipe too.
 "$build" some.ply -o named.spm >/dev/null 2>&1
 "$build" - --format ply -o piped.spm <some.ply >/dev/null 2>&1 || fail 'standard input'
 cmp named.spm piped.spm || fail 'standard input gives another model'
@@ -170,12 +170,12 @@ printf '0 0 0\n' >point.txt
 "$inspect" named.spm --distances point.txt >said.txt || fail '--distances'
 "$inspect" named.spm --distances - <point.txt | cmp - said.txt || fail '--distances -'
 
-# The same input gives the same file, whatever the threads; an old file is replaced.
+# The same input gives the same file with any threads; an old file is replaced.
 printf 'old' >one.spm
 "$build" --shape torus --faces 5000 --threads 1 -o one.spm >/dev/null 2>&1
 cmp torus.spm one.spm || fail 'the file depends on the threads'
 
-# A face count that the shape can't have is said.
+# An impossible face count of a shape is reported.
 "$build" --shape sphere --faces 3000 -o sphere.spm --json >/dev/null 2>notes.txt
 grep -q '3000 faces were asked for' notes.txt || fail 'no word about the rounded face count'
 
@@ -183,7 +183,7 @@ grep -q '3000 faces were asked for' notes.txt || fail 'no word about the rounded
 mkdir half
 "$build" --shape bumpy-sphere --faces 400000 -o half/a.spm >/dev/null 2>&1 &
 readonly job=$!
-# Its work is not reported: a third of a second of processor time is somewhere in it.
+# A third of a second of CPU time is within the work, which prints nothing.
 until (($(awk '{ print $14 + $15 }' "/proc/$job/stat") * 3 > $(getconf CLK_TCK))); do
     sleep 0.05
 done

@@ -106,7 +106,7 @@ check report.json frames == 3000 safety.begun.garbage '>=' 3 safety.begun.discon
     tools.0.force_max_n '>' 0.5 tools.0.force_max_n '<=' 8
 check_clean report.json
 
-# On a machine with repeated stalls the hand finds the surface again, and the report distinguishes
+# The hand finds the surface again after repeated stalls, and the report distinguishes
 # contact from force.
 for length in 5 60; do
     dropouts=()

@@ -11,7 +11,7 @@ started+=($!)
 readonly run=${started[-1]}
 wait_for_line run.log 'touch: '
 wait_for_more "$run" 300
-# For some periods each time, once the kernel reports the stop.
+# Each stop lasts some periods after the kernel reports it.
 readonly times=20
 for ((i = 0; i < times; ++i)); do
     kill -STOP "$run"

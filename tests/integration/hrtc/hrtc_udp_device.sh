@@ -22,7 +22,7 @@ expect 2 'no device described itself' "${run[@]}" --device "udp:$port" --wait 0.
 expect 2 'dhd' "${run[@]}" --device dhd
 start_hrtc --transport file --model bumpy.spm --device "udp:$port" --wait 3600
 wait_until "program at UDP port $port" grep -qs "$(printf ':%04X 0' "$port")" /proc/net/udp
-stop TERM "$controller" # It waits for a device, but not for an hour.
+stop TERM "$controller" # hrtc waits for a device, but not for an hour.
 ((stopped_with == 2)) || fault "told to end while it waited, hrtc ended with $stopped_with"
 grep -q 'no device described itself' hrtc.log || fault 'it does not say what it waited for'
 
@@ -33,7 +33,7 @@ wait_for_line hrtc.log 'touch: '
 wait_for_more "$driving" 500 # This hand is still above; the second one touches.
 stop KILL "$driving"
 wait_for_line hrtc.log 'is gone; no force until'
-drive # It waits for the first one's place.
+drive # The second one waits for the first one's place.
 wait_until 'device that is back' grep -q 'tool 0: its device, .*, is back' hrtc.log
 wait_for_more "$driving" 2500
 kill -TERM "$controller"
@@ -43,7 +43,7 @@ check report.json frames '>' 1000 safety.begun.disconnect '>=' 1 tools.0.contact
     tools.0.traffic.samples '>' 300 tools.0.traffic.refused.tag == 0
 stop KILL "$driving"
 
-# With a key: drivers with another one and without one send constantly.
+# Drivers with another key and without one send constantly.
 (umask 077 && printf '%064x\n' 7 >device.key && printf '%064x\n' 8 >other.key)
 drive other.key
 stranger=$driving

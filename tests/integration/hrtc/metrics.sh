@@ -67,7 +67,7 @@ for url in "$served" "$shown"; do
     check_metrics "$url"
 done
 
-# For this machine only, and one program a port.
+# The server is for this machine only, one program a port.
 ! get "$served" 'Host: elsewhere:80' >/dev/null 2>&1 || fault 'another name is answered'
 ! get "$served" 'Origin: http://elsewhere' >/dev/null 2>&1 || fault 'another page is answered'
 port=${served##*:}

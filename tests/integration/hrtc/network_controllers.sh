@@ -27,7 +27,7 @@ for ((kill = 1; kill <= kills; ++kill)); do
     wait_for_frames 300 publish.log "killed-$kill"
     stop KILL "$controller"
     wait_for_line publish.log ' left (' "$kill"
-    ((kill > 1)) || first_kib=$(resident_kib "$publisher") # Its first two are served.
+    ((kill > 1)) || first_kib=$(resident_kib "$publisher") # The first two are served.
 done
 last_kib=$(resident_kib "$publisher")
 echo "the host has $first_kib, later $last_kib KiB"

@@ -43,7 +43,7 @@ for which in first second; do
     check_touch $which.spm
 done
 
-# Without a pin either of the two, but only one; the warning names it.
+# Either of the two without a pin, but only one; the warning names it.
 touch_ball --model ball
 other=$(sed -n "s/.*a second server, .*, with another hash, \([0-9a-f]*\); .*/\1/p" hrtc.log)
 which=first

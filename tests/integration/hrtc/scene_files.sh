@@ -33,28 +33,28 @@ grep -qx 'made/scene.gltf: 3 objects of 2 models' built.txt || fault 'the last l
 [[ $(ls -A made) == $'scene.gltf\ntetra-mirrored.spm\ntetra.spm' ]] || fault "made: $(ls -A made)"
 "$inspect" made/tetra-mirrored.spm >inspected.txt || fault 'the mirrored model is not sound'
 
-# A node of lines is left out by name, and costs nothing else.
+# A node of lines is left out by name, with no other effect.
 sed 's/, "extras": {"tactus": {"touch": false}}//' scene.gltf >lines.gltf
 "$build" lines.gltf -o with_lines >/dev/null 2>said.txt || fault "a node of lines: $(cat said.txt)"
 grep -qx "note: node 'lines' (nodes\[4\]) left out: no surface: 1 primitive of LINES" said.txt \
     || fault "lines are not named: $(cat said.txt)"
 cmp with_lines/scene.gltf made/scene.gltf || fault 'a node of lines changes the scene'
 
-# Again, of the same: the same bytes. Of another: what is no longer shown stays as a file.
+# A second run gives the same bytes. Another scene leaves unused models as files.
 cp made/scene.gltf first.gltf
 "$build" scene.gltf -o made/ --json >built.json || fail 'spm_build refuses the folder'
 cmp made/scene.gltf first.gltf || fault 'a second run gives another scene'
 check built.json objects == 3 models.0.objects == 2 models.0.faces == 4 models.1.objects == 1
 
-# Touched from files: the first object, which is where the hand goes.
+# Touch from files: the hand moves to the first object.
 contact=0 run_hrtc made/scene.gltf --duration 1
 check_clean report.json
 check report.json frames == 1000 scene.objects == 3 force.max_n '>' 0
 contact=0 run_hrtc --transport file --scene made/scene.gltf --duration 1
 check report.json frames == 1000 scene.objects == 3 models == 2 force.max_n '>' 0
 
-# One object feels otherwise, or all do; a hand goes to an object by its own name. The recording
-# knows all names.
+# One object or all have another material; a hand moves to an object by name. The recording has all
+# names.
 told() { # told RECORDING EXPECTED: names, models' names, stiffnesses.
     local told
     "$hrtc" --replay "$1" --export told.jsonl >/dev/null || fault "$1 can't be exported"
@@ -69,7 +69,7 @@ contact=0 run_hrtc made/scene.gltf --duration 1 --material 300 --material cup:70
 told named.rec 'tetra tetra-mirrored cup:700 cup-2:300 jar:300'
 grep -q '^touches     cup (tetra): 0.1 x 0.1 x 0.1 m, round' hrtc.log || fault "$(cat hrtc.log)"
 
-# Served: each model, and where its first object stands.
+# Served models, with the pose of the first object.
 start_publisher made/scene.gltf
 grep -q "^serving 'tetra-mirrored' " publish.log || fault 'a model is not served'
 grep -qx "showing 3 objects as scene 'scene'" publish.log || fault 'not all objects are shown'
@@ -86,7 +86,7 @@ grep -q "note: --material: no object is called 'late'; there are cup, cup-2, jar
     hrtc.log || fault 'a name that no object has is not told'
 stop_publisher
 
-# Refused, with nothing left behind and nothing changed.
+# Refusals leave nothing behind and change nothing.
 names=$(ls -A made)
 before=$(cat made/* | cksum)
 sed 's/"scale": \[0.2, 0.2, 0.2\]/"scale": [0.2, 0.1, 0.2]/' scene.gltf >uneven.gltf

@@ -59,7 +59,6 @@ double ms_since(Clock::time_point begin)
     return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
 }
 
-/// Figures of the ride.
 struct Figures
 {
     std::uint64_t frames{0};

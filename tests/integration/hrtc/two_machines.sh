@@ -44,7 +44,7 @@ hears_host() {
 }
 wait_until 'word of the doctor on the host' hears_host
 
-# From another domain nothing passes, and nothing is found.
+# Nothing passes from another domain, and nothing is found.
 wrong=$(((domain + 7) % 200))
 if in_controller_network "$hrtc" --allow-no-rt --domain "$wrong" --model large --wait 1 \
     >wrong.log 2>&1; then

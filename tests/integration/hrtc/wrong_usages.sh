@@ -57,7 +57,7 @@ refuse 3 'spm_view: --domain excludes --replay; see --help' "$view" --replay a.r
 refuse 3 'spm_view: --replay: 3 recordings, two at most are compared' \
     "$view" --replay a --replay b --replay c
 
-# With --json-log each line on stderr is one JSON object.
+# Each line on stderr is one JSON object with --json-log.
 logged() { # logged LEVEL CODE TEXT PROGRAM ARGUMENT...
     local code=0
     "${@:4}" --json-log 2>said.txt >output.txt </dev/null || code=$?

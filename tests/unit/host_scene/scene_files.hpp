@@ -110,7 +110,6 @@ private:
     TemporaryFolder folder_{"scene"};
 };
 
-/// Mesh of the first object.
 inline TriangleMesh first_mesh(Result<Scene, Refusal> scene)
 {
     if (!scene)

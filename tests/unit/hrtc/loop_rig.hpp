@@ -119,7 +119,7 @@ struct LoopRigOptions
     std::function<void(LoopRig& rig, std::uint64_t frame)> meanwhile;
     std::vector<DeviceFault> faults;
     std::vector<LateWake> late_wakes;
-    std::optional<Duration> watchdog; ///< Watchdog of the device.
+    std::optional<Duration> watchdog;
     bool static_model{false};
     bool has_door{false};                   ///< True if objects have the poses of door().
     double object_speed_m_per_s{kInfinity}; ///< Object speed limit.

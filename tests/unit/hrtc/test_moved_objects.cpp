@@ -236,7 +236,7 @@ struct Strike
 {
     double way_m;
     std::uint64_t before;
-    int frames; ///< Frames of the motion.
+    int frames;
 };
 
 /// First frame with a force on an object at rest.

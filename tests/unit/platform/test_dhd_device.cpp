@@ -30,7 +30,6 @@ protected:
         options.times = test::patient_times();
     }
 
-    /// Line of the refusal.
     std::string refusal()
     {
         const auto refused = DhdDevice::create(options);

@@ -44,7 +44,6 @@ void expect_refusal(std::span<const std::byte> bytes, const std::string& said)
     EXPECT_EQ(text.find('\n'), std::string::npos);
 }
 
-/// Starts of the sections.
 std::vector<std::size_t> sections_of(std::span<const std::byte> bytes)
 {
     std::vector<std::size_t> starts;

@@ -23,7 +23,7 @@ namespace tactus::test
 struct KernelScene
 {
     const char* shape{nullptr};
-    const char* place{nullptr}; ///< Place of the probe.
+    const char* place{nullptr};
     float quantum_m{1.0F};
     BlockGeometry block;
     AabbVolume::Rows boxes;

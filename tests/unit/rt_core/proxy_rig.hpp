@@ -132,7 +132,6 @@ public:
         }
         return least;
     }
-    /// Material of the first object.
     [[nodiscard]] Material& material() { return objects[0].material; }
 
     Proxy sut;

@@ -57,7 +57,7 @@ public:
     SampleWatch sut;
     ToolSpec spec{0.002, 500.0, 8.0, 1.0};
     ToolGoal goal;
-    Mat3 rotation{Mat3::Identity()};       ///< Rotation by the device.
+    Mat3 rotation{Mat3::Identity()};
     Mat3 proxy_rotation{Mat3::Identity()}; ///< Rotation of the tool in contact.
 };
 

@@ -57,7 +57,7 @@ TEST(Urgency, orders_by_class_and_then_by_time)
 struct SharedFrame
 {
     std::uint32_t splits{0};
-    std::uint32_t saved{0};                               ///< Savings of each.
+    std::uint32_t saved{0};
     std::array<std::vector<bool>, kUrgencyClasses> takes; ///< Takers by class and request.
     std::array<std::vector<std::uint32_t>, kUrgencyClasses> got;
 

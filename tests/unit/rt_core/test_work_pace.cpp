@@ -10,7 +10,6 @@ namespace tactus::test
 namespace
 {
 
-/// Pace after `frames` frames of `splits` each.
 WorkPace after(std::uint32_t frames, std::uint32_t splits)
 {
     WorkPace sut;
