@@ -135,7 +135,7 @@ grep -q '^served victim: [0-9]* pieces/s' publish.log || fault '--watch tells no
 # A receiver of false data counts it and names its sender.
 case $attack in
     wanted_flooded_epochs) ;; # For absent servers: ignored by all.
-    log_flooded) # The log reports added and removed models 40 times a second at most.
+    log_flooded) # The log reports its starts and ends 40 times a second at most.
         grep -q 'controller stranger subscribed' publish.log || fault 'no stranger came'
         said=$(grep -c 'controller stranger' publish.log)
         ((said <= 40 * (SECONDS + 1))) || fault "$said lines of a stranger's visits"

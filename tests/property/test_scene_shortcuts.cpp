@@ -378,7 +378,7 @@ TEST(SceneShortcuts, change_nothing_that_is_known_of_models_that_stream)
     EXPECT_GT(compared.came, 16U);
 }
 
-/// The other differences: answers hold all the same (I5).
+/// I5 with a tolerance: answers differ, but their bounds hold.
 TEST(FrameTolerance, splits_less_and_says_less)
 {
     const TestModel& model = small_model(0);

@@ -552,8 +552,6 @@ TEST(PoseDoor, forgets_no_object_of_many_that_move_at_random)
     EXPECT_EQ(seen_m, last_m) << "seed " << kSeed;
 }
 
-/// The writer continues until enough different poses were read, so that reader and writer do
-/// interleave. Stamps and poses are so far apart that each is taken at once.
 TEST(PoseDoor, brings_an_object_with_what_it_is_and_takes_it_away)
 {
     const std::vector<ObjectPose> placed{pose_of(1.0)};
@@ -656,6 +654,8 @@ TEST(PoseDoor, takes_no_more_comings_than_may_wait_and_gives_a_frame_what_it_tak
     EXPECT_TRUE(sut.try_come(PoseDoor::kWaiting, 1, {}, pose_of(1.0), kStart));
 }
 
+/// The writer continues until enough different poses were read, so that reader and writer do
+/// interleave. Poses are so far apart that each is taken at once.
 TEST(PoseDoor, never_mixes_two_poses_and_never_goes_back)
 {
     constexpr int kPoses = 2'000;

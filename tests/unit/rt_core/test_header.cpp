@@ -136,7 +136,7 @@ TEST(ModelHeader, what_can_be_touched_nowhere_is_refused)
             << far_m;
     }
     EXPECT_EQ(refusal_after([](HeaderFields& f) { f.quantum_log2 = kMaxQuantumLog2; }),
-              SpmRefusal::too_far); // The far corner is.
+              SpmRefusal::too_far); // The far corner is out of range.
 }
 
 TEST(ModelHeader, the_ends_of_each_range_are_accepted)
