@@ -13,7 +13,7 @@
 namespace tactus
 {
 
-/// The brake of a device that has a time of its own: at once, or by a fade over kBrakeFade.
+/// The brake of a device with its own clock: at once, or by a fade over kBrakeFade.
 ///
 ///     share of the last force
 ///     1 -----.                        .---   the next write after the release
@@ -23,13 +23,13 @@ namespace tactus
 ///          brake_softly()   |      release
 ///                        or brake() here
 ///
-/// All of it is one word, so that nobody sees a half of one brake and a half of the next. It is
-/// sequentially consistent: it is rare and orders nothing else.
+/// Its state is one word, so that no thread sees parts of two brakes. It is sequentially
+/// consistent: it is rare and orders nothing else.
 class BrakeLatch
 {
 public:
-    /// Any thread. Where a fade had begun, it is one that began then; where it was released
-    /// meanwhile, one without a beginning.
+    /// Any thread: brakes at once. If a fade had begun, the brake counts from the fade's start; if
+    /// it was released meanwhile, the brake has no start.
     void brake(MonotonicTime now) noexcept
     {
         if (!begin(at_once(now)))
@@ -42,33 +42,33 @@ public:
 
     /// Any thread.
     [[nodiscard]] bool is_on() const noexcept { return is_on(word_.load()); }
-    /// Any thread: whether it was on at that time.
+    /// Any thread: true if it was on at that time.
     [[nodiscard]] bool is_on_at(MonotonicTime time) const noexcept
     {
         return time >= began(word_.load());
     }
-    /// Any thread: that time, or when the brake came, whichever is earlier.
+    /// Any thread: the earlier of that time and the start of the brake.
     [[nodiscard]] MonotonicTime before(MonotonicTime time) const noexcept
     {
         return std::min(time, began(word_.load()));
     }
-    /// Any thread: what is left of the last force at that time, 0 to 1.
+    /// Any thread: fraction of the last force at that time, 0 to 1.
     [[nodiscard]] double share_at(MonotonicTime time) const noexcept
     {
         return share_at(time, word_.load());
     }
 
-    /// The haptic thread: whether it is a fade that isn't over. Then the next write ends it.
+    /// Haptic thread: true if a fade is not over. Then the next write ends it.
     [[nodiscard]] bool try_yield(MonotonicTime now) noexcept
     {
         const std::uint64_t word = word_.load();
         is_yielding_ = is_on(word) && share_at(now, word) > 0.0;
         return is_yielding_;
     }
-    /// The haptic thread.
+    /// Haptic thread.
     void release() noexcept { word_.store(kOff); }
 
-    /// The haptic thread, in a write: whether it counts.
+    /// Haptic thread, in a write: true if the write takes effect.
     [[nodiscard]] bool lets_through() noexcept
     {
         std::uint64_t word = word_.load();
@@ -81,12 +81,13 @@ public:
             return false;
         }
         is_yielding_ = false;
-        return word_.compare_exchange_strong(word, kOff); // Unless a brake at once has come since.
+        // It fails if brake() was called since.
+        return word_.compare_exchange_strong(word, kOff);
     }
 
 private:
-    /// When it began, in ns, over two bits. Without the upper bit the brake is on, without both at
-    /// once: so one operation turns whatever is there into that.
+    /// The word has the brake's start in ns, above two bits. Without the upper bit the brake is on,
+    /// without both it is on at once: so one operation turns any state into that.
     static constexpr std::uint64_t kFades = 1;
     static constexpr std::uint64_t kOff = 3;
 
@@ -112,7 +113,7 @@ private:
         return fades(word) && gone < kBrakeFade ? left : 0.0;
     }
 
-    /// False when it was on.
+    /// Returns false if it was on.
     bool begin(std::uint64_t on) noexcept
     {
         std::uint64_t off = kOff;
@@ -120,7 +121,7 @@ private:
     }
 
     std::atomic<std::uint64_t> word_{kOff};
-    bool is_yielding_{false}; ///< The haptic thread's.
+    bool is_yielding_{false}; ///< Used by the haptic thread only.
 };
 
 } // namespace tactus

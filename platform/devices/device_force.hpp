@@ -12,7 +12,7 @@
 namespace tactus
 {
 
-/// As devices' records have it, which know no Eigen.
+/// Conversion to the type of device records, which use no Eigen.
 [[nodiscard]] inline std::array<double, 3> to_array(const Vec3& v) noexcept
 {
     return {v.x(), v.y(), v.z()};
@@ -23,8 +23,8 @@ namespace tactus
     return {v[0], v[1], v[2]};
 }
 
-/// What a device makes of what is written to it: HapticDevice::write(). Counts in `status` what it
-/// had to change.
+/// The wrench that a device renders of a written one: HapticDevice::write(). Counts changes in
+/// `status`.
 [[nodiscard]] inline Wrench take_wrench(const Wrench& written, const DeviceInfo& info,
                                         DeviceStatus& status) noexcept
 {

@@ -8,37 +8,36 @@
 #include "rt_core/math/similarity.hpp"
 #include "transport/base/refusal.hpp"
 
-// Any thread: values. The conversions of places and forces, of a frame, neither wait nor allocate;
+// Any thread: values. The conversions of positions and forces of a frame neither wait nor allocate;
 // create() and to_world(DeviceInfo) may allocate and are called before the loop.
 namespace tactus
 {
 
-/// How a device stands in the world:
+/// Placement of a device in the world:
 ///
 ///     position_world = translation_m + scale x rotation x position_device
 ///     rotation_world = rotation x rotation_device
-///     force_device   = rotation^T x force_world, and so the torque
+///     force_device   = rotation^T x force_world, likewise the torque
 ///
-/// A scale of 10 makes 1 cm of the hand's way 10 cm of the world. Forces are not scaled: a newton
-/// of the world is a newton on the hand, and angles stay what they are. A device that moves s times
-/// as far for the same force is, seen from the world, one of a s-th of its mass, damping and
-/// stiffness; to_world(DeviceInfo) says so, and the cap of docs/stability.md holds unchanged. The
-/// default is no change at all.
+/// A scale of 10 makes 1 cm of the device's motion 10 cm of the world. Forces and angles are not
+/// scaled: a newton of the world is a newton on the user. With a scale of s, the device has in the
+/// world its mass, damping and stiffness divided by s; to_world(DeviceInfo) converts them, and the
+/// stiffness limit of docs/stability.md holds unchanged. The default is the identity.
 class DeviceFrame
 {
 public:
     DeviceFrame() = default;
 
-    /// Refuses a translation beyond kPoseReachMax_m on an axis, a scale out
-    /// of [kPoseScaleMin, kPoseScaleMax], and a matrix that is no right-handed rotation; what is
-    /// one within kRotationTolerance is made orthonormal to rounding.
+    /// Refuses a translation beyond kPoseReachMax_m on an axis, a scale out of [kPoseScaleMin,
+    /// kPoseScaleMax], and a matrix other than a right-handed rotation; one within
+    /// kRotationTolerance is made orthonormal to rounding.
     [[nodiscard]] static Result<DeviceFrame, Refusal> create(const Similarity& in_world);
 
     [[nodiscard]] Vec3 position_to_world(const Vec3& device_m) const noexcept
     {
         return frame_.to_there(device_m);
     }
-    /// In metres per second.
+    /// Velocity in metres per second.
     [[nodiscard]] Vec3 velocity_to_world(const Vec3& device_m_per_s) const noexcept
     {
         return frame_.scale * (frame_.rotation * device_m_per_s);
@@ -51,7 +50,7 @@ public:
     {
         return to_quaternion(frame_.rotation * to_rotation(device));
     }
-    /// In radians per second.
+    /// Angular velocity in radians per second.
     [[nodiscard]] Vec3 turning_to_world(const Vec3& device_rad_per_s) const noexcept
     {
         return frame_.rotation * device_rad_per_s;
@@ -60,7 +59,7 @@ public:
     {
         return frame_.rotation.transpose() * world_nm;
     }
-    /// What the device is in the world, from what it says of itself; rates and delay stay.
+    /// Device information in the world from that of the device; rates and delay are unchanged.
     [[nodiscard]] DeviceInfo to_world(const DeviceInfo& device) const;
 
 private:

@@ -5,17 +5,16 @@
 namespace tactus
 {
 
-/// The other end of a device, in a process of its own: what takes the force away when the program
-/// that drives the device has died without doing so. It is made before the device is opened, and
-/// holds all that its brake() needs, since by then there may be no memory and no file to be had.
-/// For the one thread of that process.
+/// The guard of a device, in a process of its own: ends the force if the program that drives the
+/// device dies. It is made before the device is opened, and holds all resources of brake(), since
+/// there may be no memory or file by then. Used by the one thread of that process.
 class DeviceGuard
 {
 public:
     virtual ~DeviceGuard() = default;
 
-    /// The program has died, or is about to: the force ends and the motion is damped. It may wait.
-    /// False where the device doesn't obey. Called twice where the program's end takes long.
+    /// The program has died, or is about to: ends the force and damps the motion. May wait. False
+    /// if the device doesn't obey. Called twice if the program's end takes long.
     [[nodiscard]] virtual bool brake() noexcept = 0;
 
 protected:

@@ -11,7 +11,8 @@
 namespace tactus
 {
 
-/// A device as it is, for those that change one thing about it. Threads as the device.
+/// Forwards to another device; base of wrappers that change one behaviour. Threads as those of the
+/// device.
 class WrappedDevice : public HapticDevice
 {
 public:

@@ -19,13 +19,13 @@ namespace tactus
 namespace
 {
 
-/// How far the SDK's frames may be from orthonormal: they are products of calibrated joints.
+/// Tolerance of the SDK's frames, which are products of calibrated joints.
 constexpr double kFrameTolerance = 1e-3;
 
-/// The SDK's.
+/// Time step of the SDK's watchdog.
 constexpr Duration kWatchdogStep = microseconds(125);
 
-/// At most as many as the SDK takes: 32 ms.
+/// Watchdog steps of this time, up to the SDK's maximum: 32 ms.
 std::uint8_t watchdog_steps(Duration time)
 {
     return static_cast<std::uint8_t>(std::min<std::int64_t>(
@@ -37,7 +37,7 @@ Refusal refuse_device(std::string line)
     return {"dhd device: " + std::move(line)};
 }
 
-/// Empty when all options are good; the name is looked at later.
+/// Fault of the options, empty if none; the name is checked later.
 std::string find_bad_option(const DhdDeviceOptions& options)
 {
     if (options.index < 0 || options.index > DhdDeviceOptions::kIndexMax)
@@ -62,7 +62,7 @@ std::string last_error(const DhdLibrary& library)
     return text == nullptr ? "no reason given" : text;
 }
 
-/// What the SDK calls the device, as far as that may be shown.
+/// Name of the device in the SDK, reduced to printable characters.
 std::string system_name(const DhdLibrary& library, char id)
 {
     const char* text = library->dhdGetSystemName(id);
@@ -95,7 +95,7 @@ Result<char, Refusal> open_device(const DhdLibrary& library, int index)
     return static_cast<char>(id);
 }
 
-/// What is there of what the options say.
+/// The described properties that the device really has.
 DeviceInfo fitted(DeviceInfo info, const DhdLibrary& library, char id)
 {
     info.name = info.name.empty() ? system_name(library, id) : info.name;
@@ -114,9 +114,9 @@ bool is_usable(const Vec3& v) noexcept
 
 } // namespace
 
-/// The omega class of platform/devices/simulated/device_classes.hpp with the force and the
-/// stiffness of the weakest device, and a turn and two transfers of delay. Its wrist is a light
-/// one, with a quarter of the torque of the maker's.
+/// Omega class of platform/devices/simulated/device_classes.hpp with the force and the stiffness of
+/// the weakest device, and a delay of one cycle and two transfers. Its wrist is a light one, with a
+/// quarter of the torque of the maker's.
 DeviceInfo DhdDeviceOptions::default_info()
 {
     DeviceInfo info;
@@ -165,7 +165,8 @@ Result<std::unique_ptr<DhdDevice>, Refusal> DhdDevice::create(const DhdDeviceOpt
     }
     const DeviceInfo info = fitted(options.info, library.value(), id.value());
     std::unique_ptr<DhdDevice> device(
-        new DhdDevice(std::move(library).value(), id.value(), info, options)); // Closes it, too.
+        // It also closes the device.
+        new DhdDevice(std::move(library).value(), id.value(), info, options));
     if (const char* fault = find_fault(info); fault != nullptr)
     {
         return Refusal{fault};
@@ -223,14 +224,14 @@ void DhdDevice::run() noexcept
     }
 }
 
-/// False when the device doesn't answer.
+/// Runs one cycle; false if the device doesn't answer.
 bool DhdDevice::turn() noexcept
 {
     return publish_reading() && obey(command());
 }
 
-/// A position that is no number is the SDK's failure, not the end of the device. Without a velocity
-/// whoever needs one takes differences.
+/// Publishes a reading. A non-finite position is the SDK's failure, not the end of the device. If
+/// there is no velocity, its users take differences.
 bool DhdDevice::publish_reading() noexcept
 {
     DeviceReading reading;
@@ -255,7 +256,7 @@ bool DhdDevice::publish_reading() noexcept
     return true;
 }
 
-/// A wrist without a rotation, or with one that is none, has no place.
+/// Reads wrist and gripper. A wrist without a valid rotation invalidates the position.
 void DhdDevice::read_wrist_and_gripper(DeviceReading& reading) const noexcept
 {
     if (has_wrist_)
@@ -284,13 +285,13 @@ void DhdDevice::read_wrist_and_gripper(DeviceReading& reading) const noexcept
     }
 }
 
-/// A button that can't be read isn't held.
+/// True if held. A button that can't be read isn't held.
 bool DhdDevice::is_held() const noexcept
 {
     return !deadman_button_ || library_->dhdGetButton(*deadman_button_, id_) == 1;
 }
 
-/// Not every device has brakes; that there is no force is what counts.
+/// Applies a command. Not every device has brakes; the absence of force is decisive.
 bool DhdDevice::obey(const DeviceCommand& command) noexcept
 {
     const DhdFunctions& sdk = *library_;
@@ -313,7 +314,7 @@ bool DhdDevice::obey(const DeviceCommand& command) noexcept
             is_done = sdk.dhdEnableForce(1, id_) >= 0;
             if (sdk.dhdSetWatchdog != nullptr)
             {
-                sdk.dhdSetWatchdog(watchdog_steps_, id_); // Devices without one refuse.
+                sdk.dhdSetWatchdog(watchdog_steps_, id_); // Devices without a watchdog refuse.
             }
         }
         is_done = is_done && set_force(command);

@@ -23,46 +23,45 @@ struct DhdDeviceOptions
     static constexpr Duration kPeriodMin = microseconds(100);
     static constexpr Duration kPeriodMax = milliseconds(10);
 
-    std::string library; ///< Path of libdhd.so; empty: where the system's loader finds it.
-    int index{0};        ///< Which of the devices that are plugged in, up to kIndexMax.
-    /// What the device is, in its own coordinates: the SDK doesn't tell. An empty name becomes the
-    /// SDK's; what the device hasn't, a wrist or a gripper or motors there, is taken off. The
-    /// default is small and weak enough for any of the maker's devices, and assumes their usual
-    /// delay (docs/dhd-device.md); measure yours.
+    std::string library; ///< Path of libdhd.so; empty: found by the system's loader.
+    int index{0};        ///< Index among the connected devices, up to kIndexMax.
+    /// Description of the device, in its own coordinates, which the SDK does not report. An empty
+    /// name becomes the SDK's; a wrist, a gripper or their motors are removed if the device has
+    /// none. The default is small and weak enough for any of the maker's devices, and assumes their
+    /// usual delay (docs/dhd-device.md); measure yours.
     DeviceInfo info{default_info()};
-    /// The button, 0 to 15, that says that somebody holds it; none: somebody always does.
+    /// Button, 0 to 15, that is pressed while the device is held; none: it is always held.
     std::optional<int> deadman_button;
-    /// Of the I/O thread's turns, in [kPeriodMin, kPeriodMax]; the SDK's calls may make them
-    /// longer.
+    /// Period of the I/O thread, in [kPeriodMin, kPeriodMax]; the SDK's calls may prolong it.
     Duration period{microseconds(250)};
     RemoteTimes times;
     DeviceFrame frame;
-    RtThreadOptions thread{io_thread_options()}; ///< The I/O thread.
-    const Clock* clock{nullptr};                 ///< Lent; it outlives the device. Not null.
+    RtThreadOptions thread{io_thread_options()}; ///< Options of the I/O thread.
+    const Clock* clock{nullptr}; ///< Clock, borrowed; it outlives the device. Not null.
 
     [[nodiscard]] static DeviceInfo default_info();
 };
 
-/// One of Force Dimension's devices, by its maker's SDK, which is loaded at run time. All of its
-/// calls wait for the device's bus, some 100 us each, so they belong to the I/O thread. A device
-/// that doesn't answer any more is closed and looked for again ten times a second.
+/// A device of Force Dimension, by its maker's SDK, which is loaded at run time. All SDK calls wait
+/// for the device's bus, some 100 us each, so they belong to the I/O thread. A device that stops
+/// answering is closed and looked for again ten times a second.
 ///
-/// brake() is acted on in the I/O thread's next turn: it sets zero force, then the device's own
-/// brakes. While a call into the SDK hangs nobody can do so; the device's own electronics must end
-/// the force then. Its watchdog is set to the time of a force's hold, as far as device and SDK have
-/// one; it ends the force of a program that has died, too.
+/// brake() takes effect in the I/O thread's next cycle: it sets zero force, then the device's own
+/// brakes. While a call into the SDK hangs, only the device's own electronics can end the force.
+/// Its watchdog is set to the time of a force's hold, if device and SDK have one; it also ends the
+/// force of a program that has died.
 class DhdDevice final : public RemoteDevice
 {
 public:
     /// Loads the SDK, opens the device and starts the I/O thread; waits for the bus. Refuses
     /// options out of range, a missing SDK or device, an `info` beyond the ranges of DeviceLimits
-    /// and what RtThread::start() refuses. A null clock is a bug (asserted).
+    /// and all that RtThread::start() refuses. A null clock is a bug (asserted).
     [[nodiscard]] static Result<std::unique_ptr<DhdDevice>, Refusal>
     create(const DhdDeviceOptions& options);
 
     DhdDevice(const DhdDevice&) = delete;
     DhdDevice& operator=(const DhdDevice&) = delete;
-    /// Takes the force away and closes the device.
+    /// Ends the force and closes the device.
     ~DhdDevice() override;
 
     [[nodiscard]] const RtThreadReport& thread_report() const noexcept { return thread_->report(); }
@@ -88,17 +87,17 @@ private:
     const bool has_wrist_;
     const bool has_gripper_;
     const Duration period_;
-    const std::uint8_t watchdog_steps_; ///< Of the device's own watchdog.
+    const std::uint8_t watchdog_steps_; ///< Time of the device's own watchdog.
     std::atomic<bool> is_stopped_{false};
 
-    // The I/O thread's.
+    // Used by the I/O thread.
     char id_;
     bool is_open_{true};
-    bool is_new_{true};        ///< Nothing was read since it was opened.
-    bool makes_forces_{false}; ///< Brakes are off, forces enabled.
-    MonotonicTime obeyed_;     ///< When the device was last told a force.
+    bool is_new_{true};        ///< True if nothing was read since it was opened.
+    bool makes_forces_{false}; ///< True if brakes are off and forces enabled.
+    MonotonicTime obeyed_;     ///< Time of the last force sent.
 
-    std::optional<RtThread> thread_; ///< Ends before anything that it uses.
+    std::optional<RtThread> thread_; ///< Thread; it ends before all that it uses.
 };
 
 } // namespace tactus

@@ -13,8 +13,8 @@
 namespace tactus
 {
 
-/// Brakes a device that DhdDevice had opened. One program at a time can have it, so it is opened in
-/// brake(), as soon as the system has closed it for the dead one.
+/// Brakes a device that DhdDevice had opened. Only one program at a time can open it, so brake()
+/// opens it as soon as the system has closed it for the dead one.
 class DhdGuard final : public DeviceGuard
 {
 public:

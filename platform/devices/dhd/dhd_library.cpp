@@ -11,7 +11,7 @@ namespace tactus
 namespace
 {
 
-/// True when it is there.
+/// True if the function exists.
 template <typename Function>
 bool find(void* handle, const char* name, Function*& function) noexcept
 {
@@ -19,7 +19,7 @@ bool find(void* handle, const char* name, Function*& function) noexcept
     return function != nullptr;
 }
 
-/// The loader's line, up to its end: some have more than one.
+/// First line of the loader's message.
 std::string loaders_reason()
 {
     const char* reason = dlerror();

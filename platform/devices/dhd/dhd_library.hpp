@@ -10,20 +10,20 @@
 namespace tactus
 {
 
-/// The functions of Force Dimension's SDK (3.x) that we use, by their public C names; written from
-/// its documentation, none of its files is needed to build this. Those that return an int give a
-/// negative one when they fail; 0 and small positive ones are success with or without a remark.
-/// `id` is what dhdOpenID() gave. One thread, the I/O thread: they wait for the device's bus. In
-/// the device's coordinates.
+/// The used functions of Force Dimension's SDK (3.x), by their public C names; declared from its
+/// documentation, so its files are not needed to build this. An int result is negative on failure;
+/// 0 and small positive ones are success with or without a remark. `id` is the result of
+/// dhdOpenID(). One thread, the I/O thread: they wait for the device's bus. All values are in the
+/// device's coordinates.
 struct DhdFunctions
 {
     int (*dhdGetDeviceCount)();
     int (*dhdOpenID)(char index);
     int (*dhdClose)(char id);
-    const char* (*dhdGetSystemName)(char id); ///< Null when it doesn't know.
+    const char* (*dhdGetSystemName)(char id); ///< Null if unknown.
     int (*dhdGetPosition)(double* x_m, double* y_m, double* z_m, char id);
     int (*dhdGetLinearVelocity)(double* x_m_per_s, double* y_m_per_s, double* z_m_per_s, char id);
-    /// By rows; the identity where the device has no wrist.
+    /// Rows of the rotation; the identity if the device has no wrist.
     int (*dhdGetOrientationFrame)(double matrix[3][3], char id);
     int (*dhdGetAngularVelocityRad)(double* x_rad_per_s, double* y_rad_per_s, double* z_rad_per_s,
                                     char id);
@@ -32,25 +32,26 @@ struct DhdFunctions
     bool (*dhdHasActiveWrist)(char id);
     bool (*dhdHasGripper)(char id);
     bool (*dhdHasActiveGripper)(char id);
-    int (*dhdGetButton)(int index, char id); ///< 1 while it is pressed.
-    unsigned (*dhdGetButtonMask)(char id);   ///< A bit a button.
-    /// Torque and the gripper's force count for nothing where the device makes none.
+    int (*dhdGetButton)(int index, char id); ///< 1 while the button is pressed.
+    unsigned (*dhdGetButtonMask)(char id);   ///< One bit a button.
+    /// Torque and gripper force are ignored if the device makes none.
     int (*dhdSetForceAndTorqueAndGripperForce)(double fx_n, double fy_n, double fz_n, double tx_nm,
                                                double ty_nm, double tz_nm, double grip_n, char id);
     int (*dhdSetBrakes)(int on, char id);
     int (*dhdEnableForce)(unsigned char on, char id);
-    const char* (*dhdErrorGetLastStr)(); ///< Of the last failure.
-    /// Null in SDKs before 3.3.2. After that time without a force, in steps of 125 us, the device
-    /// itself disables its forces, even when the program is dead; 0: never.
+    const char* (*dhdErrorGetLastStr)(); ///< Text of the last failure.
+    /// Null in SDKs before 3.3.2. After this time without a force, in steps of 125 us, the device
+    /// itself disables its forces, even if the program is dead; 0: never.
     int (*dhdSetWatchdog)(unsigned char steps, char id);
 };
 
-/// The SDK, loaded when it is asked for and given back at the end of its life.
+/// The SDK, loaded on request and unloaded at the end of its life.
 class DhdLibrary
 {
 public:
-    /// `path` is a file, or a name for the system's loader to look up; empty: the names that the
-    /// SDK is installed by. A library that isn't there or lacks a function is refused in one line.
+    /// Loads a library. `path` is a file, or a name for the system's loader; empty: the names under
+    /// which the SDK is installed. A library that is missing or lacks a function is refused in one
+    /// line.
     [[nodiscard]] static Result<DhdLibrary, Refusal> load(const std::string& path);
 
     DhdLibrary(DhdLibrary&& other) noexcept;

@@ -14,7 +14,7 @@ namespace tactus
 namespace
 {
 
-/// A library is foreign code: what it throws is its refusal, and nothing at all is one, too.
+/// Runs foreign code: an exception is its refusal, and so is a null result.
 template <class Made>
 Result<std::unique_ptr<Made>, Refusal>
 make_by(Result<std::unique_ptr<Made>, Refusal> (*make)(const DeviceWish&), const DeviceWish& wish,
@@ -40,7 +40,7 @@ make_by(Result<std::unique_ptr<Made>, Refusal> (*make)(const DeviceWish&), const
     }
 }
 
-/// Behind the file's name.
+/// Refusal prefixed by the file's name.
 Refusal behind(const std::string& path, const std::string& text)
 {
     return {path + ": " + text};

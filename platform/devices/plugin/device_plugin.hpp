@@ -13,26 +13,25 @@
 #include <memory>
 #include <string>
 
-// A device of one's own in a shared library, for `hrtc --device plugin:FILE[,WORDS]`. Before the
-// loop, on the thread that assembles the controller; the device itself is used as HapticDevice
-// says.
+// A user's device in a shared library, for `hrtc --device plugin:FILE[,WORDS]`. Before the loop, on
+// the thread that assembles the controller; the device itself is used as HapticDevice says.
 namespace tactus
 {
 
-/// What the device is to be.
+/// Options of the device.
 struct DeviceWish
 {
-    std::int64_t rate_hz{1'000}; ///< Of the loop; info() has to allow it.
-    DeviceFrame frame;           ///< --device-frame: the device applies it.
-    const char* words{""};       ///< What stands behind the file's name, for the device to read.
+    std::int64_t rate_hz{1'000}; ///< Rate of the loop, which info() must allow.
+    DeviceFrame frame;           ///< Frame of --device-frame, applied by the device.
+    const char* words{""};       ///< Text after the file's name, for the device to read.
 };
 
 using MakeDevice = Result<std::unique_ptr<HapticDevice>, Refusal> (*)(const DeviceWish&);
-/// In the guardian's process, before the device is made in the program's.
+/// Makes a guard in the guardian's process, before the device is made in the program's.
 using MakeGuard = Result<std::unique_ptr<DeviceGuard>, Refusal> (*)(const DeviceWish&);
 
-/// Of what passes between program and library; a library of other sizes is refused. The first
-/// number counts what sizes don't show.
+/// Layout of the types exchanged between program and library; a library with another is refused.
+/// The first number counts changes that sizes don't show.
 using PluginLayout = std::array<std::uint32_t, 6>;
 inline constexpr PluginLayout kPluginLayout{3,
                                             sizeof(DeviceInfo),
@@ -41,7 +40,7 @@ inline constexpr PluginLayout kPluginLayout{3,
                                             sizeof(DeviceStatus),
                                             sizeof(DeviceWish)};
 
-/// What a library tells of itself, under the name tactus_device_plugin.
+/// Entry points of a library, under the name tactus_device_plugin.
 struct DevicePlugin
 {
     PluginLayout layout{};
@@ -49,18 +48,18 @@ struct DevicePlugin
     MakeGuard guard{nullptr}; ///< Null: the hardware ends the force of a dead program by itself.
 };
 
-/// Loads the library, which stays for the life of the process, and makes its device. One without a
-/// folder in its name is looked for where the program was started. Refused in a line that names the
-/// file: what can't be loaded, has another layout, refuses itself, makes nothing or throws, or says
-/// of itself what no device may (find_fault()).
+/// Loads the library, which stays for the life of the process, and makes its device. A path without
+/// a folder is relative to the working directory. Refused in a line that names the file: a library
+/// that can't be loaded, has another layout, refuses, makes nothing, throws, or describes a faulty
+/// device (find_fault()).
 [[nodiscard]] Result<std::unique_ptr<HapticDevice>, Refusal> load_device(const std::string& path,
                                                                          const DeviceWish& wish);
 
-/// Loads the library and makes its guard; none where it has none. Refused as load_plugin() does.
+/// Loads the library and makes its guard; none if it has none. Refused as load_plugin() does.
 [[nodiscard]] Result<std::unique_ptr<DeviceGuard>, Refusal> load_guard(const std::string& path,
                                                                        const DeviceWish& wish);
 
-/// Whether a library that load_device() takes has one.
+/// True if the library, accepted by load_device(), has a guard.
 [[nodiscard]] bool has_guard(const std::string& path);
 
 } // namespace tactus
@@ -71,7 +70,7 @@ extern "C"
     __attribute__((visibility("default"))) extern const tactus::DevicePlugin tactus_device_plugin;
 }
 
-/// Makes a library of the source that says it: of a MakeDevice, and a MakeGuard if there is one.
+/// Makes a plugin of the library. Arguments: a MakeDevice, and a MakeGuard if there is one.
 #define TACTUS_DEVICE_PLUGIN(...)                                                                  \
     const tactus::DevicePlugin tactus_device_plugin                                                \
     {                                                                                              \

@@ -9,11 +9,11 @@
 namespace tactus
 {
 
-/// Of a device's name; printable ASCII, so that it may be shown as it is.
+/// Length of a device's name; printable ASCII, so that it may be shown unchanged.
 inline constexpr std::size_t kDeviceNameMax = 31;
 
-/// Null, or one line that names what of a device's own description is out of range. It comes from
-/// outside: what force is made depends on it.
+/// Null, or one line that names a value out of range in a device's description. Descriptions come
+/// from outside, and forces depend on them.
 [[nodiscard]] const char* find_fault(const DeviceInfo& info) noexcept;
 
 } // namespace tactus

@@ -15,7 +15,7 @@ bool is_in_range(Duration time) noexcept
     return time >= RemoteTimes::kMin && time <= RemoteTimes::kMax;
 }
 
-/// Of what is there.
+/// Function of an optional value, if it exists.
 template <typename T, typename Function>
 auto mapped(const std::optional<T>& value, const Function& function) noexcept
 {
@@ -28,7 +28,7 @@ RtThreadOptions io_thread_options()
 {
     RtThreadOptions options;
     options.priority = 79;
-    options.lock_memory = false; // These are for whoever has the haptic thread.
+    options.lock_memory = false; // These belong to the owner of the haptic thread.
     options.processors_awake = false;
     options.allow_no_rt = true;
     return options;
@@ -52,8 +52,8 @@ RemoteDevice::RemoteDevice(const DeviceInfo& device, const DeviceFrame& frame,
 
 DeviceSample RemoteDevice::read() noexcept
 {
-    // In vain when there is none yet, or when the I/O thread has stopped in the middle of a write:
-    // what we have ages and is then told to be so.
+    // It fails if there is none yet, or if the I/O thread has stopped in the middle of a write:
+    // then the last reading ages until it is not connected.
     static_cast<void>(readings_.try_read(reading_));
     connected_ = reading_.attached && clock_.now() - reading_.arrival <= times_.silence;
     DeviceSample sample = reading_.sample;
@@ -84,8 +84,8 @@ void RemoteDevice::brake_softly() noexcept
     brake_.brake_softly(clock_.now());
 }
 
-/// The count makes all forces from before void, even where the I/O thread can't read the mailbox at
-/// the moment and goes on with what it has.
+/// The count voids all earlier forces, even if the I/O thread can't read the mailbox at the moment
+/// and continues with its last command.
 void RemoteDevice::release_brake() noexcept
 {
     if (brake_.try_yield(clock_.now()))
@@ -163,9 +163,10 @@ DeviceCommand RemoteDevice::command() noexcept
         now.state = DeviceState::brake;
         return now;
     }
-    // In vain while the haptic thread is stopped in the middle of a write: then the last one ages.
+    // It fails while the haptic thread is stopped in the middle of a write: then the last command
+    // ages.
     static_cast<void>(commands_.try_read(taken_));
-    now.written = share < 1.0 ? time : taken_.written; // A fade is another force all the time.
+    now.written = share < 1.0 ? time : taken_.written; // A fade changes the force continuously.
     if (published_.attached && makes_force(taken_, published_.attachment, brake_.before(time)))
     {
         const Wrench& wrench = taken_.wrench;

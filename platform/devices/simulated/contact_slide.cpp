@@ -14,41 +14,41 @@ namespace
 {
 
 constexpr double kSlideSpeedDiagPerS = 0.1;
-/// On a wall of 500 N/m and a hand of 200 N/m, 1 N puts the hand 7 mm deep; small models are
-/// touched more lightly so that the hand stays within 3.5 % of a diagonal.
+/// Set force. On a wall of 500 N/m and a hand of 200 N/m, 1 N puts the hand 7 mm deep; small models
+/// are touched more lightly so that the hand stays within 3.5 % of a diagonal.
 constexpr double kForceN = 1.0;
 constexpr double kForceNPerDiagonalM = 5.0;
-/// The hand leans in and out a little, as people do.
+/// Slight variation of the hand's pressure, as with people.
 constexpr double kSwing = 0.3;
 constexpr double kSwingPeriodS = 1.6;
-/// With 140 to 190 N/m between hand and wall the force follows at about 25 rad/s, well below the
-/// 80 rad/s at which device and wall swing.
+/// Gain of the pressing. With 140 to 190 N/m between hand and wall the force follows at about 25
+/// rad/s, well below the 80 rad/s at which device and wall oscillate.
 constexpr double kPressGainMPerNs = 0.175;
 constexpr double kPressSpeedMaxMPerS = 0.1;
 constexpr double kPressSpeedMaxDiagPerS = 0.5;
-/// Circles of an eighth of a diagonal.
+/// Rate of the heading, for circles of an eighth of a diagonal.
 constexpr double kTurnRadPerS = 0.8;
 constexpr double kNormalFilterS = 0.005;
 constexpr double kSpeedFilterS = 0.02;
 constexpr double kSpeedGainPerS = 10.0;
 constexpr double kSpeedFactorMin = 0.3;
 constexpr double kSpeedFactorMax = 1.5;
-/// Slower than this share of the set speed for so long means that something is in the way.
+/// Speed below this share of the set speed for this long means an obstacle.
 constexpr double kStuckShare = 0.3;
 constexpr double kStuckAfterS = 0.2;
-/// Of the set force; below it nothing is felt.
+/// Share of the set force; below it nothing is felt.
 constexpr double kFeltShare = 0.02;
-/// A device of 1 N s/m damps with half of that at most: 0.16 N where the default model is
-/// approached.
+/// Share of a firm touch. A device of 1 N s/m damps with half of that at most: 0.16 N during the
+/// approach to the default model.
 constexpr double kFirmShare = 0.2;
 
-/// First-order low-pass: the share of the new value.
+/// Share of the new value in a first-order low-pass.
 double filter_share(double period_s, double time_s) noexcept
 {
     return period_s / (period_s + time_s);
 }
 
-/// A unit vector across `normal`, along `wish` where that has such a part.
+/// Unit vector perpendicular to `normal`, along `wish` if it has such a component.
 Vec3 heading_across(const Vec3& normal, const Vec3& wish) noexcept
 {
     constexpr double kParallel = 1e-6;
@@ -108,7 +108,7 @@ bool ContactSlide::is_firm(const HandSense& sense) const noexcept
     return sense.force_world_n.norm() > kFirmShare * force_n_;
 }
 
-/// A triangle wave with rounded corners round the set force.
+/// Force around the set force, a triangle wave with rounded corners.
 double ContactSlide::wanted_force_n() const noexcept
 {
     const double turns = static_cast<double>(frames_) * period_s_ / kSwingPeriodS;
@@ -137,7 +137,7 @@ void ContactSlide::follow_surface(const HandSense& sense, double force_n) noexce
     touched_s_ += period_s_;
     const Vec3 felt = sense.force_world_n / force_n;
     const Vec3 blend = normal_ + (felt - normal_) * filter_share(period_s_, kNormalFilterS);
-    // Opposite normals, as at the rim of a sheet, cancel out: then the new one counts.
+    // Opposite normals, as at the rim of a sheet, cancel out: then the new one is used.
     normal_ = blend.norm() > 0.1 ? Vec3(blend.normalized()) : felt;
     const Vec3 turned = heading_ + normal_.cross(heading_) * (kTurnRadPerS * period_s_);
     heading_ = heading_across(normal_, turned);

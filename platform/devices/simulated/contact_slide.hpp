@@ -10,39 +10,39 @@
 namespace tactus
 {
 
-/// How a hand strokes a surface it knows only by feeling it: it moves across the felt force, turns
-/// slowly, and presses so that the felt force follows a set value.
+/// Motion of a hand along a surface that it knows only by contact: it moves perpendicular to the
+/// felt force, turns slowly, and presses so that the felt force follows a set value.
 ///
 ///     felt force ^   heading -->            pressing: an integrating controller on |force|;
-///                |  /                       its output is a speed, and the speed is limited,
-///       ---------(o)--------- surface       so nothing winds up while nothing resists.
+///                |  /                       its output is a limited speed, so that it does not
+///       ---------(o)--------- surface       wind up without resistance.
 ///                 |  pressing
 ///                 v
 ///
-/// On a curved surface the hand, being deeper, runs on another radius than the device; a slow
-/// correction of its speed keeps the device's speed at what was asked.
+/// On a curved surface the deeper hand moves on another radius than the device; a slow correction
+/// of its speed keeps the device at the set speed.
 class ContactSlide
 {
 public:
     ContactSlide(double diagonal_m, double period_s) noexcept;
 
-    /// From the first felt force; `heading` is a wish that need not lie in the surface.
+    /// Starts at the first felt force; `heading_wish` need not lie in the surface.
     void begin(const HandSense& sense, const Vec3& heading_wish) noexcept;
 
-    /// The hand's velocity for this frame, in m/s.
+    /// Velocity of the hand in this frame, in m/s.
     [[nodiscard]] Vec3 next_velocity(const HandSense& sense) noexcept;
 
     void turn_round() noexcept;
 
     [[nodiscard]] bool is_touching(const HandSense& sense) const noexcept;
-    /// More than damping makes at the speeds of a landing.
+    /// True for forces above those of damping at landing speeds.
     [[nodiscard]] bool is_firm(const HandSense& sense) const noexcept;
-    /// Unit length, out of the surface.
+    /// Normal out of the surface, of unit length.
     [[nodiscard]] const Vec3& normal() const noexcept { return normal_; }
     [[nodiscard]] const Vec3& heading() const noexcept { return heading_; }
-    /// How long nothing has been felt; 0 while in contact.
+    /// Time since the last felt force; 0 while in contact.
     [[nodiscard]] double untouched_s() const noexcept { return untouched_s_; }
-    /// How long something has been felt since begin(), without a gap.
+    /// Duration of uninterrupted contact since begin().
     [[nodiscard]] double touched_s() const noexcept { return touched_s_; }
 
 private:

@@ -8,14 +8,14 @@
 namespace tactus
 {
 
-/// Kinds of device to simulate. Force and stiffness are those that makers and users give;
-/// mass, damping, friction and quantum are assumed, of the order of such mechanisms, with a damping
-/// that carries the stiffness at the rate that such a device is sold for. None is a measurement of
-/// a product: measure your own (docs/stability.md).
+/// Kinds of device to simulate. Force and stiffness are published by makers and users; mass,
+/// damping, friction and quantum are assumed, of the order of such mechanisms, with a damping that
+/// allows the stiffness at such a device's usual rate. None is a measurement of a product: measure
+/// your own (docs/stability.md).
 
-/// What nobody else is: a desk device that turns and makes a torque. In all its values an angle is
-/// a way on a lever of 3.2 cm (the root of 0.001 m^2) of the default device, but the torque, which
-/// is that of wrists that are sold.
+/// Limits of no product: a desk device that rotates and makes a torque. An angle equals a
+/// displacement on a lever of 3.2 cm (the root of 0.001 m^2) of the default device in all values
+/// except the torque, which is that of commercial wrists.
 inline constexpr TurnLimits kDeskTurn{.is_measured = true,
                                       .torque_max_nm = 0.5,
                                       .inertia_kg_m2 = 1e-4,
@@ -27,7 +27,7 @@ inline constexpr TurnLimits kDeskTurn{.is_measured = true,
                                       .added_damping_max_nm_s_per_rad = 5e-3};
 inline constexpr DeviceLimits kDeskClass{.turn = kDeskTurn};
 
-/// A small desktop arm with a stylus, which tells how it is turned and makes no torque.
+/// A small desktop arm with a stylus, which measures its rotation and makes no torque.
 inline constexpr DeviceLimits kTouchClass{.mass_kg = 0.045,
                                           .damping_n_s_per_m = 0.25,
                                           .friction_n = 0.1,
@@ -43,7 +43,7 @@ inline constexpr DeviceLimits kTouchClass{.mass_kg = 0.045,
                                                    .friction_nm = 1e-4,
                                                    .quantum_rad = 1e-3}};
 
-/// A stiff parallel mechanism. Its handle doesn't turn, nor that of the next.
+/// A stiff parallel mechanism. Its handle doesn't rotate; neither does the next one's.
 inline constexpr DeviceLimits kOmegaClass{.mass_kg = 0.2,
                                           .damping_n_s_per_m = 1.7,
                                           .friction_n = 0.05,
@@ -54,7 +54,7 @@ inline constexpr DeviceLimits kOmegaClass{.mass_kg = 0.2,
                                           .stiffness_max_n_per_m = 5'000.0,
                                           .added_damping_max_n_s_per_m = 10.0};
 
-/// A larger one.
+/// A larger parallel mechanism.
 inline constexpr DeviceLimits kDeltaClass{.mass_kg = 0.25,
                                           .damping_n_s_per_m = 1.7,
                                           .friction_n = 0.1,

@@ -9,14 +9,14 @@
 namespace tactus
 {
 
-/// Unit length, or zero for the zero vector.
+/// Unit vector, or zero for the zero vector.
 [[nodiscard]] inline Vec3 direction_or_zero(const Vec3& v) noexcept
 {
     const double length = v.norm();
     return length > 0.0 ? Vec3(v / length) : Vec3(Vec3::Zero());
 }
 
-/// A unit vector across `direction`, the same one every time; `direction` must not be zero.
+/// Unit vector perpendicular to `direction`, a function of it alone; `direction` must not be zero.
 [[nodiscard]] inline Vec3 any_across(const Vec3& direction) noexcept
 {
     int least = 0;
@@ -24,7 +24,7 @@ namespace tactus
     return direction.cross(Vec3::Unit(least)).normalized();
 }
 
-/// What is left of `v` without its part along the unit vector `direction`.
+/// Component of `v` perpendicular to the unit vector `direction`.
 [[nodiscard]] inline Vec3 part_across(const Vec3& v, const Vec3& direction) noexcept
 {
     return v - direction * v.dot(direction);

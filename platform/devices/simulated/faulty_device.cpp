@@ -26,7 +26,7 @@ void set_velocities(DeviceSample& sample, double value) noexcept
     }
 }
 
-/// Of a reading that isn't to be trusted.
+/// Restores the last pose in an untrustworthy reading.
 void keep_place(DeviceSample& sample, const DeviceSample& last) noexcept
 {
     sample.position_world_m = last.position_world_m;
@@ -69,7 +69,7 @@ DeviceSample FaultyDevice::read() noexcept
     return sample;
 }
 
-/// All the way that the encoders missed, in one period.
+/// Velocity of the whole displacement missed by the encoders, in one period.
 void FaultyDevice::leap(DeviceSample& sample) const noexcept
 {
     const double time_s = to_seconds(sample.time - last_.time);
@@ -80,7 +80,7 @@ void FaultyDevice::leap(DeviceSample& sample) const noexcept
     }
 }
 
-/// Unless it is braked, which makes none already and has to stay so.
+/// Ends the force unless the device is braked, which makes no force and must stay so.
 void FaultyDevice::drop_force() noexcept
 {
     if (status().state != DeviceState::brake)

@@ -11,22 +11,23 @@
 namespace tactus
 {
 
-/// What goes wrong with a device's readings. docs/simulated-device.md says what the controller
-/// makes of each.
+/// Faults of a device's readings. docs/simulated-device.md describes the controller's response to
+/// each.
 enum class DeviceFaultKind : std::uint8_t
 {
-    jitter,  ///< The position is wrong by up to kJitter_m on each axis, anew in each reading.
-    dropout, ///< Nothing trustworthy: not valid, with what was good last.
-    /// The encoders stand still: the last position and rotation, velocity 0, while time goes on. In
-    /// the first reading afterwards the whole way is there, and the velocity that it makes in one
+    jitter,  ///< The position is off by up to kJitter_m on each axis, random in each reading.
+    dropout, ///< The reading is not valid and has the last good values.
+    /// The encoders stand still: the last position and rotation, velocity 0, while time advances.
+    /// The first reading afterwards has the whole displacement, and the velocity of that in one
     /// period.
     stuck,
-    nan,        ///< Place, velocities, gripper are no numbers, and it says they were valid.
-    time_jump,  ///< The readings' time is ahead by kTimeJump, and falls back afterwards.
-    disconnect, ///< It does not answer and makes no force; idle afterwards, until the next write.
+    nan,       ///< Position, velocities and gripper are NaN but marked valid.
+    time_jump, ///< The readings' time is ahead by kTimeJump, and falls back afterwards.
+    /// The device does not answer and makes no force; idle afterwards, until the next write.
+    disconnect,
 };
 
-/// From reading `begin_frame`, which counts from 0, for `frames` readings.
+/// A fault from reading `begin_frame`, counted from 0, for `frames` readings.
 struct DeviceFault
 {
     DeviceFaultKind kind{DeviceFaultKind::dropout};
@@ -39,8 +40,8 @@ struct DeviceFault
     }
 };
 
-/// A device as it is, but for readings that go wrong on a schedule. Faults at the same time act in
-/// the order given. The same device, faults and seed give the same readings. Threads as the device.
+/// A device whose readings go wrong on a schedule. Simultaneous faults act in the order given. The
+/// same device, faults and seed give the same readings. Threads as those of the device.
 class FaultyDevice final : public WrappedDevice
 {
 public:
@@ -61,9 +62,9 @@ private:
 
     std::vector<DeviceFault> faults_;
     std::uint64_t seed_;
-    DeviceSample last_;    ///< The last valid one that was given out.
-    bool is_away_{false};  ///< Disconnected, as of the last reading.
-    bool is_stuck_{false}; ///< Likewise.
+    DeviceSample last_;    ///< Last valid sample returned.
+    bool is_away_{false};  ///< True if disconnected at the last reading.
+    bool is_stuck_{false}; ///< True if stuck at the last reading.
 };
 
 } // namespace tactus

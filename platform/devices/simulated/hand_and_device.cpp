@@ -36,7 +36,7 @@ bool is_usable(const HandLimb& hand) noexcept
            hand.mass_kg + hand.stiffness_n_per_m + hand.damping_n_s_per_m > 0.0;
 }
 
-/// Empty when all options are good.
+/// Fault of the options; empty if none.
 std::string find_bad_option(const HandAndDeviceOptions& options)
 {
     if (!is_usable(options.device))
@@ -70,7 +70,7 @@ std::string find_bad_option(const HandAndDeviceOptions& options)
     return {};
 }
 
-/// No force when it isn't finite, else one that the motors can make.
+/// Zero for a non-finite force, otherwise the force within the motors' limit.
 Vec3 motor_force(const Vec3& force_n, double force_max_n) noexcept
 {
     const double norm_n = force_n.norm();
@@ -131,7 +131,7 @@ const Vec3& HandAndDevice::force_at(std::uint32_t sub_step) const noexcept
     return forces_n_[late];
 }
 
-/// Of the implicit midpoint rule: with w the speed midway, 2 m (w - v) / dt is the sum of all
+/// Step of the implicit midpoint rule: with w the speed midway, 2 m (w - v) / dt is the sum of all
 /// forces at x + w dt / 2 and w; for two masses two equations on each axis.
 HandAndDevice::Midway HandAndDevice::solve(const Vec3& force_n, const Vec3& target_mid_m,
                                            const Vec3& target_velocity) const noexcept
@@ -178,7 +178,7 @@ void HandAndDevice::sub_step(const Vec3& force_n, const Vec3& target_mid_m,
     const HandLimb& hand = options_.hand;
     Midway mid = solve(force_n, target_mid_m, target_velocity);
     Vec3 velocity = mid.device_m_per_s * 2.0 - device_m_per_s_;
-    // Friction brings to rest and no farther; what it holds still then is the next step's question.
+    // Friction can only stop the motion in this step; the next step decides if it holds.
     const bool stops = options_.device.friction_n > 0.0 && velocity.dot(device_m_per_s_) < 0.0;
     if (stops)
     {
@@ -206,7 +206,7 @@ void HandAndDevice::sub_step(const Vec3& force_n, const Vec3& target_mid_m,
     stay_in_workspace();
 }
 
-/// The reach ends in a stop without bounce: the outward part of the velocity is lost.
+/// Stops the device at the workspace's end without bounce: the outward velocity is lost.
 void HandAndDevice::stay_in_workspace() noexcept
 {
     const Vec3 from_centre_m = device_m_ - options_.workspace_centre_world_m;

@@ -13,14 +13,14 @@
 namespace tactus
 {
 
-/// The moving part of a hand, its arm and its grip. The values are those of a relaxed hand; all
-/// are finite and not negative.
+/// The moving part of a hand, its arm and its grip. The values are those of a relaxed hand; all are
+/// finite and not negative.
 struct HandLimb
 {
     double mass_kg{0.1};
-    double stiffness_n_per_m{200.0}; ///< Between the hand and where it wants to be.
-    double damping_n_s_per_m{4.0};   ///< Likewise.
-    /// Between the hand and the device; with both 0 the device is let go.
+    double stiffness_n_per_m{200.0}; ///< Stiffness between the hand and its target.
+    double damping_n_s_per_m{4.0};   ///< Damping between the hand and its target.
+    /// Stiffness between the hand and the device; with both 0 the device is let go.
     double grip_stiffness_n_per_m{2'000.0};
     double grip_damping_n_s_per_m{4.0};
 };
@@ -30,20 +30,20 @@ struct HandAndDeviceOptions
     DeviceLimits device;
     HandLimb hand;
     double period_s{1e-3};
-    Vec3 start_world_m{0.0, 0.0, 0.0}; ///< Where hand and device rest at first.
+    Vec3 start_world_m{0.0, 0.0, 0.0}; ///< Initial position of hand and device.
     Vec3 workspace_centre_world_m{0.0, 0.0, 0.0};
     double workspace_radius_m{1.0};
 };
 
-/// Where energy went since the start, in joules. All but the works are never negative.
+/// Energies since the start, in joules. All except the works are never negative.
 struct HandAndDeviceEnergy
 {
-    double force_work_j{0.0};   ///< Done by the device's motors.
-    double target_work_j{0.0};  ///< Done by the hand's will, through arm spring and damper.
-    double viscous_loss_j{0.0}; ///< In the device's damping and its brake.
+    double force_work_j{0.0};   ///< Work of the device's motors.
+    double target_work_j{0.0};  ///< Work of the hand's target, through arm spring and damper.
+    double viscous_loss_j{0.0}; ///< Loss in the device's damping and its brake.
     double friction_loss_j{0.0};
-    double hand_loss_j{0.0}; ///< In the dampers of arm and grip.
-    double stop_loss_j{0.0}; ///< At the end of the reach.
+    double hand_loss_j{0.0}; ///< Loss in the dampers of arm and grip.
+    double stop_loss_j{0.0}; ///< Loss at the end of the reach.
 };
 
 /// A hand that holds a device, as two point masses:
@@ -55,30 +55,30 @@ struct HandAndDeviceEnergy
 ///
 /// The device holds each force from DeviceLimits::delay_s after it was given until the next one is
 /// due, cut to force_max_n. Its position is measured in steps of the quantum on each axis. Friction
-/// holds it still while no more than the friction pulls. It ends at the workspace's sphere without
-/// bounce.
+/// holds it against forces up to the friction. It stops at the workspace's sphere without bounce.
 ///
 /// Each period is integrated in kSubSteps equal steps by the implicit midpoint rule: it changes the
-/// energy of the linear part by exactly the work that was done and lost, so that a model of what
-/// feeds a limit cycle feeds none itself. The same forces and targets give the same bits; time
-/// counts in periods. Allocates nothing. One thread, the one that reads the device.
+/// energy of the linear part by exactly the work done and lost, so that the integration itself
+/// feeds no limit cycle. The same forces and targets give the same bits; time counts in periods.
+/// Allocates nothing. One thread, the one that reads the device.
 class HandAndDevice
 {
 public:
-    static constexpr std::uint32_t kSubSteps = 20;       ///< Delays count in whole ones.
+    /// Sub-steps a period; delays count in whole ones.
+    static constexpr std::uint32_t kSubSteps = 20;
     static constexpr std::uint32_t kDelayMaxPeriods = 8; ///< Longest delay.
 
     /// Refuses a device with a fault, values that are not finite or out of range, a period out of
-    /// 1e-5 .. 0.1 s, a delay over kDelayMaxPeriods, a start outside the workspace, and a hand
-    /// with neither mass nor arm.
+    /// 1e-5 .. 0.1 s, a delay over kDelayMaxPeriods, a start outside the workspace, and a hand with
+    /// neither mass nor arm.
     [[nodiscard]] static Result<HandAndDevice, Refusal> create(const HandAndDeviceOptions& options);
 
-    /// One period under `force_n` (what is no finite force counts as none), while the hand's target
-    /// moves to `target_m` at constant speed. Returns the measured position at its end.
+    /// Simulates one period under `force_n` (a non-finite force counts as zero), while the hand's
+    /// target moves to `target_m` at constant speed. Returns the measured position at its end.
     Vec3 step(const Vec3& force_n, const Vec3& target_m) noexcept;
 
-    /// All at once somewhere else, with the speeds that they have: for HandTurn, whose coordinates
-    /// begin anew each period.
+    /// Moves all at once with unchanged velocities: for HandTurn, whose coordinates are reset each
+    /// period.
     void place(const Vec3& device_m, const Vec3& hand_m, const Vec3& target_m) noexcept
     {
         device_m_ = device_m;
@@ -86,18 +86,18 @@ public:
         target_m_ = target_m;
     }
 
-    /// Forces under way are dropped, and from now on this much damping comes on top of the device's
-    /// own; finite and not negative. It makes a force again by the next step() that gives one.
+    /// Drops forces under way and adds this damping to the device's own; finite and not negative.
+    /// The next step() with a force ends that.
     void brake(double damping_n_s_per_m) noexcept;
     void release_brake() noexcept { brake_n_s_per_m_ = 0.0; }
 
     [[nodiscard]] Vec3 measured_m() const noexcept;
-    /// Not known to a controller.
+    /// True position, unknown to a controller.
     [[nodiscard]] const Vec3& position_m() const noexcept { return device_m_; }
     [[nodiscard]] const Vec3& velocity_m_per_s() const noexcept { return device_m_per_s_; }
     [[nodiscard]] const Vec3& hand_m() const noexcept { return hand_m_; }
     [[nodiscard]] const HandAndDeviceEnergy& energy() const noexcept { return energy_; }
-    /// Of both masses and both springs.
+    /// Energy of both masses and both springs.
     [[nodiscard]] double stored_j() const noexcept;
 
 private:
@@ -108,7 +108,7 @@ private:
     {
         Vec3 device_m_per_s;
         Vec3 hand_m_per_s;
-        Vec3 friction_n; ///< On the device.
+        Vec3 friction_n; ///< Friction on the device.
     };
 
     [[nodiscard]] Midway solve(const Vec3& force_n, const Vec3& target_mid_m,
@@ -127,7 +127,7 @@ private:
     Vec3 hand_m_;
     Vec3 hand_m_per_s_{0.0, 0.0, 0.0};
     Vec3 target_m_;
-    std::array<Vec3, kDelayMaxPeriods + 1> forces_n_{}; ///< Given ones, newest first.
+    std::array<Vec3, kDelayMaxPeriods + 1> forces_n_{}; ///< Forces given, newest first.
     HandAndDeviceEnergy energy_;
 };
 

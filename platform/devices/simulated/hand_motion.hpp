@@ -11,39 +11,40 @@
 namespace tactus
 {
 
-/// What a hand knows when it decides where to go next: where the device is and what it pushes with.
+/// Input of a hand's next decision: the device's state and force.
 struct HandSense
 {
-    std::uint64_t frame{0}; ///< Counts the decisions, from 1: frame 0 is the start itself.
+    std::uint64_t frame{0}; ///< Number of the decision, from 1: frame 0 is the start itself.
     Vec3 device_world_m{Vec3::Zero()};
-    Vec3 force_world_n{Vec3::Zero()};       ///< On the hand.
-    Mat3 device_rotation{Mat3::Identity()}; ///< In the world.
-    Vec3 torque_world_nm{Vec3::Zero()};     ///< On the hand.
+    Vec3 force_world_n{Vec3::Zero()};       ///< Force on the hand.
+    Mat3 device_rotation{Mat3::Identity()}; ///< Rotation in the world.
+    Vec3 torque_world_nm{Vec3::Zero()};     ///< Torque on the hand.
 };
 
-/// What a hand does besides being somewhere.
+/// State of a hand besides its position.
 struct HandGrip
 {
-    Mat3 rotation{Mat3::Identity()}; ///< Of the wrist, in the world; orthonormal to rounding.
+    /// Rotation of the wrist, in the world; orthonormal to rounding.
+    Mat3 rotation{Mat3::Identity()};
     std::uint32_t buttons{0};        ///< Bit n is set while it presses button n.
-    std::optional<double> gripper_m; ///< How far it opens the gripper, if it has one.
+    std::optional<double> gripper_m; ///< Opening of the gripper, if there is one.
 };
 
-/// The human end of a simulated device: a place that the hand pulls the device towards through its
-/// own springiness. Depends on the senses alone, never on a clock.
+/// The simulated operator of a device: a target to which the hand pulls the device through its own
+/// compliance. Depends on the senses alone, never on a clock.
 class HandMotion
 {
 public:
     virtual ~HandMotion() = default;
 
-    /// Where the hand and the device rest before the first frame.
+    /// Initial position of hand and device.
     [[nodiscard]] virtual Vec3 start_world_m() const noexcept = 0;
 
-    /// Where the hand is at the end of this frame. Called once a frame; allocates nothing.
+    /// Position of the hand at the end of this frame. Called once a frame; allocates nothing.
     [[nodiscard]] virtual Vec3 next_world_m(const HandSense& sense) noexcept = 0;
 
-    /// The rest, at the end of the frame that next_world_m() has decided on last; before the first
-    /// one as it rests at the start. Allocates nothing.
+    /// Grip at the end of the frame of the last next_world_m(); before the first one, at the start.
+    /// Allocates nothing.
     [[nodiscard]] virtual HandGrip grip() const noexcept { return {}; }
 
 protected:

@@ -24,10 +24,10 @@ namespace
 constexpr std::string_view kNames[] = {"script", "free",   "approach", "slide", "tap", "teleport",
                                        "spin",   "tremor", "turn",     "edge",  "peg"};
 
-/// Round the start of a hand at least, of its workspace.
+/// Least room of the workspace around the start of a hand.
 constexpr double kRoom_diag = 0.05;
 
-/// On the sphere on which the gates are.
+/// Flies on the sphere of the gates.
 class FlyingHand final : public HandMotion
 {
 public:
@@ -61,7 +61,8 @@ private:
     Phasor phasor_;
 };
 
-/// At the gates of the landing sites and at their places on the model, in an order of its seed.
+/// Jumps between the gates of the landing sites and their places on the model, in an order of its
+/// seed.
 class JumpingHand final : public HandMotion
 {
 public:
@@ -92,8 +93,8 @@ private:
     std::vector<Vec3> places_world_m_;
 };
 
-/// Another hand's motion with tremor on top: on each axis three swings between 8 and 12 Hz, of up
-/// to 0.2 mm each, with frequencies and sizes of the seed; at first there is none.
+/// Another hand's motion with added tremor: on each axis three oscillations between 8 and 12 Hz, of
+/// up to 0.2 mm each, with frequencies and sizes of the seed; the first value is zero.
 class TremblingHand final : public HandMotion
 {
 public:
@@ -131,7 +132,7 @@ private:
     };
 
     std::unique_ptr<HandMotion> hand_;
-    std::array<Swing, 9> swings_; ///< Of the axes in turn.
+    std::array<Swing, 9> swings_; ///< Oscillations, axis by axis in turn.
 };
 
 std::unique_ptr<HandMotion> make_hand(MotionKind kind, const HandScene& scene, std::uint64_t seed,
@@ -178,7 +179,7 @@ Result<MadeMotion, Refusal> make_motion(MotionKind kind, const HandScene& scene,
 {
     HandScene played = scene;
     played.lifts_off = kind != MotionKind::slide && kind != MotionKind::edge;
-    auto script = ScriptedHand::create(played); // It checks the scene for all of them.
+    auto script = ScriptedHand::create(played); // This checks the scene for all motions.
     if (!script)
     {
         return script.error();

@@ -16,30 +16,30 @@
 namespace tactus
 {
 
-/// What a simulated hand does. docs/simulated-device.md describes each.
+/// Motions of a simulated operator. docs/simulated-device.md describes each.
 enum class MotionKind : std::uint8_t
 {
     script,   ///< ScriptedHand: flight, approach, slide with lift-offs, retreat.
-    free,     ///< Round the model without touching it.
-    approach, ///< Down to a landing site, presses and rests there.
-    slide,    ///< As the script, but stays on the surface.
-    tap,      ///< Two taps a second on one place.
-    teleport, ///< Twice a second at once to another place, on the model or round it.
-    spin,     ///< Presses and circles on one place, twice a second.
-    tremor,   ///< The script with a trembling hand.
-    turn,     ///< Presses on one place and turns the tool there about its axes.
-    edge,     ///< As slide, and turns the tool with the surface.
-    peg,      ///< In and out along z, with tilts, a button and a gripper.
+    free,     ///< Moves around the model without contact.
+    approach, ///< Descends to a landing site, presses and rests there.
+    slide,    ///< Like the script, but stays on the surface.
+    tap,      ///< Two taps a second at one place.
+    teleport, ///< Jumps twice a second to another place, on the model or around it.
+    spin,     ///< Presses and circles at one place, twice a second.
+    tremor,   ///< The script with tremor.
+    turn,     ///< Presses at one place and rotates the tool about its axes.
+    edge,     ///< Slides and rotates the tool with the surface.
+    peg,      ///< Moves in and out along z, with tilts, a button and a gripper.
 };
 
-/// In the order of MotionKind, for messages.
+/// Names in the order of MotionKind, for messages.
 inline constexpr std::string_view kMotionNames =
     "script, free, approach, slide, tap, teleport, spin, tremor, turn, edge or peg";
 
-/// None when it is no name of a motion.
+/// Motion of this name; none for other names.
 [[nodiscard]] std::optional<MotionKind> motion_named(std::string_view name);
 
-/// A motion and the workspace that holds all of it.
+/// A motion and the workspace that contains it.
 struct MadeMotion
 {
     std::unique_ptr<HandMotion> hand;
@@ -48,7 +48,7 @@ struct MadeMotion
 };
 
 /// Refuses the scenes that ScriptedHand refuses. The same scene and seed make the same motion, bit
-/// for bit; only teleport and tremor look at the seed.
+/// for bit; only teleport and tremor use the seed.
 [[nodiscard]] Result<MadeMotion, Refusal> make_motion(MotionKind kind, const HandScene& scene,
                                                       std::uint64_t seed = 1);
 

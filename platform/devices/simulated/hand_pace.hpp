@@ -8,17 +8,18 @@
 namespace tactus
 {
 
-/// How fast the scripted hand moves: in diagonals, so that every size of model is treated alike.
+/// Speeds of the scripted hand, in proportion to the diagonal, so that every size of model is
+/// treated alike.
 struct HandPace
 {
-    /// Before the surface; where it slows down.
+    /// Distance from the surface at which it slows down.
     static constexpr double kSlowDown_diag = 0.1;
 
     double flight_m_per_s;
     double approach_m_per_s;
     double lift_m_per_s;
     double retreat_m_per_s;
-    /// At most 0.3 m/s: 0.1 kg at that speed strike a wall of 500 N/m with 2 N.
+    /// Speed of at most 0.3 m/s: 0.1 kg at that speed strike a wall of 500 N/m with 2 N.
     double touch_m_per_s;
     double acceleration_m_per_s2;
 
@@ -32,8 +33,8 @@ struct HandPace
     {
     }
 
-    /// `speed_m_per_s`, or less when the hand could not stop within `distance_m`. Plans with 60 %
-    /// of the deceleration it has, so that it does stop in time.
+    /// The speed `speed_m_per_s`, or less if the hand could not stop within `distance_m`. Assumes
+    /// 60 % of its deceleration, so that it does stop in time.
     [[nodiscard]] double stoppable(double speed_m_per_s, double distance_m) const noexcept
     {
         constexpr double kBrakingShare = 0.6;
@@ -41,13 +42,14 @@ struct HandPace
         return std::min(speed_m_per_s, std::sqrt(2.0 * braking * distance_m));
     }
 
-    /// From `fast_m_per_s` down to touching speed over the last `zone_m` before the surface.
+    /// Speed that falls from `fast_m_per_s` to touching speed over the last `zone_m` before the
+    /// surface.
     [[nodiscard]] double slowing(double fast_m_per_s, double gap_m, double zone_m) const noexcept
     {
         return touch_m_per_s + (fast_m_per_s - touch_m_per_s) * smoothstep(gap_m / zone_m);
     }
 
-    /// 0 up to 0, 1 from 1 on, level at both.
+    /// Smooth step: 0 up to 0, 1 from 1 on, zero slope at both.
     [[nodiscard]] static double smoothstep(double x) noexcept
     {
         const double t = std::clamp(x, 0.0, 1.0);

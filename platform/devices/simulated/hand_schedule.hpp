@@ -8,8 +8,8 @@
 namespace tactus
 {
 
-/// What the scripted hand does when, in frames; shares of the run, so that short runs have
-/// everything too. At 3 s flight and retreat together take less than a tenth.
+/// Schedule of the scripted hand in frames, in shares of the run, so that short runs have all
+/// phases. In 3 s flight and retreat together take less than a tenth.
 struct HandSchedule
 {
     double flight_s;
@@ -33,7 +33,7 @@ struct HandSchedule
         return lifts_done < lifts && frame >= first_lift_frame + lifts_done * lift_spacing_frames;
     }
 
-    /// None for a negative time.
+    /// Number of frames; 0 for a negative time.
     [[nodiscard]] static std::uint64_t frames_in(double seconds, double period_s) noexcept
     {
         return static_cast<std::uint64_t>(std::max(seconds, 0.0) / period_s);

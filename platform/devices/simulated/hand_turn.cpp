@@ -10,13 +10,14 @@ namespace tactus
 namespace
 {
 
-/// From one rotation to the other, about the world's axes.
+/// Rotation vector from one rotation to the other, about the world's axes.
 Vec3 way_between(const Mat3& from, const Mat3& to) noexcept
 {
     return rotation_vector(orthonormalised(to * from.transpose()));
 }
 
-/// As HandAndDevice takes it; there is no end to turning. A device without a torque is given none.
+/// Options of the equivalent HandAndDevice, with unlimited reach. A device without a torque gets
+/// none.
 HandAndDeviceOptions in_angles(const HandTurnOptions& options)
 {
     const TurnLimits& turn = options.device;
@@ -72,7 +73,7 @@ void HandTurn::step(const Vec3& torque_nm, const Mat3& target) noexcept
     target_ = target;
 }
 
-/// A turn by a small angle changes the vector part by half of it.
+/// Rotation by a small angle changes the vector part by half of it.
 Quaternion HandTurn::measured() const noexcept
 {
     Quaternion measured = to_quaternion(device_);

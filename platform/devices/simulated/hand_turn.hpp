@@ -10,40 +10,41 @@ namespace tactus
 
 struct HandTurnOptions
 {
-    TurnLimits device; ///< Inertia above zero.
+    TurnLimits device; ///< Rotation limits; inertia above zero.
     double delay_s{0.0};
-    /// The wrist and its grip: kg m^2, N m/rad, N m s/rad in place of what the names say.
+    /// Wrist and its grip: kg m^2, N m/rad, N m s/rad in place of the units in the names.
     HandLimb wrist;
     double period_s{1e-3};
-    Mat3 start{Mat3::Identity()}; ///< Of all; orthonormal to rounding.
+    Mat3 start{Mat3::Identity()}; ///< Initial rotation of all; orthonormal to rounding.
 };
 
-/// How a hand turns the device that it holds: HandAndDevice with angles for ways, moments of
+/// Rotation of a held device by the hand: HandAndDevice with angles for displacements, moments of
 /// inertia for masses and torques for forces.
 ///
-/// Two bodies whose inertia is the same about each axis turn as point masses move, as long as the
-/// springs between them are turned by little: x stands for the turn since the period began, and the
-/// springs are measured anew, as the rotations between the bodies, when the next one begins. About
-/// one axis this is exact, and so is the balance of energy; about several the springs' energy
-/// changes at a new period by the square of how much they are stretched.
+/// Two bodies with the same inertia about each axis rotate as point masses move, while the springs
+/// between them are turned little: x is the rotation since the period began, and each period
+/// measures the springs again as rotations between the bodies. About one axis this is exact, and so
+/// is the energy balance; about several the springs' energy changes at a new period by the square
+/// of their deflection.
 ///
-/// Until something turns it nothing is computed. Allocates nothing. One thread, as HandAndDevice.
+/// Nothing is computed before the first rotation. Allocates nothing. One thread, as HandAndDevice.
 class HandTurn
 {
 public:
     /// Refuses what HandAndDevice refuses.
     [[nodiscard]] static Result<HandTurn, Refusal> create(const HandTurnOptions& options);
 
-    /// One period under `torque_nm`, while the wrist's target turns to `target` at constant speed.
+    /// Simulates one period under `torque_nm`, while the wrist's target rotates to `target` at
+    /// constant speed.
     void step(const Vec3& torque_nm, const Mat3& target) noexcept;
 
-    /// As those of HandAndDevice, in N m s/rad.
+    /// Brakes like HandAndDevice, in N m s/rad.
     void brake(double damping_nm_s_per_rad) noexcept { body_.brake(damping_nm_s_per_rad); }
     void release_brake() noexcept { body_.release_brake(); }
 
-    /// In steps of the quantum about each axis.
+    /// Rotation in steps of the quantum about each axis.
     [[nodiscard]] Quaternion measured() const noexcept;
-    /// Not known to a controller.
+    /// True rotation, unknown to a controller.
     [[nodiscard]] const Mat3& rotation() const noexcept { return device_; }
     [[nodiscard]] const Vec3& velocity_rad_per_s() const noexcept
     {

@@ -16,7 +16,8 @@ namespace
 
 constexpr double kBeyondDiag = 0.5;
 constexpr double kSpeedFilter_s = 0.01;
-/// In the air the device is as fast as the hand, on a wall of 500 N/m a third of it.
+/// Share of the hand's speed below which the device is in contact: in the air the device is as fast
+/// as the hand, on a wall of 500 N/m a third of that.
 constexpr double kHeldBackShare = 0.6;
 constexpr double kPress_m = 0.0075;
 constexpr double kPressDiag = 0.035;
@@ -63,7 +64,7 @@ Vec3 LandedHand::next_world_m(const HandSense& sense) noexcept
     return touched_world_m_;
 }
 
-/// A force alone is no touch: one that comes back after a fault damps the motion, in the air too.
+/// A force alone is no touch: a force that returns after a fault damps the motion, in the air too.
 bool LandedHand::has_met_something(const HandSense& sense, double left_m,
                                    double speed_m_per_s) noexcept
 {

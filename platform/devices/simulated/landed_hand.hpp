@@ -13,9 +13,9 @@
 namespace tactus
 {
 
-/// Comes straight down from a gate to the place below it and from the first touch on moves about
-/// that place, along axes of its own. Where there is nothing to touch it stops half a diagonal past
-/// the place. A scene that ScriptedHand takes.
+/// Descends straight from a gate to the place below it and from the first touch on moves around
+/// that place, along its own axes. Without a contact it stops half a diagonal past the place. The
+/// scene must suit ScriptedHand.
 class LandedHand : public HandMotion
 {
 public:
@@ -25,10 +25,10 @@ public:
 protected:
     explicit LandedHand(const HandScene& scene);
 
-    /// From the place of the first touch, `seconds` later: x and y along the surface, z into it.
-    /// Continuous, and 0 at 0 s. Once a frame.
+    /// Offset from the place of the first touch, `seconds` later: x and y along the surface, z into
+    /// it. Continuous, and 0 at 0 s. Once a frame.
     [[nodiscard]] virtual Vec3 offset_m(double seconds) noexcept = 0;
-    /// So deep that the default device and hand make about 1 N on a wall of 500 N/m.
+    /// Depth at which the default device and hand make about 1 N on a wall of 500 N/m.
     [[nodiscard]] double press_m() const noexcept { return press_m_; }
 
 private:
@@ -40,13 +40,13 @@ private:
     double tool_radius_m_;
     double press_m_;
     HandPace pace_;
-    ContactSlide feeling_; ///< Knows what counts as a touch.
+    ContactSlide feeling_; ///< Detects touches.
     Vec3 last_device_world_m_;
-    double device_speed_m_per_s_{0.0}; ///< Downwards, over the last 10 ms or so.
+    double device_speed_m_per_s_{0.0}; ///< Downward speed, over the last 10 ms or so.
     Vec3 start_world_m_;
     Vec3 down_;
     Vec3 across_;
-    double length_m_; ///< From the start to the place.
+    double length_m_; ///< Distance from the start to the place.
     double way_m_{0.0};
     Vec3 touched_world_m_{Vec3::Zero()};
     bool has_landed_{false};

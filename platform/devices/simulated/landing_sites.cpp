@@ -14,7 +14,8 @@ namespace tactus
 namespace
 {
 
-/// Clearances in diagonals: of the gate above the extreme plane, and of the orbit round the box.
+/// Clearances in diagonals: height of the gate above the extreme plane, and radius of the orbit
+/// around the box.
 constexpr double kGateHeightDiag = 0.06;
 constexpr double kOrbitRadiusDiag = 0.55;
 constexpr double kInwardDiag = 0.05;
@@ -45,7 +46,7 @@ std::array<int, 3> axes_by_extent(const Bounds& bounds) noexcept
     return axes;
 }
 
-/// The first of the farthest anchors along `direction`.
+/// First of the farthest anchors along `direction`.
 Vec3 extreme_anchor(std::span<const Vec3> anchors, const Vec3& direction) noexcept
 {
     return *std::max_element(anchors.begin(), anchors.end(),
@@ -53,7 +54,8 @@ Vec3 extreme_anchor(std::span<const Vec3> anchors, const Vec3& direction) noexce
                              { return a.dot(direction) < b.dot(direction); });
 }
 
-/// Towards the centre, within the plane across `direction`, at most half of the way.
+/// Step towards the centre, within the plane perpendicular to `direction`, at most half of the
+/// distance.
 Vec3 inward_step(const Vec3& anchor, const Vec3& centre, const Vec3& direction, double length_m)
 {
     const Vec3 across = part_across(centre - anchor, direction);

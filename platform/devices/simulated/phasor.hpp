@@ -5,14 +5,15 @@
 namespace tactus
 {
 
-/// A point that turns on the unit circle, by the same angle each frame. Turning is a rational
+/// A point that rotates on the unit circle by the same angle each frame. The step is a rational
 /// rotation by the tangent of half the angle, so it needs no trigonometry and gives the same bits
 /// everywhere; the radius stays 1 to rounding.
 class Phasor
 {
 public:
     Phasor() = default;
-    /// Turns `turns_per_s` times a second; at most a tenth of a turn a period, and then 0.2 % slow.
+    /// Rotates `turns_per_s` times a second; at most a tenth of a turn a period, and then 0.2 %
+    /// slow.
     Phasor(double turns_per_s, double period_s) noexcept
     {
         constexpr double kPi = 3.14159265358979324;
@@ -29,9 +30,9 @@ public:
         sin_ = cos_before * sin_step_ + sin_ * cos_step_;
     }
 
-    /// 1 at first.
+    /// Cosine; 1 at the start.
     [[nodiscard]] double cos() const noexcept { return cos_; }
-    /// 0 at first.
+    /// Sine; 0 at the start.
     [[nodiscard]] double sin() const noexcept { return sin_; }
 
 private:

@@ -20,7 +20,7 @@ bool is_place(const DeviceSample& reading) noexcept
     return reading.valid && to_vec3(reading.position_world_m).allFinite();
 }
 
-/// Null when all options are good.
+/// Fault of the options; null if none.
 const char* find_bad_option(const ReplayDeviceOptions& options)
 {
     if (options.readings.empty())

@@ -18,27 +18,26 @@ namespace tactus
 
 struct ReplayDeviceOptions
 {
-    /// As the device gave them then, at least one; their count is made anew.
+    /// Recorded readings, at least one; they are renumbered.
     std::vector<DeviceSample> readings;
-    std::int64_t rate_hz{1'000};    ///< That they were made at; above zero.
-    DeviceLimits limits;            ///< What it says of itself.
+    std::int64_t rate_hz{1'000};    ///< Rate of the readings; above zero.
+    DeviceLimits limits;            ///< Limits reported in info().
     double speed_max_m_per_s{10.0}; ///< Finite and above zero.
 };
 
-/// A hand that was recorded: reading k is the recorded reading k, whatever force is written, how
-/// late the reading comes, and where the recorded position was no number or not valid. Forces and
-/// torques are taken as by any device, but move nothing. After the last reading it is disconnected,
-/// at its last place; its readings still count.
+/// A recorded hand: reading k is the recorded reading k, independent of forces, delays and faulty
+/// recorded positions. Forces and torques are accepted, but move nothing. After the last reading it
+/// is disconnected, at its last place; readings still count.
 ///
 /// All readings are in memory from the start: read() takes one and no more.
 class ReplayDevice final : public HapticDevice
 {
 public:
-    /// Of the workspace at least, so that a hand at rest has one.
+    /// Least radius of the workspace, so that a hand at rest has one.
     static constexpr double kReachMin_m = 1e-3;
 
-    /// Refuses readings of which none is a place, a rate that isn't above zero, a largest force or
-    /// speed that isn't finite and above zero.
+    /// Refuses readings without any valid position, a rate that is not above zero, and a largest
+    /// force or speed that is not finite and above zero.
     [[nodiscard]] static Result<std::unique_ptr<ReplayDevice>, Refusal>
     create(ReplayDeviceOptions options);
 
@@ -57,8 +56,7 @@ private:
     std::vector<DeviceSample> readings_;
     DeviceInfo info_;
     DeviceStatus status_;
-    /// The one field that other threads write. Sequentially consistent: it is rare and orders
-    /// nothing else.
+    /// Written by other threads, too. Sequentially consistent: it is rare and orders nothing else.
     std::atomic<bool> braked_{false};
 };
 

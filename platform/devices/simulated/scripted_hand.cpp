@@ -14,26 +14,26 @@ namespace tactus
 namespace
 {
 
-/// Before the expected surface.
-/// Nearer to the aim than this the direction stays: it would swing round at the aim itself.
+/// Distance before the expected surface within which the direction is fixed: at the aim itself it
+/// would swing around.
 constexpr double kSteerUntilDiag = 0.05;
-/// Of the flight's largest speed, with its start and end counted in.
+/// Mean share of the flight's largest speed, including start and end.
 constexpr double kMeanSpeedShare = 0.8;
 constexpr double kGateReachedDiag = 0.02;
-/// Past the aim before a site is given up.
+/// Distance past the aim at which a site is given up.
 constexpr double kApproachBeyondDiag = 0.5;
 constexpr double kLiftRadii = 3.0;
 constexpr double kSlowDownRadii = 2.0;
-/// Past the last place before a descent has failed, with what the pressing had dented on top.
+/// Distance past the last place at which a descent has failed, plus the dent of the pressing.
 constexpr double kDescendBeyondRadii = 4.0;
 constexpr double kDescendBeyondM = 0.005;
 /// Share of a distance that is corrected in a second.
 constexpr double kClimbPerS = 20.0;
 
-/// The hand never stretches its own spring farther once it feels something: at 200 N/m, 4 N.
+/// Largest deflection of the hand's spring in contact: at 200 N/m, 4 N.
 constexpr double kLeashM = 0.02;
 constexpr double kLostAfterS = 0.05;
-/// No force fades for longer (SafeState's kFadeTime_s).
+/// Time longer than any fade of a force (SafeState's kFadeTime_s).
 constexpr double kSureAfterS = 0.05;
 constexpr double kGoodContactS = 0.5;
 constexpr std::uint32_t kLossesBeforeBackOff = 4;
@@ -41,8 +41,8 @@ constexpr double kSettleBeforeLiftS = 0.1;
 constexpr double kPatienceS = 1.0;
 constexpr double kPlaceSpacingS = 0.064;
 
-/// On the orbit, so far back from the gate that the flight takes its share of the run. The turn is
-/// given by the tangent of its half, which needs no trigonometry.
+/// Start on the orbit, at the distance from the gate that lets the flight take its share of the
+/// run. The rotation is given by the tangent of its half, which needs no trigonometry.
 Vec3 orbit_start(const LandingSite& site, const Vec3& centre, double way_m) noexcept
 {
     const double half_tangent = std::min(0.5 * way_m / site.orbit_radius_m, 1.2);
@@ -52,7 +52,7 @@ Vec3 orbit_start(const LandingSite& site, const Vec3& centre, double way_m) noex
     return centre + back * (site.orbit_radius_m / (1.0 + square));
 }
 
-/// Empty when the scene can be played.
+/// Fault of the scene; empty if it can be played.
 std::string find_fault(const HandScene& scene)
 {
     if (scene.anchors_world_m.empty())
@@ -172,7 +172,7 @@ Vec3 ScriptedHand::fly() noexcept
         enter(HandPhase::approach);
     }
     const Vec3 along = part_across(to_gate, outward);
-    // Opposite to the gate every way round is as long.
+    // Opposite to the gate every direction is as long.
     const bool opposite = along.norm() < 1e-3 * radius_m && to_gate.dot(outward) < 0.0;
     const Vec3 tangent = opposite ? any_across(outward) : direction_or_zero(along);
     const double climb = kClimbPerS * (site().orbit_radius_m - radius_m);
@@ -225,8 +225,8 @@ Vec3 ScriptedHand::slide(const HandSense& sense) noexcept
     return velocity;
 }
 
-/// Back to where the surface was still there, and on from there in the other direction; to another
-/// site when that keeps failing. A touch that was none is passed.
+/// Returns to the last place of contact and continues in the other direction; after repeated
+/// failures, at another site. A false touch is ignored.
 void ScriptedHand::lose_contact() noexcept
 {
     ++losses_;
@@ -257,12 +257,12 @@ Vec3 ScriptedHand::lift(const HandSense& sense) noexcept
     {
         enter(HandPhase::descend);
     }
-    // Half a radius too far, or it would creep up to the height.
+    // The target is half a radius too far, or the hand would creep to the height.
     const double left_m = height_m - risen_m + 0.5 * tool_radius_m_;
     return place_.normal * pace_.stoppable(pace_.lift_m_per_s, std::max(left_m, 0.0));
 }
 
-/// Up to the height of a lift-off first, then across.
+/// Rises to the height of a lift-off first, then moves across.
 Vec3 ScriptedHand::come_back() noexcept
 {
     const double height_m = kLiftRadii * tool_radius_m_;
@@ -338,15 +338,15 @@ void ScriptedHand::feel(const HandSense& sense) noexcept
     }
 }
 
-/// A force alone is no touch, for one that fades after a fault damps the motion a little, in the
-/// air too: a surface pushes against the motion, and harder or longer than that.
+/// A force alone is no touch, since a force that fades after a fault damps the motion a little, in
+/// the air too: a surface pushes against the motion, and harder or longer than that.
 bool ScriptedHand::meets(const HandSense& sense, const Vec3& way) const noexcept
 {
     return slide_.is_touching(sense) && sense.force_world_n.dot(way) < 0.0 &&
            (slide_.is_firm(sense) || felt_s_ >= kSureAfterS);
 }
 
-/// The last place stays the one to go back to until this touch is sure.
+/// Starts a slide. The last place remains the one to return to until this touch is sure.
 void ScriptedHand::land(const HandSense& sense, const Vec3& heading_wish) noexcept
 {
     slide_.begin(sense, heading_wish);

@@ -19,38 +19,39 @@
 namespace tactus
 {
 
-/// What the default script needs to know about a model, whatever its shape.
+/// Data of a model for the default script, of any shape.
 struct HandScene
 {
     /// Points on the surface, for instance the vertices of the coarse mesh; world frame, metres.
     std::vector<Vec3> anchors_world_m;
-    double diagonal_m{0.0};        ///< Of the model's bounding box, in the world.
-    double tool_radius_m{0.0};     ///< Above 0, up to the diagonal.
-    Duration period;               ///< From one decision to the next.
-    std::uint64_t frames_total{0}; ///< Of the run; the script retreats for the last of them.
-    bool lifts_off{true};          ///< Now and then while it slides.
-    std::size_t hands_before{0};   ///< On the same model; each begins at another place.
+    double diagonal_m{0.0};        ///< Diagonal of the model's bounding box, in the world.
+    double tool_radius_m{0.0};     ///< Tool radius, above 0, up to the diagonal.
+    Duration period;               ///< Time between decisions.
+    std::uint64_t frames_total{0}; ///< Frames of the run; the script retreats in the last of them.
+    bool lifts_off{true};          ///< True: lifts off at times while it slides.
+    /// Number of earlier hands on the same model; each begins at another place.
+    std::size_t hands_before{0};
 };
 
 enum class HandPhase
 {
-    flight,    ///< Round the model, at up to two diagonals a second.
-    approach,  ///< Straight to a landing site, slowly towards its end.
-    slide,     ///< In contact, at a tenth of a diagonal a second.
-    lift,      ///< Off the surface along the last normal, for three tool radii.
-    come_back, ///< To above the last place of contact, after an edge was slid over.
-    descend,   ///< Along the last normal down to the last place of contact.
-    back_off,  ///< Nothing was found where it was looked for: out again, to the next site.
-    retreat    ///< Away, for the last moments of the run.
+    flight,    ///< Flight around the model, at up to two diagonals a second.
+    approach,  ///< Straight path to a landing site, slow near its end.
+    slide,     ///< Contact, at a tenth of a diagonal a second.
+    lift,      ///< Lift off the surface along the last normal, by three tool radii.
+    come_back, ///< Return to above the last place of contact, after sliding over an edge.
+    descend,   ///< Descent along the last normal to the last place of contact.
+    back_off,  ///< Retreat to the next site after nothing was found.
+    retreat    ///< Departure in the last moments of the run.
 };
 
-/// The default script: free flight, approach, slide with lift-offs in between, retreat. It finds
-/// its way by what it feels and works on any model. For runs of 3 s or more at 1 kHz it lifts off
-/// at least three times and is in contact in about two thirds of all frames or more.
+/// The default script: free flight, approach, slide with lift-offs, retreat. It senses its way and
+/// works on any model. In runs of 3 s or more at 1 kHz it lifts off at least three times and is in
+/// contact in about two thirds of all frames or more.
 ///
-/// Every phase is a wish for a velocity; the hand follows it with a limited acceleration, so its
-/// path is smooth everywhere. A state machine over frame indices with arithmetic and square roots
-/// only: the same senses give the same bits.
+/// Every phase requests a velocity; the hand follows with limited acceleration, so its path is
+/// smooth. A state machine over frame indices with arithmetic and square roots only: the same
+/// senses give the same bits.
 class ScriptedHand final : public HandMotion
 {
 public:
@@ -63,9 +64,9 @@ public:
     [[nodiscard]] Vec3 next_world_m(const HandSense& sense) noexcept override;
 
     [[nodiscard]] HandPhase phase() const noexcept { return phase_; }
-    /// Complete ones: the surface was left and the full height reached.
+    /// Number of complete lift-offs: the surface was left and the full height reached.
     [[nodiscard]] std::uint32_t lift_offs() const noexcept { return lift_offs_; }
-    /// A workspace round this centre with this radius holds the whole script.
+    /// Centre of a workspace that contains the whole script, with radius reach_m().
     [[nodiscard]] const Vec3& centre_world_m() const noexcept { return centre_world_m_; }
     [[nodiscard]] double reach_m() const noexcept;
 
@@ -82,7 +83,7 @@ private:
     [[nodiscard]] Vec3 back_off() noexcept;
     [[nodiscard]] Vec3 retreat() noexcept;
 
-    /// Where the surface was felt, a moment before it may have been lost.
+    /// Place where the surface was felt, shortly before contact may have been lost.
     struct Place
     {
         Vec3 point_world_m{Vec3::Zero()};
@@ -118,10 +119,10 @@ private:
     Vec3 velocity_m_per_s_{Vec3::Zero()};
     std::size_t site_{0};
     Vec3 approach_direction_{Vec3::Zero()};
-    double felt_s_{0.0}; ///< How long there has been a force, in this phase.
+    double felt_s_{0.0}; ///< Duration of the force in this phase.
     ContactSlide slide_;
-    Place place_;        ///< 64 to 128 ms old; from before a landing until that is sure.
-    Place newest_place_; ///< Up to 64 ms old.
+    Place place_;        ///< Place 64 to 128 ms ago; from before a landing until that is sure.
+    Place newest_place_; ///< Place up to 64 ms ago.
     HandPhase landed_from_{HandPhase::approach};
     bool is_landing_sure_{false};
     Vec3 released_world_m_{Vec3::Zero()};

@@ -9,8 +9,8 @@
 namespace tactus
 {
 
-/// Well-mixed bits of a counter: SplitMix64 (Steele, Lea and Flood 2014). Needs no state, so that
-/// noise depends on the frame's index and nothing else.
+/// Mixed bits of a counter: SplitMix64 (Steele, Lea and Flood 2014). Stateless, so noise depends
+/// only on the frame's index.
 [[nodiscard]] constexpr std::uint64_t mix_bits(std::uint64_t counter) noexcept
 {
     std::uint64_t bits = (counter + 1) * 0x9e3779b97f4a7c15U;
@@ -19,14 +19,14 @@ namespace tactus
     return bits ^ (bits >> 31U);
 }
 
-/// Even in -1 .. 1, the same for the same seed and index.
+/// Uniform noise in -1 .. 1, a function of seed and index.
 [[nodiscard]] constexpr double noise_at(std::uint64_t seed, std::uint64_t index) noexcept
 {
     const std::uint64_t bits = mix_bits(mix_bits(seed) ^ index);
     return static_cast<double>(bits >> 11U) * 0x1p-52 - 1.0;
 }
 
-/// Three of noise_at(), each even in -1 .. 1.
+/// Vector of noise_at(), each component uniform in -1 .. 1.
 [[nodiscard]] inline Vec3 noise_vector_at(std::uint64_t seed, std::uint64_t index) noexcept
 {
     return {noise_at(seed, 3 * index), noise_at(seed, 3 * index + 1),

@@ -8,27 +8,27 @@
 namespace tactus
 {
 
-/// Virtual time: it moves only when told to, so a run repeats to the nanosecond and is as fast as
-/// the machine allows. One thread.
+/// Virtual time, which advances only on request, so a run repeats to the nanosecond and is as fast
+/// as the machine allows. One thread.
 class SimulatedClock final : public Clock
 {
 public:
     explicit SimulatedClock(MonotonicTime start = {}) noexcept : now_(start), start_(start) {}
 
     [[nodiscard]] MonotonicTime now() const noexcept TACTUS_NONBLOCKING override { return now_; }
-    /// 2000-01-01 UTC plus what has passed.
+    /// 2000-01-01 UTC plus the elapsed virtual time.
     [[nodiscard]] WallTime wall_now() const noexcept override
     {
         return {kStartOf2000Ns + (now_ - start_).ns};
     }
 
-    /// Lets `duration` pass, for instance the time a frame's work takes; not negative.
+    /// Advances the time by `duration`, for instance the time of a frame's work; not negative.
     void advance(Duration duration) noexcept
     {
         TACTUS_ASSERT(duration >= Duration{});
         now_ = now_ + duration;
     }
-    /// Lets the time pass up to `time`; no effect when that has passed.
+    /// Advances the time to `time`; no effect if that has passed.
     void advance_to(MonotonicTime time) noexcept { now_ = time > now_ ? time : now_; }
 
 private:

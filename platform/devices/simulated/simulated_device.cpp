@@ -16,7 +16,7 @@ namespace
 
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 
-/// Empty when all options are good.
+/// Fault of the options; empty if none.
 std::string find_bad_option(const SimulatedDeviceOptions& options)
 {
     if (options.rate_hz < SimulatedDeviceOptions::kRateMinHz ||
@@ -40,7 +40,7 @@ std::string find_bad_option(const SimulatedDeviceOptions& options)
     return {};
 }
 
-/// Of a body that moves or turns.
+/// Sets the brake of a body that moves or rotates.
 void set_brake(auto& body, bool is_on, double damping) noexcept
 {
     if (is_on)
@@ -141,8 +141,8 @@ std::uint64_t SimulatedDevice::periods_due() const noexcept
     {
         return 1;
     }
-    // A reading is at least a period after the last, or its time would stand still; one after a
-    // long pause catches up on a second of it and no more.
+    // A reading is at least a period after the last, or its time would not advance; after a long
+    // pause it catches up by at most one second.
     const std::int64_t since_ns = (now() - start_).ns;
     const std::int64_t gone = since_ns / kSecondNs * options_.rate_hz +
                               since_ns % kSecondNs * options_.rate_hz / kSecondNs;
@@ -150,7 +150,7 @@ std::uint64_t SimulatedDevice::periods_due() const noexcept
     return static_cast<std::uint64_t>(std::clamp<std::int64_t>(due, 1, options_.rate_hz));
 }
 
-/// From the index, not summed up, so that rates without a whole period in ns do not drift.
+/// Computed from the index, not summed, so that rates without a whole period in ns do not drift.
 Duration SimulatedDevice::period_at(std::uint64_t index) const noexcept
 {
     const auto whole_s = static_cast<std::int64_t>(index) / options_.rate_hz;
@@ -164,13 +164,13 @@ MonotonicTime SimulatedDevice::now() const noexcept
                                      : options_.clock->now();
 }
 
-/// Its own watchdog has ended the force.
+/// True if the device's watchdog has ended the force.
 bool SimulatedDevice::is_watched_out(MonotonicTime time) const noexcept
 {
     return options_.watchdog && time - written_ >= *options_.watchdog;
 }
 
-/// What it makes of the last write then.
+/// Wrench of the last write at that time.
 Wrench SimulatedDevice::wrench_at(MonotonicTime time) const noexcept
 {
     const double share = is_watched_out(time) ? 0.0 : brake_.share_at(time);

@@ -13,28 +13,28 @@
 namespace tactus
 {
 
-/// The machine wakes the loop `lateness` too late at the sleep numbered `sleep`, counted from 0
-/// over the timer's life (one a cycle while nothing stalls).
+/// A late wake-up by `lateness` at the sleep numbered `sleep`, counted from 0 over the timer's life
+/// (one a cycle without stalls).
 struct LateWake
 {
     std::uint64_t sleep{0};
     Duration lateness;
 };
 
-/// Virtual time: each wait moves the clock to its end at once. Late wakes come from a script; a
-/// frame's own time is added by the caller through SimulatedClock::advance().
+/// Virtual time: each wait advances the clock to its end at once. Late wake-ups come from a script;
+/// the caller adds a frame's own time through SimulatedClock::advance().
 class SimulatedPeriodicTimer final : public PeriodicTimer
 {
 public:
-    /// `clock` and `script` are lent and must outlive the timer; `script` in order of `sleep`.
+    /// `clock` and `script` are borrowed and must outlive the timer; `script` in order of `sleep`.
     explicit SimulatedPeriodicTimer(SimulatedClock& clock,
                                     std::span<const LateWake> script = {}) noexcept
         : clock_(clock), script_(script)
     {
     }
 
-    /// What else happens while the loop sleeps: called in each sleep, at its end in virtual time,
-    /// on the loop's thread. It must not throw and may take as long as it likes: no time passes.
+    /// Sets work to do while the loop sleeps: called in each sleep, at its end in virtual time, on
+    /// the loop's thread. It must not throw and takes no virtual time.
     void set_meanwhile(std::function<void()> meanwhile) { meanwhile_ = std::move(meanwhile); }
 
 private:

@@ -21,21 +21,21 @@ constexpr double kTiltHalfTangent = 0.01746;
 constexpr double kSwingsPerSecond = 0.5;
 constexpr double kTurnPressTime_s = 0.3;
 
-/// What the hand takes for the surface's normal follows the felt force in so long a time, and the
-/// wrist no faster than that.
+/// Time in which the assumed surface normal follows the felt force, and the largest speed of the
+/// wrist.
 constexpr double kNormalTime_s = 0.02;
 constexpr double kTurnMax_rad_per_s = 4.0;
 
-/// From where a tool hangs clear of the model: it reaches as far as twice the hand's radius.
+/// Start height clear of the model: the tool extends up to twice the hand's radius.
 constexpr double kPegClearRadii = 2.2;
 constexpr double kPegClear_diag = 0.05;
 constexpr double kPegSpeed_diag_per_s = 0.5;
 constexpr double kPegSpeedMax_m_per_s = 0.3;
-/// As ContactSlide presses.
+/// Same forces as in ContactSlide.
 constexpr double kPress_n = 1.0;
 constexpr double kPress_n_per_diagonal_m = 5.0;
 constexpr double kPressed_s = 0.02;
-constexpr double kTilt_s = 4.0; ///< A swing about either axis.
+constexpr double kTilt_s = 4.0; ///< Time of a swing about either axis.
 constexpr double kOut_s = 0.5;
 constexpr double kOut_diag = 1.0 / 6.0;
 constexpr double kChangeGrip_s = 0.6;
@@ -98,7 +98,8 @@ Vec3 EdgeHand::next_world_m(const HandSense& sense) noexcept
     return way_->next_world_m(sense);
 }
 
-/// By the shortest way from the normal to the felt one; what the wrist can't do yet it does later.
+/// Rotates the tool from the normal to the felt one; the rest beyond the wrist's speed follows
+/// later.
 void EdgeHand::turn_with(const Vec3& felt) noexcept
 {
     if (!has_touched_)
@@ -162,7 +163,7 @@ Vec3 PegHand::next_world_m(const HandSense& sense) noexcept
     return start_world_m_ + Vec3::UnitZ() * (lifted_m - way_m_);
 }
 
-/// Until it is pressed for some moments, or the way ends.
+/// Descends until pressed for a moment, or until the path ends.
 void PegHand::go_in(const HandSense& sense) noexcept
 {
     const bool is_pressed = sense.force_world_n.z() >= press_n_;

@@ -14,7 +14,7 @@
 namespace tactus
 {
 
-/// Presses as PressingHand does and turns the tool about the world's x, y and z, 30 degrees to and
+/// Presses like PressingHand and rotates the tool about the world's x, y and z, 30 degrees to and
 /// fro, an axis every 2 s.
 class TurningHand final : public LandedHand
 {
@@ -28,8 +28,8 @@ private:
     WristSwings swings_;
 };
 
-/// Another hand's way, on which it turns the tool with the surface: as the felt force turns, over
-/// an edge or round the model, so does the tool, at up to 4 rad/s.
+/// Follows another hand's path and rotates the tool with the surface: with the direction of the
+/// felt force, at up to 4 rad/s.
 class EdgeHand final : public HandMotion
 {
 public:
@@ -42,18 +42,17 @@ private:
     void turn_with(const Vec3& felt) noexcept;
 
     std::unique_ptr<HandMotion> way_;
-    ContactSlide feeling_; ///< Knows what counts as a touch.
+    ContactSlide feeling_; ///< Detects touches.
     double period_s_;
     bool has_touched_{false};
-    Vec3 normal_{Vec3::UnitZ()}; ///< Of the surface; the tool stands on it as it did at first.
+    Vec3 normal_{Vec3::UnitZ()}; ///< Normal of the surface; the tool keeps its initial angle to it.
     Mat3 rotation_{Mat3::Identity()};
 };
 
-/// Comes down along the world's z through the middle of the model, as a peg goes into a hole, until
-/// it is pressed with about 1 N; tilts the tool by 2 degrees about x and y; draws it out again by
-/// a sixth of a diagonal; and there, for 0.6 s, presses button 0, opens the gripper, and moves up
-/// and back. Then in again. Where there is nothing to touch it turns round half a diagonal below
-/// the middle.
+/// Descends along the world's z through the middle of the model, like a peg into a hole, until it
+/// is pressed with about 1 N; tilts the tool by 2 degrees about x and y; withdraws it by a sixth of
+/// a diagonal. There, for 0.6 s, it presses button 0, opens the gripper, and moves up and back.
+/// Then it descends again. Without a contact it reverses half a diagonal below the middle.
 class PegHand final : public HandMotion
 {
 public:
@@ -85,8 +84,8 @@ private:
     Phase phase_{Phase::in};
     double in_phase_s_{0.0};
     double pressed_s_{0.0};
-    double way_m_{0.0};     ///< Downwards from the start.
-    double deepest_m_{0.0}; ///< Of this time in.
+    double way_m_{0.0};     ///< Distance down from the start.
+    double deepest_m_{0.0}; ///< Largest depth of this descent.
 };
 
 } // namespace tactus

@@ -8,20 +8,19 @@
 namespace tactus
 {
 
-/// How a wrist turns what it holds to and fro about the axes of the world, one after the other: a
-/// swing is from rest one way, back, the other way, and to rest again. Arithmetic and square roots
-/// only.
+/// Rotations of a wrist to and fro about the world's axes in turn: a swing goes from rest one way,
+/// back, the other way, and to rest again. Arithmetic and square roots only.
 class WristSwings
 {
 public:
-    /// About x, y and so on, `axes` of them. The farthest it turns is twice the arc tangent of
+    /// Swings about x, y and so on, `axes` of them. The largest angle is twice the arc tangent of
     /// `half_tangent`.
     WristSwings(double half_tangent, double swings_per_s, int axes, double period_s) noexcept
         : half_tangent_(half_tangent), axes_(axes), phasor_(swings_per_s, period_s)
     {
     }
 
-    /// By one period.
+    /// Advances by one period.
     void step() noexcept
     {
         const bool was_back = phasor_.sin() < 0.0;
@@ -29,7 +28,7 @@ public:
         axis_ = was_back && phasor_.sin() >= 0.0 ? (axis_ + 1) % axes_ : axis_;
     }
 
-    /// The third power begins and ends at rest.
+    /// Rotation now. The third power starts and ends at rest.
     [[nodiscard]] Mat3 rotation() const noexcept
     {
         const double sine = phasor_.sin();

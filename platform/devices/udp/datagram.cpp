@@ -17,7 +17,7 @@
 namespace tactus::udp
 {
 
-/// Fills a datagram from its start; close() puts the checksum at its end.
+/// Fills a datagram from its start; close() appends the checksum.
 class DatagramWriter
 {
 public:
@@ -65,19 +65,19 @@ constexpr std::size_t kHeaderBytes = 32;
 constexpr std::size_t kNameBytes = 32;
 static_assert(kNameBytes == kDeviceNameMax + 1);
 
-/// Of describe, sample and force in version 2.
+/// Offsets of the tag in describe, sample and force of version 2.
 constexpr std::array<std::size_t, 3> kTagAt{264, 152, 96};
 constexpr std::size_t kKindAt = 6;
 
-/// Beyond it no sample is usable anyway (docs/conventions.md).
+/// Limit beyond which no sample is usable anyway (docs/conventions.md).
 constexpr double kCoordinateMax = 1e6;
 
 /// Sums of two such times don't overflow.
 constexpr std::int64_t kTimeMax_ns = std::int64_t{1} << 62;
 
-// A description's flag.
+// Flag of a description.
 constexpr std::uint32_t kMeasuresRotation = 1;
-// A sample's flags; the last three are of version 2.
+// Flags of a sample; the last three are of version 2.
 constexpr std::uint32_t kValid = 1;
 constexpr std::uint32_t kHasVelocity = 2;
 constexpr std::uint32_t kDeadmanHeld = 4;
@@ -85,7 +85,7 @@ constexpr std::uint32_t kHasRotation = 8;
 constexpr std::uint32_t kHasAngularVelocity = 16;
 constexpr std::uint32_t kHasGripper = 32;
 
-/// As they stand in a description.
+/// Limits in the order of a description.
 constexpr std::array kLimits{&DeviceLimits::mass_kg,
                              &DeviceLimits::damping_n_s_per_m,
                              &DeviceLimits::friction_n,
@@ -116,7 +116,7 @@ struct Envelope
     std::uint16_t version{0};
 };
 
-/// What all datagrams have in common, checksum included; none when it is sound.
+/// Checks the common part of all datagrams, including the checksum; none if it is sound.
 std::optional<DatagramFault> open(std::span<const std::byte> bytes, Envelope& envelope) noexcept
 {
     ByteReader reader(bytes);
@@ -153,7 +153,7 @@ std::optional<DatagramFault> open(std::span<const std::byte> bytes, Envelope& en
     return is_addressed ? std::nullopt : std::optional(DatagramFault::content);
 }
 
-/// False when something stands behind the zero that ends it, or nothing in front.
+/// False if the name is empty or bytes follow the zero that ends it.
 bool read_name(ByteReader& reader, std::string& name)
 {
     const auto field = reader.read<std::array<char, kNameBytes>>();
@@ -196,7 +196,7 @@ FromDevice decode_describe(const Envelope& envelope, ByteReader reader, const ch
     return wrong == nullptr ? FromDevice(std::move(datagram)) : FromDevice(DatagramFault::content);
 }
 
-/// The value that is not finite or out of range; null when all are sound.
+/// Name of a value that is not finite or out of range; null if all are sound.
 const char* wrong_value_in(const SampleDatagram& datagram) noexcept
 {
     const auto is_good = [](const std::optional<std::array<double, 3>>& vector)
@@ -261,7 +261,7 @@ std::uint32_t flag_when(bool is_so, std::uint32_t flag) noexcept
     return is_so ? flag : 0U;
 }
 
-/// Of a whole datagram of version 2.
+/// Offset of the tag in a whole datagram of version 2.
 std::size_t tag_at(std::span<const std::byte> bytes) noexcept
 {
     const auto kind = ByteReader(bytes.subspan(kKindAt)).read<std::uint16_t>();
@@ -295,7 +295,7 @@ bool is_sealed(std::span<const std::byte> bytes, const Seal& seal) noexcept
     std::fill_n(copy.begin() + static_cast<std::ptrdiff_t>(at), std::tuple_size_v<Tag>,
                 std::byte{0});
     const Tag right = seal.tag_of(std::span(copy).first(bytes.size() - 4));
-    std::byte differs{0}; // In the same time wherever they differ.
+    std::byte differs{0}; // The comparison takes constant time.
     for (std::size_t i = 0; i < right.size(); ++i)
     {
         differs |= right[i] ^ bytes[at + i];
@@ -400,7 +400,7 @@ FromDevice decode_from_device(std::span<const std::byte> bytes, const char** wro
     Envelope envelope;
     if (const auto fault = open(bytes, envelope))
     {
-        value = "address"; // The one content that open() looks at.
+        value = "address"; // This is the one content that open() checks.
         return *fault;
     }
     const ByteReader body(bytes.subspan(kHeaderBytes));

@@ -30,7 +30,7 @@ Session::receive(std::span<const std::byte> bytes, const Endpoint& from, Monoton
     return std::get<DatagramFault>(datagram);
 }
 
-/// Again and again is no fault: a device does so until it is answered.
+/// A repeated description is no fault: a device repeats it until it is answered.
 std::variant<Described, Sampled, DatagramFault>
 Session::describe(const DescribeDatagram& datagram, const Endpoint& from, MonotonicTime now)
 {
@@ -54,13 +54,13 @@ Session::describe(const DescribeDatagram& datagram, const Endpoint& from, Monoto
     {
         info_ = datagram.info;
         begin({from, address.instance, next_, true, datagram.version}, now);
-        next_ = std::max<std::uint64_t>(next_ + 1, 1); // 0 is none.
+        next_ = std::max<std::uint64_t>(next_ + 1, 1); // 0 means no session.
     }
     last_sequence_ = address.sequence;
     return Described{};
 }
 
-/// By the device that is attached, or was not long ago and had sent samples.
+/// True if a device is attached, or was until recently and had sent samples.
 bool Session::is_taken(MonotonicTime now) const noexcept
 {
     return peer_.is_attached || (is_settled_ && last_time_ns_ >= 0 && now - heard_ <= place_);
@@ -122,8 +122,8 @@ Session::sample(const SampleDatagram& datagram, const Endpoint& from, MonotonicT
     return sampled;
 }
 
-/// The device's steps of time, which the network doesn't disturb, set against our clock where they
-/// begin. Never back.
+/// Time on our clock: the device's intervals, undisturbed by the network, aligned to our clock at
+/// their start. Never decreases.
 MonotonicTime Session::on_our_clock(std::int64_t time_ns, MonotonicTime now) noexcept
 {
     const bool is_first = last_time_ns_ < 0;

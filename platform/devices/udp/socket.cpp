@@ -33,8 +33,8 @@ Endpoint from_system(const sockaddr_in& address) noexcept
     return {ntohl(address.sin_addr.s_addr), ntohs(address.sin_port)};
 }
 
-/// Makes it so, and closes it in children; false with errno set. wait() can hold only descriptors
-/// that fit into a set.
+/// Makes the descriptor non-blocking and closed in children; false with errno set. wait() can use
+/// only descriptors that fit into an fd_set.
 // NOLINTBEGIN(cppcoreguidelines-pro-type-vararg): the C library has no other.
 bool never_waits(int descriptor) noexcept
 {
@@ -111,7 +111,7 @@ void Socket::wait(Duration time) const noexcept
     FD_ZERO(&readable);
     FD_SET(descriptor_, &readable);
     const timespec most{time.ns / kSecond_ns, time.ns % kSecond_ns};
-    // What is there, receive() finds out. poll() has no times below 1 ms.
+    // A datagram is found by receive(). poll() has no times below 1 ms.
     static_cast<void>(pselect(descriptor_ + 1, &readable, nullptr, nullptr, &most, nullptr));
 }
 

@@ -15,7 +15,7 @@
 namespace tactus::udp
 {
 
-/// A datagram socket that never waits but in wait(). send() may be called from any thread, the rest
+/// A datagram socket that blocks only in wait(). send() may be called from any thread, the rest
 /// from one.
 class Socket
 {
@@ -23,29 +23,29 @@ public:
     static constexpr int kPortMin = 1'024;
     static constexpr int kPortMax = 65'535;
 
-    /// Bound to a numeric IPv4 address of this machine and a port in [kPortMin, kPortMax], or 0 for
-    /// any that is free. Refuses others and those that are taken.
+    /// Binds a socket to a numeric IPv4 address of this machine and a port in [kPortMin, kPortMax],
+    /// or 0 for any free one. Refuses others and occupied ones.
     [[nodiscard]] static Result<Socket, Refusal> open(const std::string& address, int port);
 
     Socket(Socket&& other) noexcept;
     Socket& operator=(Socket&&) = delete;
     ~Socket();
 
-    /// Where it is bound to.
+    /// Bound address and port.
     [[nodiscard]] const Endpoint& endpoint() const noexcept { return endpoint_; }
 
-    /// Until something is there to be received, or the time is over.
+    /// Waits until a datagram arrives or the time is over.
     void wait(Duration time) const noexcept;
 
     struct Received
     {
-        std::size_t bytes{0}; ///< As many as it had, or the buffer has room for.
+        std::size_t bytes{0}; ///< Bytes of the datagram, cut to the buffer.
         Endpoint from;
     };
-    /// None when nothing is there.
+    /// Receives one datagram; none if none is there.
     [[nodiscard]] std::optional<Received> receive(std::span<std::byte> buffer) const noexcept;
 
-    /// False when the system refused it.
+    /// Sends a datagram; false if the system refused it.
     [[nodiscard]] bool send(std::span<const std::byte> bytes, const Endpoint& to) const noexcept;
 
 private:

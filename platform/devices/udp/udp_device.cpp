@@ -17,10 +17,10 @@ namespace
 
 using udp::DatagramFault;
 
-/// One byte more than any datagram, so that a longer one shows.
+/// Buffer of one byte more than any datagram, so that a longer one is detected.
 using Buffer = std::array<std::byte, udp::kDatagramBytesMax + 1>;
 
-/// Empty when all options are good.
+/// Fault of the options; empty if none.
 std::string find_bad_option(const UdpDeviceOptions& options)
 {
     using Options = UdpDeviceOptions;
@@ -47,7 +47,7 @@ std::string find_bad_option(const UdpDeviceOptions& options)
     return find_bad_time(options.times);
 }
 
-/// A number that nobody outside can know.
+/// An unpredictable number.
 Result<std::uint64_t, Refusal> draw_secret()
 {
     std::uint64_t secret = 0;
@@ -63,7 +63,7 @@ std::span<const std::byte> part_of(const Buffer& buffer, std::size_t bytes) noex
     return std::span(buffer).first(bytes);
 }
 
-/// "wrong version", and of a content the value that was wrong.
+/// Text such as "wrong version", with the value at fault for wrong content.
 std::string words_of(DatagramFault fault, std::span<const std::byte> bytes)
 {
     const char* wrong = nullptr;
@@ -102,7 +102,7 @@ bool send_to(const udp::Socket& socket, const udp::ForceDatagram& datagram, cons
     return socket.send(seal != nullptr ? sealed(plain, *seal) : plain, to);
 }
 
-/// Tells the one that is attached its session, by which it may send samples.
+/// Sends the attached device its session number, which its samples need.
 void answer(const udp::Socket& socket, const udp::Session& session, std::uint64_t sequence,
             const udp::Seal* seal) noexcept
 {
@@ -111,10 +111,11 @@ void answer(const udp::Socket& socket, const udp::Session& session, std::uint64_
     datagram.address = {peer.instance, peer.session, sequence};
     datagram.version = peer.version;
     datagram.answers = session.answers();
-    static_cast<void>(send_to(socket, datagram, peer.endpoint, seal)); // It is repeated.
+    static_cast<void>(send_to(socket, datagram, peer.endpoint, seal)); // A lost one is repeated.
 }
 
-/// Returns when the session has settled on a device; `sequence` is the last datagram's to it.
+/// Returns once the session has settled on a device; `sequence` is that of the last datagram sent
+/// to it.
 std::optional<Refusal> await_device(const udp::Socket& socket, udp::Session& session,
                                     const UdpDeviceOptions& options, std::uint64_t& sequence)
 {
@@ -243,7 +244,7 @@ UdpTraffic UdpDevice::traffic() const noexcept
 
 void UdpDevice::run() noexcept
 {
-    bool is_asked = true; // By the description that create() took in.
+    bool is_asked = true; // It answers the description that create() received.
     while (!is_stopped_.load())
     {
         if (session_.lapse(clock().now()))
@@ -260,7 +261,7 @@ void UdpDevice::run() noexcept
     send(session_.peer(), sequence_.fetch_add(1) + 1, {}, session_.answers());
 }
 
-/// True when the device has said something that is to be answered.
+/// True if the device has sent a datagram that needs an answer.
 bool UdpDevice::receive_all() noexcept
 {
     Buffer buffer{};
@@ -306,8 +307,8 @@ bool UdpDevice::receive_one(std::span<const std::byte> bytes, const udp::Endpoin
     return true;
 }
 
-/// The number is drawn before the command is looked up. A brake that comes in between sends a
-/// greater one, and the device refuses ours as too old; a brake that came before, we see.
+/// The number is drawn before the command is read. A later brake has a greater number, so the
+/// device refuses ours as too old; an earlier brake is visible here.
 void UdpDevice::send_due(bool is_asked) noexcept
 {
     const udp::Peer& peer = session_.peer();
@@ -344,7 +345,7 @@ bool UdpDevice::send(const udp::ForceDatagram& datagram, const udp::Endpoint& to
     return send_to(socket_, datagram, to, seal_);
 }
 
-/// `answers` is 0: what was accepted last only the I/O thread knows.
+/// `answers` is 0: only the I/O thread knows the last accepted datagram.
 void UdpDevice::brake() noexcept
 {
     RemoteDevice::brake();
@@ -355,7 +356,7 @@ void UdpDevice::brake() noexcept
         datagram.address = {peer.instance, peer.session, sequence_.fetch_add(1) + 1};
         datagram.version = peer.version;
         datagram.state = DeviceState::brake;
-        static_cast<void>(send(datagram, peer.endpoint)); // It is repeated.
+        static_cast<void>(send(datagram, peer.endpoint)); // A lost one is repeated.
     }
 }
 

@@ -29,86 +29,85 @@ struct UdpDeviceOptions
     static constexpr Duration kDelayMax = milliseconds(100);
     static constexpr Duration kAskEvery = milliseconds(50);
 
-    /// Numeric IPv4. Without a seal whoever reaches it can move the tool: leave it where only this
-    /// machine is.
+    /// Numeric IPv4 address. Without a seal any sender that reaches it can move the tool: keep it
+    /// local to this machine.
     std::string address{"127.0.0.1"};
-    int port{kPortDefault}; ///< As udp::Socket::open().
-    /// For a device to describe itself, up to kWaitMax.
+    int port{kPortDefault}; ///< Port, as in udp::Socket::open().
+    /// Time to wait for a device's description, up to kWaitMax.
     Duration wait{milliseconds(10'000)};
-    /// Asked every kAskEvery meanwhile, on the calling thread: false ends the wait. Empty: never.
+    /// Called every kAskEvery during the wait, on the calling thread: false ends it. Empty: never.
     std::function<bool()> goes_on;
-    /// How often the I/O thread looks for a force to send, in [kPollMin, kPollMax]: it adds as much
-    /// to the delay of a force.
+    /// Interval at which the I/O thread checks for a force to send, in [kPollMin, kPollMax]; it
+    /// adds to the delay of a force.
     Duration poll{microseconds(100)};
-    /// Both ways together, up to kDelayMax; added to the delay that the device tells. The default
-    /// is what loopback takes with the default poll: docs/udp-device.md.
+    /// Round-trip delay, up to kDelayMax; added to the device's own delay. The default is that of
+    /// loopback with the default poll: docs/udp-device.md.
     Duration transport_delay{microseconds(400)};
     RemoteTimes times;
-    /// A device that has fallen silent keeps its place for so long, up to kWaitMax.
+    /// Time for which a silent device keeps its place, up to kWaitMax.
     Duration place{milliseconds(3'000)};
-    /// Whose limits a run takes must have sent samples for so long before, up to kWaitMax, with
-    /// no other device describes itself. 0: the first one that describes itself is believed.
+    /// Time for which a device must have sent samples before its limits are used, up to kWaitMax,
+    /// while no other device describes itself. 0: the first description is accepted.
     Duration proof{milliseconds(300)};
-    /// By the key that the driver has; lent, it outlives the device; null: whoever speaks is
-    /// believed.
+    /// Key shared with the driver; borrowed, outlives the device; null: every sender is accepted.
     const udp::Seal* seal{nullptr};
     DeviceFrame frame;
-    RtThreadOptions thread{io_thread_options()}; ///< The I/O thread.
-    const Clock* clock{nullptr};                 ///< Lent; it outlives the device. Not null.
+    RtThreadOptions thread{io_thread_options()}; ///< Options of the I/O thread.
+    const Clock* clock{nullptr}; ///< Clock, borrowed; it outlives the device. Not null.
 };
 
-/// What has come and gone. Counts from create() on.
+/// Counts of datagrams since create().
 struct UdpTraffic
 {
-    std::uint64_t described{0}; ///< Accepted, the first one included.
-    std::uint64_t samples{0};   ///< Accepted.
-    std::uint64_t sessions{0};  ///< Devices that were attached one after the other.
-    std::uint64_t lost{0};      ///< Times that one was silent for too long.
-    std::uint64_t forces{0};    ///< Sent by the I/O thread.
-    std::uint64_t unsent{0};    ///< Those of them that the system refused.
-    std::array<std::uint64_t, udp::kDatagramFaults> refused{}; ///< By udp::DatagramFault.
-    const char* wrong_value{nullptr}; ///< That the last of them had whose content was wrong.
-    /// Descriptions of another device since the last datagram that was accepted: its own has gone,
-    /// and given its place back.
+    std::uint64_t described{0}; ///< Accepted descriptions, including the first one.
+    std::uint64_t samples{0};   ///< Accepted samples.
+    std::uint64_t sessions{0};  ///< Devices attached one after the other.
+    std::uint64_t lost{0};      ///< Number of times that a device was silent for too long.
+    std::uint64_t forces{0};    ///< Forces sent by the I/O thread.
+    std::uint64_t unsent{0};    ///< Forces that the system refused to send.
+    /// Datagrams refused, by udp::DatagramFault.
+    std::array<std::uint64_t, udp::kDatagramFaults> refused{};
+    const char* wrong_value{nullptr}; ///< Value at fault in the last datagram with wrong content.
+    /// Descriptions of another device since the last accepted datagram: the settled one has gone
+    /// and lost its place.
     std::uint64_t others{0};
 };
 
-/// A device that another program drives, over the datagrams of docs/udp-device.md. The socket
-/// belongs to the I/O thread; only brake() uses it from others.
+/// A device driven by another program, over the datagrams of docs/udp-device.md. The socket belongs
+/// to the I/O thread; other threads use it only in brake().
 class UdpDevice final : public RemoteDevice
 {
 public:
-    /// Waits until a device has described and proved itself, on the calling thread. Refuses options
-    /// out of range, what udp::Socket::open() and RtThread::start() refuse, and that nobody came
-    /// within the time or before the wait was ended, or more than one. A null clock is a bug
-    /// (asserted).
+    /// Waits on the calling thread until a device has described and proved itself. Refuses options
+    /// out of range, all that udp::Socket::open() and RtThread::start() refuse, a wait that ends
+    /// without a device, and several devices. A null clock is a bug (asserted).
     [[nodiscard]] static Result<std::unique_ptr<UdpDevice>, Refusal>
     create(const UdpDeviceOptions& options);
-    /// The same with a socket that is open already; the options' address and port aren't read.
+    /// Like the other create(), with an open socket; the options' address and port are ignored.
     [[nodiscard]] static Result<std::unique_ptr<UdpDevice>, Refusal>
     create(udp::Socket socket, const UdpDeviceOptions& options);
 
     UdpDevice(const UdpDevice&) = delete;
     UdpDevice& operator=(const UdpDevice&) = delete;
-    /// Tells the device to be idle.
+    /// Sends the device the state idle.
     ~UdpDevice() override;
 
-    /// Sends zero force and the brake at once, by a system call on the calling thread that doesn't
-    /// wait; the I/O thread repeats it, since datagrams get lost.
+    /// Sends zero force and the brake at once, by a non-blocking system call on the calling thread;
+    /// the I/O thread repeats it, since datagrams get lost.
     void brake() noexcept override;
 
-    /// Any thread but the haptic one, since it may wait; a moment old.
+    /// Recent counts. Any thread except the haptic one, since it may wait.
     [[nodiscard]] UdpTraffic traffic() const noexcept;
-    /// What the I/O thread got of what its options ask for.
+    /// Rights granted to the I/O thread.
     [[nodiscard]] const RtThreadReport& thread_report() const noexcept { return thread_->report(); }
 
 private:
-    /// A force is said again after so long, whether or not it is another: datagrams get lost, and
-    /// the device drops it when it hears nothing for 20 ms.
+    /// Interval at which an unchanged force is sent again: datagrams get lost, and the device drops
+    /// the force after 20 ms without one.
     static constexpr Duration kRepeat = milliseconds(5);
-    /// While nobody is there.
+    /// Poll interval without a device.
     static constexpr Duration kIdlePoll = milliseconds(5);
-    /// Taken in at one go, so that a flood doesn't keep the forces back.
+    /// Datagrams received in a row at most, so that a flood doesn't delay the forces.
     static constexpr int kDatagramsMax = 64;
 
     UdpDevice(udp::Socket socket, udp::Session session, std::uint64_t sequence,
@@ -125,18 +124,19 @@ private:
     udp::Socket socket_;
     const Duration poll_;
     const udp::Seal* const seal_;
-    std::atomic<std::uint64_t> sequence_{0}; ///< Of the last datagram sent; see send_due().
-    Mailbox<udp::Peer> peer_;                ///< For brake(); written by the I/O thread.
-    Mailbox<UdpTraffic> traffic_;            ///< Written by the I/O thread.
+    /// Sequence of the last datagram sent; see send_due().
+    std::atomic<std::uint64_t> sequence_{0};
+    Mailbox<udp::Peer> peer_;     ///< Peer for brake(); written by the I/O thread.
+    Mailbox<UdpTraffic> traffic_; ///< Counts written by the I/O thread.
     std::atomic<bool> is_stopped_{false};
 
-    // The I/O thread's.
+    // Used by the I/O thread.
     udp::Session session_;
     UdpTraffic counts_;
     DeviceCommand sent_;
     MonotonicTime sent_at_;
 
-    std::optional<RtThread> thread_; ///< Ends before anything that it uses.
+    std::optional<RtThread> thread_; ///< Thread; it ends before all that it uses.
 };
 
 } // namespace tactus
