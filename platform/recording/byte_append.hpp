@@ -12,7 +12,7 @@
 namespace tactus
 {
 
-/// Little-endian, without padding: the counterpart of ByteReader.
+/// Appends a value in little-endian, without padding: the counterpart of ByteReader.
 template <typename T>
 void append(std::vector<std::byte>& bytes, const T& value)
 {

@@ -20,7 +20,7 @@ void write_pose(FixedWriter& writer, const ObjectPose& pose) noexcept
     writer.write(pose.revision);
 }
 
-/// In the order of the format.
+/// Values in the order of the format.
 constexpr std::array kMaterialValues{&Material::stiffness_n_per_m,   &Material::static_friction,
                                      &Material::dynamic_friction,    &Material::damping_n_s_per_m,
                                      &Material::viscosity_n_s_per_m, &Material::texture_height_m,

@@ -9,19 +9,19 @@
 namespace tactus
 {
 
-/// Bytes of a change at most.
+/// Largest number of bytes of a change.
 inline constexpr std::size_t kObjectPoseBytes = 124;
 inline constexpr std::size_t kObjectSpecBytes = 60;
 inline constexpr std::size_t kSceneChangeBytes = 9 + kObjectSpecBytes + kObjectPoseBytes;
 
-/// Allocates nothing. docs/recording.md lists the fields.
+/// Writes a change. Allocates nothing. docs/recording.md lists the fields.
 void write_change(FixedWriter& writer, const SceneChange& change) noexcept;
 
-/// False when the kind is unknown; whether the bytes sufficed the reader says.
+/// Reads a change. False if the kind is unknown; the reader reports missing bytes.
 [[nodiscard]] bool try_read(ByteReader& reader, SceneChange& change);
 
 [[nodiscard]] Vec3 read_vector(ByteReader& reader);
-/// Row by row.
+/// Reads a rotation, row by row.
 [[nodiscard]] Mat3 read_rotation(ByteReader& reader);
 
 } // namespace tactus

@@ -32,7 +32,7 @@ void append_vector(std::vector<std::byte>& bytes, const Vec3& value)
     append(bytes, value.z());
 }
 
-/// Reads a point into `value`; false for NaN and what is too far.
+/// Reads a point into `value`; false for NaN and values out of range.
 bool read_vector(ByteReader& reader, Vec3& value)
 {
     bool is_sound = true;

@@ -13,15 +13,15 @@
 namespace tactus
 {
 
-/// Vertices that a recording's hulls refer to; copies share them.
+/// Vertices of a recording's hulls; copies share them.
 using HullVertices = std::vector<std::shared_ptr<const std::vector<Vec3>>>;
 
-/// A tool's core in a recording: a byte for its kind and its numbers (docs/recording.md). A body
-/// known by its support function alone has none: it is a program.
+/// Appends a tool's core: a byte for its kind, and its numbers (docs/recording.md). A body given
+/// only by its support function has none, since that is code.
 void append_core(std::vector<std::byte>& bytes, const ToolCore& core);
 
-/// None when the kind is unknown, a length is not within -1e6 to 1e6 m, or a hull has not 1 to
-/// kMaxHullVertices vertices. A hull's are added to `vertices`.
+/// Reads a core. None if the kind is unknown, a length is not within -1e6 to 1e6 m, or a hull has
+/// not 1 to kMaxHullVertices vertices. A hull's vertices are added to `vertices`.
 [[nodiscard]] std::optional<ToolCore> read_core(ByteReader& reader, HullVertices& vertices);
 
 } // namespace tactus

@@ -12,7 +12,7 @@ namespace tactus
 namespace
 {
 
-/// What is so, for the first four; what follows, in this order.
+/// Flags: the first four are values, the others announce fields that follow in this order.
 enum ToolFlag : std::uint16_t
 {
     kIsValid = 1U << 0U,

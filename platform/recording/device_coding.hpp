@@ -12,14 +12,14 @@
 namespace tactus
 {
 
-/// Of a tool and its device in a coded frame, with all that there can be.
+/// Largest size of a tool and its device in a coded frame.
 inline constexpr std::size_t kToolStateBytes = 38 + 72 + 96 + 24 + 24 + 4 + 8 + 24 + 24 + 8;
 
-/// A tool's state and what its device said and was told, as docs/recording.md lists them.
+/// Writes a tool's state and its device's record, in the format of docs/recording.md.
 void write_tool(FixedWriter& writer, const ToolState& tool, const DeviceRecord& device) noexcept;
 
-/// False when its flags are not those of what it says: what isn't there isn't written. Too few
-/// bytes show at the reader.
+/// Reads a tool. False if the flags are inconsistent; absent values are not stored. The reader
+/// reports missing bytes.
 [[nodiscard]] bool try_read_tool(ByteReader& reader, ToolState& tool, DeviceRecord& device);
 
 } // namespace tactus

@@ -14,7 +14,7 @@
 namespace tactus
 {
 
-/// Writes into memory of fixed size that has room for everything; a bug when it has not.
+/// Writes into memory of fixed size, which must suffice (asserted).
 class FixedWriter
 {
 public:
@@ -40,7 +40,7 @@ public:
         write(value.y());
         write(value.z());
     }
-    /// Row by row.
+    /// Writes a rotation, row by row.
     void write_rotation(const Mat3& rotation) noexcept
     {
         for (int row = 0; row < 3; ++row)

@@ -149,7 +149,7 @@ bool FrameDecoder::decode_tools(ByteReader& reader)
     return is_sound;
 }
 
-/// Whether a change can be made is the frame's to say, as it was when it was recorded.
+/// Reads the changes. The frame decides, as in the run, if they can be made.
 bool FrameDecoder::decode_changes(ByteReader& reader)
 {
     const auto changes = reader.read<std::uint8_t>();

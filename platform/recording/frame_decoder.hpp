@@ -15,39 +15,39 @@
 namespace tactus
 {
 
-/// How many of each a recording has in every frame.
+/// Numbers of tools and models in every frame of a recording.
 struct FrameShape
 {
     std::size_t tools{0};
     std::size_t models{0};
 };
 
-/// One frame as it was recorded.
+/// A recorded frame.
 struct RecordedFrame
 {
     std::int64_t now_ns{0};
     std::vector<ToolState> tools;
-    std::vector<DeviceRecord> devices; ///< One a tool.
+    std::vector<DeviceRecord> devices; ///< Records, one a tool.
     std::vector<SceneChange> changes;
     Budgets budgets;
     std::uint32_t wish_room{0};
-    std::vector<DoorEvent> events;           ///< That were taken from the door.
-    bool has_hashes{true};                   ///< False: it failed, or only its input was kept.
-    std::vector<std::uint64_t> state_hashes; ///< One a model, after the frame.
+    std::vector<DoorEvent> events; ///< Events taken from the queues.
+    bool has_hashes{true};         ///< False if the frame failed, or only its input was kept.
+    std::vector<std::uint64_t> state_hashes; ///< Hashes, one a model, after the frame.
     OutputHashes output;
 
     [[nodiscard]] FrameInput input() const noexcept { return {tools, changes, budgets, now_ns}; }
 };
 
-/// Reads frames that a FrameEncoder coded, in the same order. One thread, not the haptic one: it
+/// Reads the frames of a FrameEncoder in the same order. One thread, not the haptic one: it
 /// allocates.
 class FrameDecoder
 {
 public:
     explicit FrameDecoder(const FrameShape& shape);
 
-    /// Null when the next frame was read into frame(); otherwise what is wrong with it, in words
-    /// that follow "frame N: ".
+    /// Reads the next frame into frame(). Returns null, or the fault, in words that follow
+    /// "frame N: ".
     [[nodiscard]] const char* decode(ByteReader& reader);
     [[nodiscard]] const RecordedFrame& frame() const noexcept { return frame_; }
 

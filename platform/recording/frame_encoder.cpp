@@ -40,7 +40,7 @@ void write_door(FixedWriter& writer, const DoorTake& door) noexcept
     }
 }
 
-/// Copies `now` over `last`; whether they differed.
+/// Copies `now` over `last`; true if they differed.
 bool try_update(std::span<const std::byte> now, std::span<std::byte> last) noexcept
 {
     if (std::equal(now.begin(), now.end(), last.begin()))
@@ -74,7 +74,7 @@ std::span<const std::byte> FrameEncoder::encode_given(const GivenFrame& frame) n
     return end(begin(frame, kHasNoHashes | kHasBudgets));
 }
 
-/// All but the hashes.
+/// Writes everything except the hashes.
 FixedWriter FrameEncoder::begin(const GivenFrame& frame, std::uint8_t flags) noexcept
 {
     const auto& [input, door, devices] = frame;
@@ -110,7 +110,7 @@ FixedWriter FrameEncoder::begin(const GivenFrame& frame, std::uint8_t flags) noe
     return writer;
 }
 
-/// Its size goes before it.
+/// Writes the size in front of the frame.
 std::span<const std::byte> FrameEncoder::end(const FixedWriter& writer) noexcept
 {
     FixedWriter(bytes_).write(static_cast<std::uint32_t>(writer.size()));

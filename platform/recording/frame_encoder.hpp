@@ -22,37 +22,37 @@ namespace tactus
 inline constexpr std::size_t kBudgetsBytes = 40;
 inline constexpr std::size_t kDoorEventBytes = 23;
 inline constexpr std::size_t kMaxDoorEvents = kMaxArrivalsPerFrame + kMaxLinkUpdatesPerFrame;
-/// The largest frame: every tool, change, model and event there can be.
+/// Size of the largest frame: all tools, changes, models and events.
 inline constexpr std::size_t kMaxCodedFrameBytes =
     4 + 1 + 8 + kMaxTools * kToolStateBytes + 1 + kMaxSceneChanges * kSceneChangeBytes +
     kBudgetsBytes + 4 + 2 + kMaxDoorEvents * kDoorEventBytes + kMaxModels * 8 +
     sizeof(OutputHashes);
 
-/// A frame's flags: changes of the scene follow, or budgets, since they differ from the frame
-/// before; no hashes follow, since the frame failed or only what it was given is kept.
+/// Flags of a frame: scene changes follow; budgets follow, since they differ from the frame before;
+/// no hashes follow, since the frame failed or only its input is kept.
 inline constexpr std::uint8_t kHasChanges = 1;
 inline constexpr std::uint8_t kHasBudgets = 2;
 inline constexpr std::uint8_t kHasNoHashes = 4;
 
-/// What a frame is given.
+/// Input of a frame.
 struct GivenFrame
 {
     FrameInput input;
     DoorTake door;
-    std::span<const DeviceRecord> devices; ///< One a tool, or none where there are none.
+    std::span<const DeviceRecord> devices; ///< Records, one a tool, or empty without devices.
 };
 
-/// Codes frames one after the other. Budgets are written only when they differ from the frame
-/// before. Allocates nothing, so the haptic thread may use it.
+/// Encodes frames in order. Budgets are written only if they differ from the frame before.
+/// Allocates nothing, so the haptic thread may use it.
 class FrameEncoder
 {
 public:
-    /// Codes what one Frame::run() got, at most kMaxSceneChanges changes among it, and what it
-    /// returned; valid until the next call. `devices`: one a tool, or none where there are none.
+    /// Encodes input, with at most kMaxSceneChanges changes, and output of one Frame::run(); valid
+    /// until the next call. `devices`: one a tool, or empty without devices.
     [[nodiscard]] std::span<const std::byte>
     encode(const FrameInput& input, const FrameOutput& output,
            std::span<const DeviceRecord> devices = {}) noexcept;
-    /// The same of what a run got alone, its budgets in any case.
+    /// Encodes the input alone, always with its budgets.
     [[nodiscard]] std::span<const std::byte> encode_given(const GivenFrame& frame) noexcept;
 
 private:

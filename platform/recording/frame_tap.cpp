@@ -32,7 +32,7 @@ void FrameTap::put(std::span<const std::byte> coded) noexcept
     const std::size_t needed = (coded.size() + sizeof(Cell) - 1) / sizeof(Cell);
     if (queue_.capacity() - queue_.size() < needed)
     {
-        lost_from_.store(frames_, std::memory_order_relaxed); // See lost_from().
+        lost_from_.store(frames_, std::memory_order_relaxed); // Relaxed, see lost_from().
         return;
     }
     ++frames_;

@@ -16,34 +16,35 @@
 namespace tactus
 {
 
-/// Carries coded frames from the haptic thread to whoever writes them, through a queue of fixed
-/// size. The haptic thread never waits: a frame that finds no room is lost, and with it all later
-/// ones, since a replay can't go past a gap.
+/// Passes coded frames from the haptic thread to the writing thread, in a queue of fixed size. The
+/// haptic thread never waits: a frame that doesn't fit is lost, and so are all later ones, since a
+/// replay can't skip a gap.
 class FrameTap
 {
 public:
-    /// Room for `cells` of 64 B; a frame of one tool and model takes 3 to 8, an object that
-    /// its host moves 2 more, an arrival a third.
+    /// Capacity of `cells` of 64 B; a frame of one tool and model takes 3 to 8, an object that its
+    /// host moves 2 more, an arrival a third.
     explicit FrameTap(std::size_t cells = kUsualCells);
 
-    /// A second or more of usual frames: 1 MiB.
+    /// Capacity for a second or more of usual frames: 1 MiB.
     static constexpr std::size_t kUsualCells = 16'384;
 
-    /// Haptic thread, after each run. Allocates nothing. At most kMaxSceneChanges changes;
-    /// `devices` one a tool, or none.
+    /// Haptic thread, after each run: records a frame. Allocates nothing. At most kMaxSceneChanges
+    /// changes; `devices`: one a tool, or empty.
     void record(const FrameInput& input, const FrameOutput& output,
                 std::span<const DeviceRecord> devices = {}) noexcept;
-    /// Likewise of a frame that failed, the last. Any thread once the haptic one records no more.
+    /// Records a frame that failed, the last. Allocates nothing. Any thread once the haptic one
+    /// records no more.
     void record_failed(const GivenFrame& frame) noexcept;
 
-    /// The other thread, one: the next
-    /// coded frame into `frame`, as FrameEncoder coded it; false when none waits. Allocates.
+    /// One other thread: reads the next frame, as FrameEncoder coded it; false if there is none.
+    /// Allocates.
     [[nodiscard]] bool try_take(std::vector<std::byte>& frame);
 
     /// Any thread: the first frame that was lost, from 0, or kNoFrame.
     [[nodiscard]] std::uint64_t lost_from() const noexcept
     {
-        return lost_from_.load(std::memory_order_relaxed); // A number to show; orders nothing.
+        return lost_from_.load(std::memory_order_relaxed); // A number for display; orders nothing.
     }
 
 private:

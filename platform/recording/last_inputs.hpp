@@ -15,22 +15,22 @@
 namespace tactus
 {
 
-/// The hands of the last frames, for when one fails and nothing was recorded. They stay as they are
-/// until somebody asks: coded they would cost the haptic thread ten times as much.
+/// Device poses of the last frames, for a failure in a run without a recording. They are coded only
+/// on request: coding would cost the haptic thread ten times as much.
 class LastInputs
 {
 public:
-    /// Some seconds of one tool, 2 MiB.
+    /// Number of samples: some seconds of one tool, 2 MiB.
     static constexpr std::size_t kUsualSamples = 4'096;
 
-    /// So many samples of all tools.
+    /// `samples`: number of samples of all tools.
     explicit LastInputs(std::size_t tools, std::size_t samples = kUsualSamples);
 
-    /// Haptic thread, after each run: forgets the oldest for it. Allocates nothing. `devices`: one
-    /// a tool. Scene changes are left out.
+    /// Haptic thread, after each run: keeps a frame and drops the oldest. Allocates nothing.
+    /// `devices`: one a tool. Scene changes are left out.
     void keep(const FrameInput& input, std::span<const DeviceRecord> devices) noexcept;
 
-    /// Any thread once nothing is kept any more, not the haptic one: codes all, in order.
+    /// Any thread except the haptic one, once no more frames are kept: codes all, in order.
     void write_to(RecordingWriter& writer) const;
 
 private:
@@ -42,9 +42,9 @@ private:
 
     std::size_t tools_;
     std::vector<Frame> frames_;
-    std::vector<ToolState> states_; ///< Those of a frame in a row, as are
+    std::vector<ToolState> states_; ///< States, those of a frame in a row, like devices_.
     std::vector<DeviceRecord> devices_;
-    std::size_t next_{0}; ///< Of the frames.
+    std::size_t next_{0}; ///< Index of the next frame.
     bool is_full_{false};
 };
 

@@ -10,7 +10,7 @@ namespace tactus
 namespace
 {
 
-// A field that is added to one of these has to be hashed below.
+// A field added to one of these types must be hashed below.
 static_assert(sizeof(ToolOutput) == 256);
 static_assert(sizeof(PairOutput) == 232);
 static_assert(sizeof(Contact) == 96);
@@ -24,7 +24,7 @@ class Hash
 public:
     void add(std::uint64_t value) noexcept
     {
-        // The finalizer of SplitMix64: every bit of the input reaches every bit of the state.
+        // The finalizer of SplitMix64: every bit of the input affects every bit of the state.
         state_ = (state_ ^ value) + 0x9E37'79B9'7F4A'7C15ULL;
         state_ = (state_ ^ (state_ >> 30U)) * 0xBF58'476D'1CE4'E5B9ULL;
         state_ = (state_ ^ (state_ >> 27U)) * 0x94D0'49BB'1331'11EBULL;

@@ -9,19 +9,20 @@
 namespace tactus
 {
 
-/// 64-bit hashes of the parts of a FrameOutput, field by field: every value takes part with all its
-/// bits, padding with none. Two frames that agree in these have given the same bytes.
+/// 64-bit hashes of the parts of a FrameOutput, field by field: every value is included with all
+/// its bits, padding is not. Two frames with equal hashes have given the same bytes.
 struct OutputHashes
 {
     std::uint64_t tools{0};
     std::uint64_t pairs{0};
-    std::uint64_t models{0}; ///< Pools, refined records and state hash of each model.
-    std::uint64_t work{0};   ///< Work counters, scene and faults.
+    std::uint64_t models{0}; ///< Hash of pools, refined records and state hash of each model.
+    std::uint64_t work{0};   ///< Hash of work counters, scene and faults.
 
     bool operator==(const OutputHashes&) const noexcept = default;
 };
 
-/// About 60 multiplications for one tool and one object. `output.door` is an input and left out.
+/// Hashes the output. About 60 multiplications for one tool and one object. `output.door` is an
+/// input and left out.
 [[nodiscard]] OutputHashes hash_output(const FrameOutput& output) noexcept;
 
 } // namespace tactus

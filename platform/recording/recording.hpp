@@ -22,41 +22,41 @@
 namespace tactus
 {
 
-/// A recording in memory, checked as a whole: every section's checksum, every count and range, and
-/// that each piece that a frame takes from the door is there before it. Of a file that was cut,
-/// since its program was killed or its copy ended, it has the frames up to the last whole section.
+/// A recording in memory, checked completely: every section's checksum, every count and range, and
+/// that each piece that a frame takes precedes it. Of a truncated file it has the frames up to the
+/// last whole section.
 class Recording
 {
 public:
-    /// Reads a file, whole; it takes as much memory as the file has bytes. Refused in one line with
-    /// the file's name.
+    /// Reads a whole file; takes as much memory as the file's size. Refused in one line with the
+    /// file's name.
     [[nodiscard]] static Result<Recording, Refusal> read(const std::string& path);
-    /// The same for bytes in memory; `name` stands for the file's in messages.
+    /// Parses bytes in memory; `name` replaces the file's in messages.
     [[nodiscard]] static Result<Recording, Refusal> parse(std::span<const std::byte> bytes,
                                                           const std::string& name);
 
-    /// All that is returned by reference or as a span is the recording's.
+    /// References and spans returned here and below are valid as long as the recording.
     [[nodiscard]] const RecordedSetup& setup() const noexcept { return setup_; }
-    /// For a FrameDecoder.
+    /// Shape for a FrameDecoder.
     [[nodiscard]] FrameShape shape() const noexcept
     {
         return {setup_.tools.size(), setup_.models.size()};
     }
-    /// The coded piece; empty when the recording has none under this key.
+    /// Coded piece; empty if the recording has none under this key.
     [[nodiscard]] std::span<const std::byte> piece(std::uint32_t model,
                                                    ContentKey key) const noexcept;
-    /// All frames as FrameEncoder coded them, for a FrameDecoder.
+    /// All frames as coded by FrameEncoder, for a FrameDecoder.
     [[nodiscard]] std::span<const std::byte> frames() const noexcept { return frames_; }
     [[nodiscard]] std::uint64_t frame_count() const noexcept { return frame_count_; }
-    /// False: it keeps what the last frames of a run that failed were given, and can't be replayed.
+    /// False if it keeps only the input of the last frames of a failed run, and can't be replayed.
     [[nodiscard]] bool keeps_run() const noexcept { return failed_frames_ <= 1; }
-    /// The last frame failed in the run.
+    /// True if the last frame failed in the run.
     [[nodiscard]] bool has_failed() const noexcept { return failed_frames_ > 0; }
-    /// The first frame that the recorder lost; kNoFrame when it lost none.
+    /// First frame that the recorder lost; kNoFrame if none.
     [[nodiscard]] std::uint64_t lost_from() const noexcept { return lost_from_; }
-    /// The byte at which the file was cut; none when it is whole.
+    /// Byte at which the file was truncated; none if it is whole.
     [[nodiscard]] std::optional<std::size_t> cut_at() const noexcept { return cut_at_; }
-    /// What of the run is missing behind the last frame, in one clause; empty: nothing.
+    /// Part of the run that is missing after the last frame, in one clause; empty: none.
     [[nodiscard]] std::string missing() const;
 
 private:
@@ -67,7 +67,7 @@ private:
     std::map<PieceKey, std::vector<std::byte>> pieces_;
     std::vector<std::byte> frames_;
     std::uint64_t frame_count_{0};
-    std::uint64_t failed_frames_{0}; ///< Without hashes: the last ones.
+    std::uint64_t failed_frames_{0}; ///< Number of frames without hashes, the last ones.
     std::uint64_t lost_from_{kNoFrame};
     std::optional<std::size_t> cut_at_;
 };

@@ -35,20 +35,20 @@ enum class SectionKind : std::uint32_t
     name = 6,
 };
 
-/// In front of every section: kind, payload bytes, CRC-32C of those two and the payload.
+/// Size of a section's header: kind, payload bytes, CRC-32C of those two and the payload.
 inline constexpr std::size_t kSectionHeaderBytes = 12;
-/// A longer frames section is never written, so a damaged length is seen as such.
+/// Limit of a frames section, so that a damaged length is detected.
 inline constexpr std::uint32_t kMaxFramesSectionBytes = 1U << 20U;
 
 /// A model as it was when the frame was made.
 struct RecordedModel
 {
     ModelCapacities capacities;
-    std::vector<std::byte> header; ///< Coded, as ModelSource takes them.
-    std::vector<std::byte> base;   ///< Empty: a guest, which comes and goes.
+    std::vector<std::byte> header; ///< Coded header, as ModelSource takes it.
+    std::vector<std::byte> base;   ///< Coded base mesh; empty: a streamed model.
 };
 
-/// What people call it: a model, or an object under its number and of one generation.
+/// Key of a name: a model, or an object by number and generation.
 struct RecordedName
 {
     enum class Kind : std::uint8_t
@@ -58,12 +58,12 @@ struct RecordedName
     };
     Kind kind{Kind::model};
     std::uint32_t number{0};
-    std::uint32_t generation{0}; ///< Of a model 0.
+    std::uint32_t generation{0}; ///< Generation; 0 for a model.
 
     auto operator<=>(const RecordedName&) const noexcept = default;
 };
 
-/// What the frame was made of.
+/// Set-up of a recorded frame.
 struct RecordedSetup
 {
     std::int64_t period_ns{1'000'000};
@@ -72,21 +72,22 @@ struct RecordedSetup
     Prediction prediction{Prediction::automatic};
     double force_tolerance_n{0.0};
     std::vector<ToolSpec> tools;
-    HullVertices hull_vertices; ///< Of tools that were read from a recording.
+    HullVertices hull_vertices; ///< Hull vertices of tools that were read from a recording.
     std::vector<ObjectSpec> objects;
-    std::vector<ObjectPose> poses; ///< One an object.
+    std::vector<ObjectPose> poses; ///< Poses, one an object.
     SceneCapacities capacities;
     ModelCapacities for_guests;
     std::vector<RecordedModel> models;
-    /// Of what has one, also of objects that come later; at most kMaxRecordedNameBytes each.
+    /// Names of models and objects, also of objects added later; at most kMaxRecordedNameBytes
+    /// each.
     std::map<RecordedName, std::string> names;
-    /// For the reader of a difference: how the program that recorded was built, and the kernels it
-    /// ran. At most kMaxRecordedNameBytes each.
+    /// Build and kernels of the recording program, to explain a difference. At most
+    /// kMaxRecordedNameBytes each.
     std::string compiler;
     std::string architecture;
     std::string kernels;
 
-    /// Empty: it has none.
+    /// Name; empty if there is none.
     [[nodiscard]] std::string name_of(const RecordedName& what) const
     {
         const auto found = names.find(what);
@@ -95,19 +96,19 @@ struct RecordedSetup
 };
 
 inline constexpr std::size_t kMaxRecordedNameBytes = 63;
-/// No host serves a larger base mesh.
+/// Size of the largest base mesh that a host serves.
 inline constexpr std::size_t kMaxRecordedBaseBytes = std::size_t{1} << 20U;
-/// As much as `hrtc --pool-mib` can be; a recording that needs more was never made.
+/// Largest `hrtc --pool-mib`; a recording that needs more is damaged.
 inline constexpr std::size_t kMaxRecordedPoolBytes = std::size_t{4'096} << 20U;
 
-/// No frame was lost.
+/// Number for a recording without lost frames.
 inline constexpr std::uint64_t kNoFrame = std::numeric_limits<std::uint64_t>::max();
 
-/// How this program was built: compiler and whether it optimised, processor.
+/// Build of this program: compiler and optimisation, processor.
 [[nodiscard]] std::string this_build();
 
-/// The setup of a frame that this program makes, as a recording keeps it: copies all of it but the
-/// vertices of hulls.
+/// Set-up of a frame of this program in a recording's form: copies all of it except the vertices of
+/// hulls.
 [[nodiscard]] RecordedSetup to_recorded(const FrameSetup& setup);
 
 } // namespace tactus

@@ -18,17 +18,17 @@ namespace tactus
 namespace
 {
 
-/// A section that ends in so many zeros, at the end of the file, was not written to its end. None
-/// that was written does: an end section has 12 at most.
+/// Number of zeros at the end of the file that show an incomplete section. A complete section has
+/// fewer: an end section has 12 at most.
 constexpr std::size_t kLostZeros = 512;
-/// A length above this is a damaged one; a model's header and base mesh have 8 MiB and 1 MiB.
+/// A length above this is damaged; a model's header and base mesh have 8 MiB and 1 MiB.
 constexpr std::size_t kMaxOtherSectionBytes = std::size_t{16} << 20U;
 
 constexpr const char* kNotARecording = "is not a Tactus recording: it doesn't begin with TACTREC";
 
 } // namespace
 
-/// Goes through the sections once. Every parse_ function returns what is wrong, or nothing.
+/// Reads the sections once. Every parse_ function returns the fault, if any.
 class RecordingParser
 {
 public:
@@ -95,9 +95,8 @@ private:
         return std::nullopt;
     }
 
-    /// Whether the file ends within the section that is next, or is nothing but zeros from
-    /// somewhere within it on: a file system that lost its power may keep a length without the
-    /// content.
+    /// True if the file ends within the next section, or has only zeros from a point within it:
+    /// after a power loss a file system may keep a length without the content.
     [[nodiscard]] bool is_cut() const
     {
         const std::span<const std::byte> rest = bytes_.subspan(at_);
@@ -122,7 +121,7 @@ private:
                kind <= static_cast<std::uint32_t>(SectionKind::name);
     }
 
-    /// What there is up to here counts, if it is a frame at least.
+    /// Accepts the part up to here if it has at least one frame.
     Fault end_where_cut()
     {
         if (recording_.frame_count_ == 0)
@@ -306,7 +305,7 @@ private:
         return std::nullopt;
     }
 
-    /// What arrives must have been recorded before.
+    /// Each arrival must have been recorded before.
     Fault check_pieces(const RecordedFrame& frame) const
     {
         std::uint64_t pages = recording_.setup_.for_guests.pages;
@@ -365,7 +364,7 @@ private:
 
     std::span<const std::byte> bytes_;
     std::string name_;
-    std::size_t data_end_; ///< From here on there are only zeros.
+    std::size_t data_end_; ///< Start of the zeros at the end.
     std::size_t at_{0};
     Recording recording_;
     std::uint32_t model_count_{0};

@@ -14,7 +14,7 @@ namespace tactus
 namespace
 {
 
-/// Frames are gathered into sections of about this size, so that a section's frame is small.
+/// Frames are gathered into sections of about this size, so that a section's overhead is small.
 constexpr std::size_t kFramesSectionBytes = std::size_t{64} << 10U;
 
 } // namespace
@@ -94,7 +94,7 @@ void RecordingWriter::append_section(SectionKind kind, std::span<const std::byte
     append(bytes_, static_cast<std::uint32_t>(kind));
     append(bytes_, static_cast<std::uint32_t>(payload.size()));
     append_bytes(bytes_, payload);
-    // The checksum stands in front of the payload but is of both.
+    // The checksum is in front of the payload but covers both.
     const std::uint32_t checksum = crc32c(std::span(bytes_).subspan(start));
     const auto* first = reinterpret_cast<const std::byte*>(&checksum);
     bytes_.insert(bytes_.begin() + static_cast<std::ptrdiff_t>(start + 8), first,

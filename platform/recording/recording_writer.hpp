@@ -16,30 +16,30 @@
 namespace tactus
 {
 
-/// Lays out a recording's bytes in the order in which they are given; whoever owns it takes them
-/// away and stores them. A piece must be added before the frame that takes it from the door.
-/// One thread, not the haptic one: it allocates. It keeps what take_bytes() doesn't take.
+/// Formats a recording's bytes in the order of the calls; the owner takes and stores them. A piece
+/// must be added before the frame that takes it. One thread, not the haptic one: it allocates. It
+/// keeps all bytes until take_bytes().
 class RecordingWriter
 {
 public:
     explicit RecordingWriter(const RecordedSetup& setup);
 
-    /// A name of a model or object; may come at any time.
+    /// Adds a name of a model or object, at any time.
     void add_name(const RecordedName& what, std::string_view name);
 
-    /// A coded chunk or index page of one of the set-up's models; a second one under the same key
-    /// is the same and left out.
+    /// Adds a coded chunk or index page of one of the set-up's models; later ones under the same
+    /// key are the same and left out.
     void add_piece(std::uint32_t model, ContentKey key, std::span<const std::byte> bytes);
 
-    /// One frame as FrameEncoder coded it.
+    /// Adds one frame as coded by FrameEncoder.
     void add_frame(std::span<const std::byte> coded);
 
-    /// Closes the recording, once, as the last call but take_bytes(). `lost_from`: the first frame
-    /// that is not in it, else kNoFrame.
+    /// Closes the recording, once, as the last call except take_bytes(). `lost_from`: the first
+    /// frame that is not in it, otherwise kNoFrame.
     void finish(std::uint64_t lost_from);
 
     [[nodiscard]] std::uint64_t frames() const noexcept { return frames_; }
-    /// Everything laid out since the last call.
+    /// Returns all bytes formatted since the last call.
     [[nodiscard]] std::vector<std::byte> take_bytes();
 
 private:
@@ -47,7 +47,7 @@ private:
     void append_section(SectionKind kind, std::span<const std::byte> payload);
 
     std::vector<std::byte> bytes_;
-    std::vector<std::byte> open_frames_; ///< Of the section that is not full yet.
+    std::vector<std::byte> open_frames_; ///< Frames of the section that is not full yet.
     std::set<std::tuple<std::uint32_t, ContentKind, std::uint32_t>> pieces_;
     std::uint64_t frames_{0};
 };

@@ -21,7 +21,7 @@ struct alignas(Arena::kAlignment) CacheLine
     std::array<std::byte, Arena::kAlignment> bytes;
 };
 
-/// A frame made from a recording's setup, with the memory it lives in.
+/// A frame made from a recording's setup, with its memory.
 class ReplayedFrame
 {
 public:
@@ -41,7 +41,7 @@ public:
     }
 
     [[nodiscard]] Frame& frame() noexcept { return *frame_; }
-    /// What differs in this frame, if anything.
+    /// Difference in this frame, if any.
     [[nodiscard]] std::optional<std::string> step(const RecordedFrame& recorded,
                                                   std::uint64_t number, const ReplayWatch& watch)
     {
@@ -146,7 +146,7 @@ Result<ReplayReport, Refusal> replay(const Recording& recording, const Kernels* 
     for (ByteReader reader(recording.frames()); !reader.at_end();)
     {
         const char* fault = decoder.decode(reader);
-        TACTUS_ASSERT(fault == nullptr); // The recording was checked as a whole.
+        TACTUS_ASSERT(fault == nullptr); // The recording was checked completely.
         if (!decoder.frame().has_hashes && !watch.runs_failed)
         {
             break;

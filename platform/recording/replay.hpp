@@ -17,49 +17,49 @@
 namespace tactus
 {
 
-/// Where a replay first went another way than the recording.
+/// First difference between a replay and its recording.
 struct ReplayDifference
 {
-    std::uint64_t frame{0}; ///< From 0.
-    std::string text;       ///< What differs, in words that follow "frame N: ".
+    std::uint64_t frame{0}; ///< Number of the frame, from 0.
+    std::string text;       ///< Difference, in words that follow "frame N: ".
 };
 
 struct ReplayReport
 {
-    std::uint64_t frames{0}; ///< Replayed, the one that differs included.
+    std::uint64_t frames{0}; ///< Number of replayed frames, including the one that differs.
     std::optional<ReplayDifference> difference;
 };
 
-/// Called with a frame's number, from 0, right before and right after it runs, on the thread that
-/// replays; the door is open and pages are linked by then. Any may be empty.
+/// Callbacks of a replay, with a frame's number, from 0, right before and right after it runs, on
+/// the replaying thread; queues and pages are ready by then. Any may be empty.
 struct ReplayWatch
 {
     using Ends = void(std::uint64_t, const RecordedFrame& given, const FrameOutput& returned);
 
     std::function<void(std::uint64_t)> begins{};
     std::function<Ends> ends{}; ///< Both are valid during the call.
-    /// Once, before all: the frame that will run, there until the replay ends. Only to be read.
+    /// Called once, before all others, with the frame that will run, valid until the replay ends.
+    /// Read-only.
     std::function<void(Frame&)> made{};
-    /// Asked after each frame: false ends the replay there.
+    /// Called after each frame: false ends the replay there.
     std::function<bool()> goes_on{};
     /// False: the replay ends before a frame that failed in the run.
     bool runs_failed{true};
 };
 
-/// Makes a frame as the recorded one was made, gives it the recorded inputs, arrivals and link
-/// updates of every frame, and compares what comes out with the recorded hashes. Stops at the first
-/// difference. Needs no device, network, timer or thread; takes the pools' memory, and the time of
-/// the frames. Refused when no frame can be made of the set-up, or the recording doesn't keep a
-/// run. A frame that failed in the run fails its assertion here, too; where it doesn't, that is the
-/// difference.
+/// Replays a recording: makes its frame, feeds it the recorded inputs, arrivals and link updates,
+/// and compares the results with the recorded hashes. Stops at the first difference. Needs no
+/// device, network, timer or thread; takes the pools' memory, and the time of the frames. Refused
+/// if no frame can be made of the set-up, or the recording doesn't keep a run. A frame that failed
+/// in the run fails its assertion here, too; otherwise that is the difference.
 ///
-/// Pages are linked here anew, by the same Linker in the recorded order, and compared, too.
-/// `kernels` run the queries, null the best of this processor; it makes no difference.
+/// The same Linker links pages again in the recorded order, and their links are compared, too.
+/// `kernels` run the queries, null the best of this processor; the results are the same.
 [[nodiscard]] Result<ReplayReport, Refusal>
 replay(const Recording& recording, const Kernels* kernels = nullptr, const ReplayWatch& watch = {});
 
-/// The outcome in one line without an end: how many frames agree, or the first that differs; what
-/// recorded them; and whether some are missing.
+/// Outcome in one line without an end: the number of equal frames, or the first that differs; the
+/// recording program; and missing frames.
 [[nodiscard]] std::string replay_line(const Recording& recording, const ReplayReport& report);
 
 } // namespace tactus

@@ -83,8 +83,7 @@ ReplayDoor::Fault ReplayDoor::give_back(const DoorEvent& event)
     return fault;
 }
 
-/// Cells that were given back may be lent anew once the frame has said that it knows, and not
-/// before.
+/// Cells that were given back may be lent again only once the frame has acknowledged it.
 bool ReplayDoor::has_cells_for(const DoorEvent& event) const
 {
     const Model& model = frame_.model({event.owner});
@@ -92,7 +91,7 @@ bool ReplayDoor::has_cells_for(const DoorEvent& event) const
            !gives_cells_back_[event.owner];
 }
 
-/// Linking looks at every page that is here, so a page goes exactly when it went in the recording.
+/// Linking visits every resident page, so a page is removed exactly where it was in the recording.
 ReplayDoor::Fault ReplayDoor::take_back_freed(std::uint32_t freed_taken)
 {
     for (; freed_taken_ != freed_taken; ++freed_taken_)
@@ -169,7 +168,7 @@ ReplayDoor::Fault ReplayDoor::fill(const DoorEvent& event)
     return std::nullopt;
 }
 
-/// Into the cells that the frame lent for it, and nowhere else.
+/// Puts the base mesh into the cells that the frame lent for it, and nowhere else.
 ReplayDoor::Fault ReplayDoor::bring_base(const DoorEvent& event)
 {
     Model& model = frame_.model({event.owner});
@@ -188,7 +187,7 @@ ReplayDoor::Fault ReplayDoor::bring_base(const DoorEvent& event)
     return std::nullopt;
 }
 
-/// Takes wishes away until there is as much room for more as there was.
+/// Takes requests away until there is as much room as in the recording.
 ReplayDoor::Fault ReplayDoor::grant_wishes(std::uint32_t wish_room)
 {
     SpscQueue<PieceWish>& wanted = frame_.pools().cache.door.wanted;

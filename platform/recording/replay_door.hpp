@@ -15,16 +15,16 @@
 namespace tactus
 {
 
-/// The transport thread's part in a replay: fills the slots that the recording names, links and
-/// takes back in the recorded order, and pushes into the door what the frame took.
+/// The transport thread's part in a replay: fills the recorded slots, links and frees in the
+/// recorded order, and puts into the queues what the frame took.
 class ReplayDoor
 {
 public:
     /// Both must outlive the door; the frame is of the recording's setup.
     ReplayDoor(const Recording& recording, Frame& frame);
 
-    /// Makes the door as the frame found it. Returns what doesn't fit: a frame that went another
-    /// way before has freed other slots or wished for other pieces.
+    /// Prepares the queues for the frame. Returns the mismatch, if any: if an earlier frame
+    /// differed, it has freed other slots or requested other pieces.
     [[nodiscard]] std::optional<std::string> open(const RecordedFrame& recorded);
 
 private:
@@ -40,7 +40,7 @@ private:
     [[nodiscard]] Fault bring_base(const DoorEvent& event);
     [[nodiscard]] Fault grant_wishes(std::uint32_t wish_room);
 
-    /// What is in a slot; none: the slot is here.
+    /// Content of a slot; none: the slot is free.
     template <typename Id>
     struct Filled
     {
@@ -53,7 +53,8 @@ private:
     std::vector<Filled<ChunkId>> pages_;
     std::vector<Filled<IndexPageId>> index_pages_;
     std::vector<bool>
-        gives_cells_back_; ///< By model: given back, and the frame hasn't said so yet.
+        /// True for models whose cells are given back while the frame has not yet acknowledged it.
+        gives_cells_back_;
     std::set<std::pair<std::uint32_t, std::uint32_t>> loaded_index_; ///< Model and page in a slot.
     std::uint32_t freed_taken_{0};
 };

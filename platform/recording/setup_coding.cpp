@@ -20,8 +20,8 @@ namespace
 
 using Fault = std::optional<std::string>;
 
-/// A slot of the smallest pool has 16 bytes, so no pool of 4 GiB has more; far from where sums of
-/// 32 bits would wrap.
+/// Limit of a capacity: a slot of the smallest pool has 16 bytes, so no pool of 4 GiB has more;
+/// sums of 32 bits stay far from wrapping.
 constexpr std::uint32_t kMaxCapacity = 1U << 28U;
 
 void append_name(std::vector<std::byte>& bytes, std::string_view name)
@@ -62,14 +62,14 @@ bool is_sound(const ToolSpec& tool)
            is_within(tool.smooth_m, 0.0, 1e6);
 }
 
-// What a file says; another number is another format version (docs/recording.md).
+// Values in a file; changing them requires a new format version (docs/recording.md).
 static_assert(static_cast<int>(Prediction::local_neighbours) == 0);
 static_assert(static_cast<int>(Prediction::linear) == 1);
 static_assert(static_cast<int>(Prediction::quadratic) == 2);
 static_assert(static_cast<int>(Prediction::distance_query) == 3);
 static_assert(static_cast<int>(Prediction::automatic) == 4);
 
-/// Bits of what a tool wants, and of what else it is told.
+/// Bits of a tool's requests and other options.
 constexpr std::uint32_t kWantsContacts = 1;
 constexpr std::uint32_t kWantsPairs = 2;
 constexpr std::uint32_t kPassesThrough = 1;

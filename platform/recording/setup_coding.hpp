@@ -17,29 +17,29 @@
 namespace tactus
 {
 
-/// Content of the setup section: everything but the models, of which it holds the number.
+/// Content of the setup section: everything except the models, of which it holds the number.
 [[nodiscard]] std::vector<std::byte> code_setup(const RecordedSetup& setup);
 /// Content of one model section.
 [[nodiscard]] std::vector<std::byte> code_model(const RecordedModel& model);
 
-/// Content of a name section; what of the name is too long is left out.
+/// Content of a name section; a name that is too long is cut.
 [[nodiscard]] std::vector<std::byte> code_name(const RecordedName& what, std::string_view name);
 
-/// Reads a setup section and how many models follow. Returns what is wrong, or nothing.
+/// Reads a setup section and the number of models that follow. Returns the fault, if any.
 [[nodiscard]] std::optional<std::string> parse_setup(std::span<const std::byte> payload,
                                                      RecordedSetup& setup, std::uint32_t& models);
-/// Reads a model section. `bytes_left` is what all pools may still need, and is lowered by this
-/// model's. Returns what is wrong, or nothing.
+/// Reads a model section. `bytes_left`: memory that all pools may still need, reduced by this
+/// model's. Returns the fault, if any.
 [[nodiscard]] std::optional<std::string> parse_model(std::span<const std::byte> payload,
                                                      bool has_guests, RecordedModel& model,
                                                      ModelCounts& counts, std::size_t& bytes_left);
 
-/// Reads a name section into the names of the setup, whose models were read. Returns what is wrong,
-/// or nothing.
+/// Reads a name section into the names of the setup, whose models were read. Returns the fault, if
+/// any.
 [[nodiscard]] std::optional<std::string> parse_name(std::span<const std::byte> payload,
                                                     RecordedSetup& setup);
 
-/// What is wrong when a section's content ends before or after its payload does.
+/// Fault if a section's content ends before or after its payload.
 [[nodiscard]] std::optional<std::string> unless_whole(const ByteReader& reader,
                                                       const char* section);
 
