@@ -9,10 +9,10 @@
 namespace tactus
 {
 
-/// Makes one line of comma-separated values (RFC 4180) of what is told: the columns' names, or
-/// values, or empty cells in their places. A vector has columns NAME.x, .y, .z, a rotation .w, too.
-/// A flag is 1 or 0; words have blanks between; a value that is not known is an empty cell, a
-/// number that is not finite inf, -inf or nan.
+/// Makes one line of comma-separated values (RFC 4180): the columns' names, their values, or empty
+/// cells. A vector has columns NAME.x, .y, .z, a rotation .w, too. A flag is 1 or 0; words are
+/// separated by blanks; an unknown value is an empty cell, a number that is not finite inf, -inf or
+/// nan.
 class CsvSink final : public FieldSink
 {
 public:
@@ -23,7 +23,7 @@ public:
         empty,
     };
 
-    /// Of what is told from here on. `prefix` goes before each name.
+    /// Selects the kind of the following cells. `prefix` goes before each name.
     void begin(Cells cells, std::string prefix = "");
 
     void number(const char* name, const std::optional<double>& value) override;
@@ -34,7 +34,7 @@ public:
     void vector(const char* name, const std::optional<Vec3>& value) override;
     void rotation(const char* name, const std::optional<Eigen::Quaterniond>& value) override;
 
-    /// The line, ended by CR LF; empties the sink.
+    /// Returns the line, ended by CR LF, and empties the sink.
     [[nodiscard]] std::string take();
 
 private:

@@ -25,13 +25,13 @@ namespace tactus
 namespace
 {
 
-/// More series than anybody looks at; pairs beyond them share a channel.
+/// Largest number of pair channels, more than a reader displays; pairs beyond it share a channel.
 constexpr std::size_t kMaxPairChannels = 4'096;
 
-/// What is laid out before it goes to the file.
+/// Size of the buffer before it is written to the file.
 constexpr std::size_t kBufferBytes = std::size_t{1} << 16U;
 
-/// All that a recording says once.
+/// Writes the set-up of a recording.
 void tell_setup(JsonSink& sink, const RecordedSetup& setup)
 {
     tell_run(sink, setup);
@@ -61,7 +61,7 @@ void tell_setup(JsonSink& sink, const RecordedSetup& setup)
     sink.close_list();
 }
 
-/// A file, and what is to go to it.
+/// A file and its buffered text.
 class ExportFile
 {
 public:
@@ -100,7 +100,7 @@ private:
     Result<Done, Refusal> stored_{Done{}};
 };
 
-/// A line a frame: tools with the nearest object of each, and models.
+/// One line a frame: tools with the nearest object of each, and models.
 class CsvExport final : public FrameExport
 {
 public:
@@ -160,7 +160,7 @@ private:
     bool has_names_{false};
 };
 
-/// A line of JSON a frame; the first has the set-up, too.
+/// One line of JSON a frame; the first has the set-up, too.
 class JsonLinesExport final : public FrameExport
 {
 public:
@@ -209,7 +209,7 @@ private:
     JsonSink sink_;
 };
 
-/// A channel for each thing that is told of: PlotJuggler and Foxglove make one series of each.
+/// One channel for each object: PlotJuggler and Foxglove make one series of each.
 class McapExport final : public FrameExport
 {
 public:
@@ -275,7 +275,7 @@ private:
         return writer_.add_schema(name, sink.take());
     }
 
-    /// What every frame has; a frame is there to ask for the names.
+    /// Adds the channels of every frame; `frame` provides the names.
     void begin(const ReplayedFrameView& frame)
     {
         frame_channel_ =
@@ -325,7 +325,7 @@ private:
     const RecordedSetup& setup_;
     McapWriter writer_;
     JsonSink sink_;
-    const ReplayedFrameView* frame_{nullptr}; ///< That is told of.
+    const ReplayedFrameView* frame_{nullptr}; ///< Frame being written.
     std::uint16_t pair_schema_{0};
     std::uint16_t setup_channel_{0};
     std::uint16_t change_channel_{0};

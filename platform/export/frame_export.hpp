@@ -14,26 +14,26 @@
 namespace tactus
 {
 
-/// Whether the name ends in one of the formats' endings: .csv, .jsonl or .mcap.
+/// True if the name ends in .csv, .jsonl or .mcap.
 [[nodiscard]] bool is_export_name(std::string_view path) noexcept;
 
-/// Writes replayed frames into a file for other tools, in the format that its name's ending tells
-/// (docs/recording.md). The file appears whole or not at all. One thread, not the haptic one: it
+/// Writes replayed frames into a file for other tools, in the format of its name's ending
+/// (docs/recording.md). The file is complete or absent. One thread, not the haptic one: it
 /// allocates and waits for the file.
 class FrameExport
 {
 public:
-    /// Refused in one line where the file can't be written. The name is_export_name() (asserted);
-    /// the set-up must outlive the export.
+    /// Opens an export. Refused in one line if the file can't be written. The name is_export_name()
+    /// (asserted); the set-up must outlive the export.
     [[nodiscard]] static Result<std::unique_ptr<FrameExport>, Refusal>
     create(const std::string& path, const RecordedSetup& setup);
     FrameExport(const FrameExport&) = delete;
     FrameExport& operator=(const FrameExport&) = delete;
     virtual ~FrameExport() = default;
 
-    /// The next frame. After an error frames are dropped; commit() tells of it.
+    /// Adds the next frame. After an error frames are dropped; commit() reports it.
     virtual void add(const ReplayedFrameView& frame) = 0;
-    /// Gives the file its name. Once, as the last call; without it nothing is left.
+    /// Gives the file its name. Once, as the last call; without it no file is left.
     [[nodiscard]] virtual Result<Done, Refusal> commit() = 0;
 
 protected:

@@ -21,7 +21,7 @@ constexpr std::array kFeatureNames{"corner_0", "corner_1", "corner_2", "edge_0",
                                    "edge_1",   "edge_2",   "interior"};
 constexpr std::array kSideNames{"unsigned", "outside", "inside"};
 constexpr std::array kIntersectionNames{"open", "none", "proven"};
-/// In the order of ToolCore's kinds.
+/// Names in the order of ToolCore's kinds.
 constexpr std::array kCoreNames{"point", "segment", "box", "hull", "body", "mesh"};
 static_assert(kCoreNames.size() == std::variant_size_v<ToolCore>);
 constexpr std::array kChangeNames{"object_comes", "object_moves", "object_goes",
@@ -59,7 +59,7 @@ std::optional<T> where(bool is_so, const T& value)
     return is_so ? std::optional<T>(value) : std::nullopt;
 }
 
-/// Of a matrix that may be no rotation, as a broken device sends it: not known then.
+/// Quaternion of a matrix; none if it is no rotation, as a faulty device may send it.
 std::optional<Eigen::Quaterniond> quaternion(const Mat3& rotation)
 {
     const Eigen::Quaterniond turned(rotation);
@@ -67,7 +67,7 @@ std::optional<Eigen::Quaterniond> quaternion(const Mat3& rotation)
     return where(std::isfinite(norm) && norm > 0.0, turned.normalized());
 }
 
-/// Chunks, index pages and so on that a frame's door took, by kind.
+/// Number of events of this kind that a frame took, for instance chunks or index pages.
 std::int64_t count_of(std::span<const DoorEvent> events, DoorEventKind kind)
 {
     std::int64_t count = 0;
@@ -134,7 +134,7 @@ void tell_budgets(FieldSink& sink, const Budgets& budgets)
     sink.integer("budget_work", budgets.work);
 }
 
-/// What the device said, and what it was told.
+/// Writes the device's input and output.
 void tell_device(FieldSink& sink, const ToolState& state, const DeviceRecord& device)
 {
     sink.flag("valid", state.valid);

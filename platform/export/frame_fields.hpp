@@ -10,27 +10,27 @@
 #include <cstddef>
 #include <cstdint>
 
-// What is told of a run: one function for each kind of thing. SI; world frame but where a name says
+// Fields of a run: one function for each kind of object. SI units; world frame unless a name says
 // otherwise. Any thread, but not the haptic one: sinks allocate.
 namespace tactus
 {
 
-/// A frame of a recording and what it returned when it was replayed.
+/// A frame of a recording and its output in the replay.
 struct ReplayedFrameView
 {
-    std::uint64_t number{0};       ///< From 0.
-    std::int64_t first_time_ns{0}; ///< RecordedFrame::now_ns of frame 0.
+    std::uint64_t number{0};       ///< Number of the frame, from 0.
+    std::int64_t first_time_ns{0}; ///< Value of RecordedFrame::now_ns of frame 0.
     const RecordedFrame& given;
     const FrameOutput& returned;
 };
 
 void tell_run(FieldSink& sink, const RecordedSetup& setup);
 void tell_tool_spec(FieldSink& sink, const ToolSpec& tool);
-/// `number` is of RecordedSetup::objects.
+/// `number`: index in RecordedSetup::objects.
 void tell_object(FieldSink& sink, const RecordedSetup& setup, std::size_t number);
 void tell_model_spec(FieldSink& sink, const RecordedSetup& setup, std::size_t number);
 
-/// Time, work, faults and scene.
+/// Writes time, work, faults and scene.
 void tell_frame(FieldSink& sink, const ReplayedFrameView& frame);
 void tell_tool(FieldSink& sink, const ReplayedFrameView& frame, std::size_t tool);
 void tell_pair(FieldSink& sink, const PairOutput& pair);

@@ -9,9 +9,9 @@
 namespace tactus
 {
 
-/// Makes one JSON object of what is told, on one line. A value that is not known, and a number that
-/// is not finite, is null; a set of words is an array, a vector one of three numbers, a rotation
-/// one of four. Names and texts may hold anything: what is not printable ASCII becomes '?'.
+/// Makes one JSON object on one line. An unknown value and a number that is not finite are null; a
+/// set of words is an array, a vector one of three numbers, a rotation one of four. Characters
+/// other than printable ASCII in names and texts become '?'.
 class JsonSink final : public FieldSink
 {
 public:
@@ -23,14 +23,14 @@ public:
     void vector(const char* name, const std::optional<Vec3>& value) override;
     void rotation(const char* name, const std::optional<Eigen::Quaterniond>& value) override;
 
-    /// What is told until close() is of an object under this name, or, in a list, of its next item.
+    /// Values until close() belong to an object under this name, or, in a list, to its next item.
     void open(const char* name);
     void open_item();
     void close();
     void open_list(const char* name);
     void close_list();
 
-    /// The object, "{...}" without a line's end; empties the sink.
+    /// Returns the object, "{...}" without a line's end, and empties the sink.
     [[nodiscard]] std::string take();
 
 private:

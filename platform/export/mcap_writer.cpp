@@ -15,10 +15,10 @@
 namespace tactus
 {
 
-// A file is: magic, header; chunks with their indexes; end of data; summary, in groups of one kind
-// of record; where the groups are; footer, magic. A record is a u8 opcode, the u64 length of its
-// content, the content; integers are little-endian, texts and arrays have their bytes as u32
-// before.
+// A file consists of magic and header; chunks with their indexes; end of data; summary, in groups
+// of one kind of record; offsets of the groups; footer and magic. A record is a u8 opcode, the u64
+// length of its content, and the content; integers are little-endian, texts and arrays follow their
+// length in bytes as u32.
 namespace
 {
 
@@ -70,7 +70,7 @@ void put_record(Bytes& bytes, std::uint8_t code, std::span<const std::byte> cont
     put_bytes(bytes, content);
 }
 
-/// IEEE 802.3.
+/// CRC-32 of IEEE 802.3.
 std::uint32_t ieee_crc32(std::span<const std::byte> bytes, std::uint32_t before = 0)
 {
     return crc32_by<0xEDB8'8320U>(bytes, before);
@@ -93,7 +93,7 @@ void McapWriter::Span::add(std::uint64_t time_ns)
 McapWriter::McapWriter(std::string_view library)
 {
     Bytes content;
-    put_text(content, ""); // No profile.
+    put_text(content, ""); // The profile is empty.
     put_text(content, library);
     Bytes start;
     put_magic(start);
@@ -124,7 +124,7 @@ std::uint16_t McapWriter::add_channel(std::string_view topic, std::uint16_t sche
     put(content, schema);
     put_text(content, topic);
     put_text(content, "json");
-    put(content, std::uint32_t{0}); // No metadata.
+    put(content, std::uint32_t{0}); // It has no metadata.
     put_record(chunk_, opcode::kChannel, content);
     put_record(channels_, opcode::kChannel, content);
     messages_[id] = 0;
@@ -160,7 +160,7 @@ void McapWriter::close_chunk()
     put(content, chunk_times_.last_ns);
     put(content, std::uint64_t{chunk_.size()});
     put(content, ieee_crc32(chunk_));
-    put_text(content, ""); // Not compressed.
+    put_text(content, ""); // The chunk is not compressed.
     put(content, std::uint64_t{chunk_.size()});
     put_bytes(content, chunk_);
     Bytes record;
@@ -168,7 +168,7 @@ void McapWriter::close_chunk()
     append(record);
     const std::uint64_t indexes_start = position_;
 
-    Bytes places; // Of the indexes, by channel.
+    Bytes places; // Places of the indexes, by channel.
     for (const auto& [channel, messages] : chunk_index_)
     {
         put(places, channel);
@@ -211,8 +211,8 @@ Bytes McapWriter::statistics() const
     put(content, times_.count);
     put(content, schema_count_);
     put(content, static_cast<std::uint32_t>(messages_.size()));
-    put(content, std::uint32_t{0}); // Attachments.
-    put(content, std::uint32_t{0}); // Metadata.
+    put(content, std::uint32_t{0}); // Number of attachments.
+    put(content, std::uint32_t{0}); // Number of metadata records.
     put(content, chunk_count_);
     put(content, times_.first_ns);
     put(content, times_.last_ns);
@@ -263,7 +263,7 @@ void McapWriter::finish()
     const std::uint64_t start = position_;
     const std::uint64_t offsets_start = position_ + summary.size();
     put_bytes(summary, offsets);
-    // The summary's checksum goes as far as the footer's own begin.
+    // The summary's checksum includes the start of the footer.
     put(summary, opcode::kFooter);
     put(summary, std::uint64_t{20});
     put(summary, start);

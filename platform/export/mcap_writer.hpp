@@ -13,35 +13,36 @@
 namespace tactus
 {
 
-/// Lays out an MCAP file, format version 0: messages in chunks that are not compressed, each with
-/// its indexes behind it, and a summary of all at the end, so that a reader finds any time without
-/// reading the rest. Checksums are made of chunks, data and summary. Whoever owns it takes the
-/// bytes away and stores them in their order.
+/// Formats an MCAP file, format version 0: messages in uncompressed chunks, each followed by its
+/// indexes, and a summary of all at the end, so that a reader finds any time without reading the
+/// rest. Chunks, data and summary have checksums. The owner takes the bytes and stores them in
+/// order.
 ///
 /// Messages and schemas are JSON: encodings "json" and "jsonschema". One thread, not the haptic
 /// one: it allocates.
 class McapWriter
 {
 public:
-    /// A chunk ends with the first message that makes it as long.
+    /// Size at which a chunk ends, after the message that reaches it.
     static constexpr std::size_t kChunkBytes = std::size_t{1} << 20U;
 
     /// `library` names the program.
     explicit McapWriter(std::string_view library);
 
-    /// Its id, 1 and up; at most 65,535 (asserted).
+    /// Adds a schema and returns its id, 1 and up; at most 65,535 (asserted).
     [[nodiscard]] std::uint16_t add_schema(std::string_view name, std::string_view json_schema);
-    /// Likewise, 0 and up; messages of it have this schema.
+    /// Adds a channel and returns its id, 0 and up; its messages have this schema.
     [[nodiscard]] std::uint16_t add_channel(std::string_view topic, std::uint16_t schema);
 
-    /// `sequence` counts what the channel's source made; times need not ascend.
+    /// Adds a message. `sequence` counts the messages of the channel's source; times need not
+    /// ascend.
     void add_message(std::uint16_t channel, std::uint32_t sequence, std::uint64_t time_ns,
                      std::string_view json);
 
-    /// Closes the file, once, as the last call but take_bytes().
+    /// Closes the file, once, as the last call except take_bytes().
     void finish();
 
-    /// Everything laid out since the last call.
+    /// Returns all bytes formatted since the last call.
     [[nodiscard]] std::vector<std::byte> take_bytes();
 
 private:
@@ -61,19 +62,19 @@ private:
     [[nodiscard]] std::vector<std::byte> statistics() const;
 
     std::vector<std::byte> bytes_;
-    std::uint64_t position_{0}; ///< Of the end of bytes_ in the file.
+    std::uint64_t position_{0}; ///< Position of the end of bytes_ in the file.
     std::uint32_t data_checksum_{0};
 
-    std::vector<std::byte> chunk_; ///< Records of the chunk that is open.
+    std::vector<std::byte> chunk_; ///< Records of the open chunk.
     Span chunk_times_;
-    /// Of the open chunk: by channel, times and offsets of its messages.
+    /// Message times and offsets of the open chunk, by channel.
     std::map<std::uint16_t, std::vector<std::pair<std::uint64_t, std::uint64_t>>> chunk_index_;
 
-    std::vector<std::byte> schemas_;  ///< Records, again for the summary.
-    std::vector<std::byte> channels_; ///< Likewise.
+    std::vector<std::byte> schemas_;  ///< Schema records, repeated in the summary.
+    std::vector<std::byte> channels_; ///< Channel records, repeated in the summary.
     std::vector<std::byte> chunk_indexes_;
     std::uint16_t schema_count_{0};
-    std::map<std::uint16_t, std::uint64_t> messages_; ///< Of each channel.
+    std::map<std::uint16_t, std::uint64_t> messages_; ///< Messages of each channel.
     std::uint32_t chunk_count_{0};
     Span times_;
 };
