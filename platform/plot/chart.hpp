@@ -10,7 +10,7 @@
 namespace tactus::plot
 {
 
-/// How much a mark should catch the eye; pages give each its colour.
+/// Emphasis of a mark; pages give each its colour.
 enum class MarkKind : std::uint8_t
 {
     plain,
@@ -30,7 +30,8 @@ struct Mark
 struct Line
 {
     std::string name;
-    std::vector<double> y; ///< As many as the chart has x; not finite: nothing there.
+    /// One value for each x of the chart; a value that is not finite leaves a gap.
+    std::vector<double> y;
 };
 
 /// Lines over one axis. A reader can zoom in and read values off it.
@@ -38,30 +39,30 @@ struct Chart
 {
     enum class Kind : std::uint8_t
     {
-        series,    ///< Over time. The series of a page are zoomed together.
+        series,    ///< Lines over time. The series of a page are zoomed together.
         histogram, ///< Steps from x[i] to x[i + 1]; both axes logarithmic, all x positive.
     };
 
     std::string title;
-    std::string x_label; ///< With its unit.
-    std::string y_label; ///< Likewise.
+    std::string x_label; ///< Label with its unit.
+    std::string y_label; ///< Label with its unit.
     Kind kind{Kind::series};
     std::vector<double> x; ///< Ascending.
     std::vector<Line> lines;
     std::vector<Mark> marks;
 };
 
-/// What draws the charts of a page, inlined into it: Debian's libjs-dygraphs.
+/// The library that draws the charts of a page, inlined into it: Debian's libjs-dygraphs.
 struct ChartLibrary
 {
     std::string script;
     std::string style;
-    std::string missing; ///< Why there is none, for the page to say; empty: it is there.
+    std::string missing; ///< Reason why there is none, for the page; empty: it is there.
 
     /// Reads dygraphs/dygraph.min.js and .css below `folder`. A file that can't be read, or that
-    /// would end the element it is put into, leaves `missing`.
+    /// would end its element, sets `missing`.
     [[nodiscard]] static ChartLibrary read(const std::filesystem::path& folder);
-    /// From where the package has it.
+    /// Reads the library from the package's folder.
     [[nodiscard]] static ChartLibrary packaged();
 };
 

@@ -16,7 +16,7 @@ namespace tactus::plot
 namespace
 {
 
-/// Whether it has in it what ends, or changes, the element of HTML or XML that it is put into.
+/// True if the text would end or change the element of HTML or XML that contains it.
 bool leaves_its_element(const std::string& text)
 {
     const auto is_same = [](char a, char b)
@@ -31,7 +31,7 @@ bool leaves_its_element(const std::string& text)
     return false;
 }
 
-/// Empty when all is well.
+/// Reads a file; returns the fault, empty if none.
 std::string read_into(std::string& text, const std::filesystem::path& path)
 {
     std::ifstream file(path, std::ios::binary);

@@ -17,13 +17,13 @@ const as_html = (text) => {
   return element.innerHTML;
 };
 
-/// Where x is between the left and the right end: 0 to 1.
+/// Position of x between the left and the right end: 0 to 1.
 function share_of(graph, x) {
   const [low, high] = graph.xAxisRange();
   return graph.is_series ? (x - low) / (high - low) : Math.log(x / low) / Math.log(high / low);
 }
 
-/// Below the lines, those of little weight first; many are pale, so that they hide nothing.
+/// Draws the marks below the lines, light ones first; many are pale, so that they hide nothing.
 function draw_marks(canvas, area, graph, marks) {
   for (const kind of ["plain", "warning", "fault"]) {
     const shares = marks.filter((mark) => mark.kind === kind).flatMap((mark) => mark.x)
@@ -42,7 +42,7 @@ function draw_marks(canvas, area, graph, marks) {
   canvas.globalAlpha = 1;
 }
 
-/// What the vertical lines are: "own fault: 3".
+/// Legend of the vertical lines, for instance "own fault: 3".
 function name_marks(parent, marks) {
   for (const { name, kind, x } of marks) {
     const line = document.createElement("span");
@@ -52,7 +52,7 @@ function name_marks(parent, marks) {
   }
 }
 
-/// Another series follows where one is zoomed or moved.
+/// Applies the zoom and position of one series to all others.
 let is_following = false;
 function follow(graph) {
   if (is_following) {

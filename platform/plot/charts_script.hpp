@@ -7,7 +7,7 @@
 namespace tactus::plot
 {
 
-/// What draws a page's charts with the chart library: platform/plot/charts.js.
+/// Script that draws a page's charts with the chart library: platform/plot/charts.js.
 [[nodiscard]] std::string_view charts_script() noexcept;
 
 } // namespace tactus::plot

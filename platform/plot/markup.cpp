@@ -19,7 +19,7 @@ bool continues(char c)
     return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;
 }
 
-/// How many bytes the character has that starts here; 0 when it is none that XML has.
+/// Number of bytes of the character that starts here; 0 if XML has no such character.
 std::size_t character_length(std::string_view text)
 {
     const auto first = static_cast<unsigned char>(text[0]);

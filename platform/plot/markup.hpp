@@ -8,8 +8,8 @@
 namespace tactus::plot
 {
 
-/// Any bytes as text of HTML or SVG, in attributes as well. What is no character of XML, control
-/// characters and broken UTF-8 alike, becomes U+FFFD.
+/// Escapes any bytes as text of HTML or SVG, also for attributes. Bytes that are no character of
+/// XML, control characters and broken UTF-8 become U+FFFD.
 [[nodiscard]] std::string escaped(std::string_view text);
 
 } // namespace tactus::plot

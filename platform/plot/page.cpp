@@ -97,11 +97,11 @@ const char* name_of(MarkKind kind)
     return "plain";
 }
 
-/// To as many digits as a reader of a chart can use.
+/// Value rounded to the digits that a reader of a chart can use.
 double rounded(double value)
 {
     return std::isfinite(value) ? std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr)
-                                : value; // Which JSON has as null.
+                                : value; // JSON writes it as null.
 }
 
 std::vector<double> rounded(const std::vector<double>& values)
@@ -112,7 +112,7 @@ std::vector<double> rounded(const std::vector<double>& values)
     return result;
 }
 
-/// JSON that can stand in any element: no character in it has a meaning in HTML or XML.
+/// JSON that is safe in any element: no character in it has a meaning in HTML or XML.
 std::string to_json(const Chart& chart)
 {
     using Json = nlohmann::ordered_json;
@@ -121,7 +121,7 @@ std::string to_json(const Chart& chart)
     {
         lines.push_back({{"name", line.name}, {"y", rounded(line.y)}});
     }
-    Json marks = Json::array(); // Those of one name together: there may be thousands.
+    Json marks = Json::array(); // Marks of one name are merged, since there may be thousands.
     for (const Mark& mark : chart.marks)
     {
         auto of_name = std::ranges::find_if(marks, [&](const Json& known)
@@ -162,7 +162,7 @@ std::string to_json(const Chart& chart)
     return safe;
 }
 
-/// Text that is no markup, for XML and, as a comment of the script's, for HTML.
+/// Script element whose content is no markup, for XML and, as a comment of the script's, for HTML.
 std::string script_of(std::string_view text)
 {
     return fmt::format("<script>//<![CDATA[\n{}\n//]]></script>\n", text);
@@ -183,7 +183,7 @@ std::string head_of(const Table& table)
     return head + "</tr></thead>\n";
 }
 
-/// The first cell of a line names it.
+/// Table row; its first cell is the header.
 std::string line_of(const std::vector<std::string>& cells, const std::vector<Column>& columns)
 {
     std::string line = "<tr>";

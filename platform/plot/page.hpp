@@ -14,12 +14,12 @@ namespace tactus::plot
 struct Column
 {
     std::string name;
-    bool is_number{true}; ///< Set against the right.
+    bool is_number{true}; ///< Aligned to the right.
 };
 
 struct Table
 {
-    std::vector<Column> columns; ///< Without any name there is no head.
+    std::vector<Column> columns; ///< Columns; if all names are empty there is no head.
     std::vector<std::vector<std::string>> lines;
 };
 
@@ -29,28 +29,26 @@ struct TitledTable
     Table table;
 };
 
-/// One HTML file that needs nothing but itself and is well-formed XML as well. It is read on a
-/// screen, light or dark as the reader has it, on a phone and on paper: charts shrink with the
-/// page, and what is too wide of a table moves inside its own box. All text may be anything. The
-/// same calls make the same bytes. Scripts draw charts and nothing else: a reader without them has
-/// the rest.
+/// One self-contained HTML file that is well-formed XML as well, for screens, light or dark by the
+/// reader's setting, phones and paper: charts shrink with the page, and wide tables scroll inside
+/// their box. All texts are escaped. The same calls make the same bytes. Scripts only draw charts:
+/// all else works without them.
 class Page
 {
 public:
-    /// `library` is inlined once if there are charts. Where it is missing, the page says so
-    /// instead.
+    /// `library` is inlined once if there are charts. If it is missing, the page says so instead.
     Page(const std::string& title, ChartLibrary library);
 
     void heading(const std::string& text);
     void paragraph(const std::string& text);
-    /// What it all comes to, where the eye falls.
+    /// Adds the overall result, prominently.
     void verdict(const std::string& text, bool is_good);
     void table(const Table& table);
-    /// Small ones, side by side where there is room.
+    /// Adds small tables, side by side if there is room.
     void tables(const std::vector<TitledTable>& tables);
-    /// Nothing of one without a way or a face.
+    /// Adds a relief; none if it has neither a path nor a face.
     void relief(const Relief& relief);
-    /// Side by side where there is room.
+    /// Adds charts, side by side if there is room.
     void charts(const std::vector<Chart>& charts);
 
     [[nodiscard]] std::string html() const;
@@ -62,10 +60,10 @@ private:
     ChartLibrary library_;
     std::string body_;
     bool has_relief_{false};
-    std::vector<std::string> charts_; ///< The JSON of each.
+    std::vector<std::string> charts_; ///< JSON of each chart.
 };
 
-/// A table of names and what they come to.
+/// A table of names and values.
 [[nodiscard]] Table facts(const std::vector<std::pair<std::string, std::string>>& pairs);
 
 } // namespace tactus::plot

@@ -20,16 +20,15 @@ namespace
 
 using Vector = std::array<double, 3>;
 
-// Where the eye is: to the right, in front and above. Each is a unit vector, and they are
-// perpendicular.
+// The eye is to the right, in front and above. All are unit vectors, and they are perpendicular.
 constexpr Vector kRight{0.8192, 0.5736, 0.0};
 constexpr Vector kUp{-0.2868, 0.4096, 0.8660};
 constexpr Vector kToEye{0.4967, -0.7094, 0.5};
 
 constexpr std::size_t kShades = 8;
 constexpr std::size_t kColours = 6; ///< The first is that of nothing.
-constexpr double kWidth = 1000.0;   ///< How wide a view is, in its own units.
-constexpr double kNearShare = 0.4;  ///< Ways that take less of a picture get one of their own.
+constexpr double kWidth = 1000.0;   ///< Width of a view, in its own units.
+constexpr double kNearShare = 0.4;  ///< Share of a picture below which the paths get a second view.
 
 double dot(const Vector& a, const Vector& b)
 {
@@ -42,7 +41,7 @@ Vector to_vector(const Place& place)
             static_cast<double>(place[2])};
 }
 
-/// On the screen, y down, and how near it is to the eye.
+/// Point on the screen, y down, and its depth towards the eye.
 struct Seen
 {
     double x{0.0};
@@ -82,7 +81,7 @@ struct Frame
     }
 };
 
-/// From the scene's lengths to those of the picture.
+/// Scale from the scene's lengths to those of the picture.
 struct Scale
 {
     Frame frame;
@@ -98,7 +97,7 @@ struct Scale
         return fmt::format("{:.1f} {:.1f}", factor * (at.x - frame.low_x),
                            factor * (at.y - frame.low_y));
     }
-    /// The window onto the picture that shows this part of it.
+    /// View box of this part of the picture.
     [[nodiscard]] std::string window(const Frame& part) const
     {
         return fmt::format("{:.1f} {:.1f} {:.1f} {:.1f}", factor * (part.low_x - frame.low_x),
@@ -107,7 +106,7 @@ struct Scale
     }
 };
 
-/// How light a face is: the more it looks to the eye, the lighter.
+/// Shade of a face: lighter the more it faces the eye.
 std::size_t shade_of(const std::array<Place, 3>& face)
 {
     const Vector a = to_vector(face[0]);
@@ -125,7 +124,7 @@ std::size_t shade_of(const std::array<Place, 3>& face)
     return std::min(static_cast<std::size_t>(facing * kShades), kShades - 1);
 }
 
-/// The farthest first, so that what is nearer hides it.
+/// Draws the farthest faces first, so that nearer ones hide them.
 std::string drawn(const std::vector<std::array<Place, 3>>& faces, const Scale& scale)
 {
     struct Drawn
@@ -159,7 +158,7 @@ std::size_t colour_of(float amount, float most)
                           kColours - 1);
 }
 
-/// Pieces of one colour, each up to where the next begins.
+/// Draws a path as segments of one colour, each up to the start of the next.
 std::string drawn(const std::vector<WayPoint>& way, float most, const Scale& scale)
 {
     std::string text;
@@ -177,7 +176,7 @@ std::string drawn(const std::vector<WayPoint>& way, float most, const Scale& sca
     return text;
 }
 
-/// What the colours are.
+/// Legend of the colours.
 std::string legend_of(float most, const std::string& unit)
 {
     std::string text = "<div class=\"legend\"><span class=\"k0\">&#9473;&#9473;</span> none";
@@ -244,8 +243,8 @@ std::string figure_of(const Relief& relief)
 
 std::string relief_style()
 {
-    // By a class each: in a <use> nothing is below the figure.
-    // From what is none, grey, to what is most.
+    // Each colour has a class, since in a <use> nothing is below the figure. The colours go from
+    // grey for none to the largest amount.
     constexpr std::array<const char*, kColours> light{"#8a8a8a", "#3b6fb6", "#1b8a6b",
                                                       "#b07a00", "#d2521c", "#c00030"};
     constexpr std::array<const char*, kColours> dark{"#8f8f8f", "#6fa8ff", "#42d0a4",

@@ -12,31 +12,30 @@ namespace tactus::plot
 
 using Place = std::array<float, 3>;
 
-/// A place of a way, and how much there is of what its colour shows.
+/// A point of a path, and the amount that its colour shows.
 struct WayPoint
 {
     Place at{};
     float amount{0.0F};
 };
 
-/// Surfaces and the ways along them, seen from the front, the right and above; z is up.
+/// Surfaces and the paths along them, seen from the front, the right and above; z is up.
 struct Relief
 {
     std::string title;
     std::vector<std::array<Place, 3>> faces;
-    std::vector<std::vector<WayPoint>> ways; ///< Each in its order, over the surfaces.
-    std::string unit;                        ///< Of the amounts.
-    std::string note;                        ///< Below it; may be empty.
+    std::vector<std::vector<WayPoint>> ways; ///< Paths, each in its order, over the surfaces.
+    std::string unit;                        ///< Unit of the amounts.
+    std::string note;                        ///< Note below the figure; may be empty.
 
     [[nodiscard]] bool is_empty() const { return faces.empty() && ways.empty(); }
 };
 
-/// As a figure of HTML that is well-formed XML, too, for a page that has relief_style(). Where the
-/// ways take little of the room there is a second view of their surroundings. Without a way or a
-/// face nothing is drawn.
+/// Figure of HTML that is well-formed XML, too, for a page with relief_style(). If the paths fill
+/// only a small part of it, a second view shows their surroundings. Empty without a path or a face.
 [[nodiscard]] std::string figure_of(const Relief& relief);
 
-/// Shades of surfaces and colours of ways, light and dark.
+/// Shades of surfaces and colours of paths, light and dark.
 [[nodiscard]] std::string relief_style();
 
 } // namespace tactus::plot
