@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdlib>
 
-// TACTUS_ALLOCATION_COUNTER is set by the build: 1 to take the place of malloc, 0 to stay out.
+// The build sets TACTUS_ALLOCATION_COUNTER: 1 to replace malloc, 0 otherwise.
 
 namespace tactus::allocation_counter
 {
@@ -14,8 +14,8 @@ namespace tactus::allocation_counter
 namespace
 {
 
-// Constant-initialised, so the first access allocates nothing; a thread's first access may come
-// from inside malloc.
+// They are constant-initialised, so the first access allocates nothing; a thread's first access may
+// come from inside malloc.
 constinit thread_local bool thread_is_marked = false;
 constinit thread_local HeapCalls thread_calls{};
 
@@ -57,7 +57,7 @@ HeapCalls of_this_thread() noexcept
 
 #if TACTUS_ALLOCATION_COUNTER
 
-// Names and signatures are the C library's; its own functions stay reachable under these.
+// These are the C library's signatures, and its names for its own functions.
 // NOLINTBEGIN(bugprone-reserved-identifier)
 extern "C"
 {

@@ -8,14 +8,14 @@
 namespace tactus
 {
 
-/// Where the time comes from. Any thread may ask; neither call blocks or allocates.
-/// `rt_core` never sees a clock: the controller reads it outside the frame.
+/// A source of time. Any thread; no call blocks or allocates. `rt_core` uses no clock: the
+/// controller reads it outside the frame.
 class Clock
 {
 public:
     virtual ~Clock() = default;
 
-    /// Never goes back between two calls on one thread.
+    /// Monotonic time; never decreases between two calls on one thread.
     [[nodiscard]] virtual MonotonicTime now() const noexcept TACTUS_NONBLOCKING = 0;
     [[nodiscard]] virtual WallTime wall_now() const noexcept = 0;
 

@@ -14,8 +14,8 @@ namespace tactus
 bool reset_float_control() noexcept
 {
 #if defined(__x86_64__)
-    constexpr std::uint32_t kDefault = 0x1F80;   // All exceptions masked, everything else 0.
-    constexpr std::uint32_t kRaisedFlags = 0x3F; // What has happened so far; not a setting.
+    constexpr std::uint32_t kDefault = 0x1F80;   // All exceptions are masked, all other bits are 0.
+    constexpr std::uint32_t kRaisedFlags = 0x3F; // Status flags; not settings.
     const std::uint32_t found = _mm_getcsr();
     _mm_setcsr(kDefault);
     return (found & ~kRaisedFlags) == kDefault;

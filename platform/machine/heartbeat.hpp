@@ -11,20 +11,20 @@
 namespace tactus
 {
 
-/// The sign of life of one thread, for whoever watches it: when it last came round. Wait-free, and
-/// allocates nothing.
+/// The time of one thread's last cycle, for a watchdog. Wait-free, and allocates nothing.
 class Heartbeat
 {
 public:
-    /// The watched thread, once a cycle. `now` from the clock that the watcher reads, too.
+    /// Watched thread, once a cycle. `now`: time of the watchdog's clock.
     void beat(MonotonicTime now) noexcept
     {
         ns_.store(now.ns, std::memory_order_release); // Pairs with the acquire in last().
     }
-    /// The watched thread: no more beats are to be expected.
+    /// Watched thread: ends the beats.
     void rest() noexcept { ns_.store(kResting, std::memory_order_release); }
 
-    /// Any thread. None while nothing is to be expected: before the first beat and after rest().
+    /// Any thread: time of the last beat. None if no beat is due: before the first one and after
+    /// rest().
     [[nodiscard]] std::optional<MonotonicTime> last() const noexcept
     {
         const std::int64_t ns = ns_.load(std::memory_order_acquire); // Pairs with the releases.

@@ -16,7 +16,7 @@ namespace tactus
 ///
 /// Up to 2,047 ns each nanosecond has a counter; above, each octave has 1,024. All 224 KiB are
 /// allocated and touched at construction; recording allocates nothing and costs a few nanoseconds
-/// once its counters are in cache. What reads or adds all of them goes through 28,000. One thread.
+/// with its counters in cache. Functions of all counters visit 28,000. One thread.
 class LatencyHistogram
 {
 public:
@@ -26,35 +26,36 @@ public:
 
     LatencyHistogram();
 
-    /// Negative durations count as 0; those beyond kLongest share the last counter, but max() and
-    /// mean_ns() stay true.
+    /// Counts a duration. Negative ones count as 0; those beyond kLongest share the last counter,
+    /// but max() and mean_ns() stay true.
     void record(Duration duration) noexcept;
 
-    /// The same with what a stall kept from being measured (coordinated omission): where one is
-    /// due every `interval` (> 0) and one of them took longer, those that were due meanwhile waited
-    /// for the rest of it, and each counts: v - interval, v - 2 interval, ... as long as something
-    /// is left. Of a value beyond kLongest only those up to kLongest. Allocates, in time by the
-    /// longest value over the interval; for once the measuring has ended. The interval is asserted.
+    /// Returns a histogram that includes the values which a stall kept from being measured
+    /// (coordinated omission). If a value is due every `interval` (> 0) and one takes v longer, the
+    /// values due meanwhile waited for its rest: v - interval, v - 2 interval, ... > 0 are added. A
+    /// value beyond kLongest adds only those up to kLongest. Allocates, and takes time in
+    /// proportion to the longest value over the interval; call after measuring. The interval is
+    /// asserted.
     [[nodiscard]] LatencyHistogram corrected(Duration interval) const;
 
-    /// Everything that the other has recorded, as well.
+    /// Adds all values of the other histogram.
     void add(const LatencyHistogram& other) noexcept;
 
-    /// How many values are at most this long; one up to 1/1024 longer may count as well.
+    /// Number of values of at most this length; some up to 1/1024 longer may be included.
     [[nodiscard]] std::uint64_t count_to(Duration longest) const noexcept;
 
-    /// An upper bound, at most 1/1024 above, of the smallest recorded value that at least the
-    /// fraction `q` of all values do not exceed; `q` is clamped to [0, 1]. Zero when empty.
+    /// Upper bound, at most 1/1024 above, of the smallest recorded value that at least the fraction
+    /// `q` of all values do not exceed; `q` is clamped to [0, 1]. Zero if empty.
     [[nodiscard]] Duration quantile(double q) const noexcept;
 
     [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
     [[nodiscard]] Duration max() const noexcept { return max_; }
-    /// Zero when empty.
+    /// Smallest value; zero if empty.
     [[nodiscard]] Duration min() const noexcept { return min_; }
-    /// In nanoseconds, exact up to the last rounding; zero when empty.
+    /// Mean in nanoseconds, exact up to the last rounding; zero if empty.
     [[nodiscard]] double mean_ns() const noexcept;
-    /// In nanoseconds, of all values and not of a sample of them; each is taken for the longest
-    /// that shares its counter.
+    /// Population standard deviation in nanoseconds; each value counts as the longest that shares
+    /// its counter.
     [[nodiscard]] double standard_deviation_ns() const noexcept;
 
 private:

@@ -58,7 +58,7 @@ Cycle PeriodicTimer::spin_until_deadline() noexcept
     return cycle;
 }
 
-/// A machine that takes the processor away meanwhile is late as well.
+/// A machine that preempts the thread during the wait is late as well.
 MonotonicTime PeriodicTimer::wait_out() noexcept
 {
     const bool began_in_time = now() < deadline_;
@@ -70,7 +70,7 @@ MonotonicTime PeriodicTimer::wait_out() noexcept
     return time;
 }
 
-/// Moves the deadline to the first grid point after `time` when whole periods were lost.
+/// Moves the deadline to the first grid point after `time` if whole periods were lost.
 void PeriodicTimer::skip_lost_periods(MonotonicTime time) noexcept
 {
     const Duration late = time - deadline_;

@@ -11,25 +11,23 @@
 namespace tactus
 {
 
-/// What the loop knows at the start of a frame.
+/// Timing of the loop at the start of a frame.
 struct Cycle
 {
-    /// The grid point this frame belongs to: start + a whole number of periods.
+    /// Grid point of this frame: start + a whole number of periods.
     MonotonicTime deadline;
-    /// How much later than asked the machine woke us, the worst of this cycle's sleeps and of the
-    /// wait for the deadline. Zero when there was no time for either, so a frame that took too long
-    /// never looks like a late machine.
+    /// Wake-up latency: the worst of this cycle's sleeps and of the wait for the deadline. Zero if
+    /// there was no time for either, so a frame that took too long never looks like a late machine.
     Duration wake_lateness;
-    /// How long after the deadline the frame starts; below one period unless the clock itself
-    /// jumps.
+    /// Time from the deadline to the frame's start; below one period unless the clock itself jumps.
     Duration start_lateness;
-    /// Whole periods since the last cycle: 1 normally, more after a stall. The frame that follows
-    /// must use it as the true elapsed time.
+    /// Whole periods since the last cycle: 1 normally, more after a stall. The next frame must use
+    /// it as the elapsed time.
     std::uint32_t periods{1};
 };
 
-/// Sums over the timer's life. One stall of k periods is one episode and k missed periods, however
-/// many frames it would have held: count episodes when judging a machine.
+/// Sums over the timer's life. One stall of k periods is one episode and k missed periods: count
+/// episodes to judge a machine.
 struct TimerCounts
 {
     std::uint64_t cycles{0};
@@ -37,8 +35,8 @@ struct TimerCounts
     std::uint64_t episodes{0};
 };
 
-/// The beat of the haptic loop, in two steps so that the loop can rehearse its query just before it
-/// is needed:
+/// The timer of the haptic loop, in two steps so that the loop can warm its caches just before the
+/// query:
 ///
 ///     timer.start(period, margin)
 ///     for (;;)
@@ -48,29 +46,29 @@ struct TimerCounts
 ///         frame.run(...)
 ///
 /// All deadlines lie on one grid, so lateness never adds up. A frame that starts less than a period
-/// late runs at once; after a longer stall the timer moves to the next grid point, tells how many
-/// periods went by, and never runs the lost frames in a burst.
+/// late runs at once; after a longer stall the timer moves to the next grid point, reports the
+/// elapsed periods, and never runs the lost frames in a burst.
 ///
-/// One thread uses a timer; nothing allocates. The rules live here and a backend gives only three
-/// primitives, so no two machines can differ in them.
+/// One thread uses a timer; nothing allocates. The rules are here and a backend gives only three
+/// primitives, so they are the same on all machines.
 class PeriodicTimer
 {
 public:
-    static constexpr Duration kPeriodMin = microseconds(50); ///< 20 kHz.
+    static constexpr Duration kPeriodMin = microseconds(50); ///< Period of 20 kHz.
     static constexpr Duration kPeriodMax = milliseconds(1'000);
 
     virtual ~PeriodicTimer() = default;
 
-    /// The first deadline is one period from now. Starting again forgets the counts.
+    /// Starts a grid whose first deadline is one period from now. A restart resets the counts.
     /// `period` must be in [kPeriodMin, kPeriodMax], `margin` in [0, period); others are refused.
-    /// The two calls below come after it (asserted).
+    /// The two calls below require it (asserted).
     Result<Done, Refusal> start(Duration period, Duration margin);
 
-    /// Sleeps until `margin` before the deadline. Returns at once when that has passed.
+    /// Sleeps until `margin` before the deadline. Returns at once if that has passed.
     void sleep_until_margin() noexcept;
 
-    /// Waits out the margin without giving up the processor. After a stall it sleeps to the new
-    /// grid point first.
+    /// Waits through the margin without yielding the processor. After a stall it first sleeps to
+    /// the new grid point.
     [[nodiscard]] Cycle spin_until_deadline() noexcept;
 
     [[nodiscard]] const TimerCounts& counts() const noexcept { return counts_; }
@@ -85,7 +83,7 @@ private:
     [[nodiscard]] virtual MonotonicTime now() noexcept = 0;
     /// Returns at `wake` or later, never earlier.
     virtual void sleep_until(MonotonicTime wake) noexcept = 0;
-    /// As sleep_until(), but keeps the processor; returns the time it stopped at.
+    /// Like sleep_until(), but keeps the processor; returns the time at its end.
     [[nodiscard]] virtual MonotonicTime spin_until(MonotonicTime deadline) noexcept = 0;
 
     [[nodiscard]] MonotonicTime wait_out() noexcept;

@@ -9,18 +9,18 @@
 namespace tactus
 {
 
-/// The memory that all pools are made of: one allocation at start-up, all zero and so touched, on a
-/// huge page's boundary. Throws std::bad_alloc where there is none.
+/// Memory of all pools: one allocation at start-up, all zero and so touched, aligned to a huge
+/// page. Throws std::bad_alloc if there is none.
 ///
-/// On huge pages where the system grants them: a walk through pools of many megabytes otherwise
+/// It is on huge pages if the system grants them: otherwise a walk through pools of many megabytes
 /// misses the translation cache at nearly every block, and a frame with cold caches walks the page
-/// tables too. The system may take up to kHugePage - 1 bytes more than asked for.
+/// tables too. The system may take up to kHugePage - 1 bytes more than requested.
 class PoolMemory
 {
 public:
     static constexpr std::size_t kHugePage = std::size_t{2} << 20U;
 
-    /// Rounded up to whole cache lines.
+    /// `bytes` is rounded up to whole cache lines.
     explicit PoolMemory(std::size_t bytes);
     PoolMemory(const PoolMemory&) = delete;
     PoolMemory& operator=(const PoolMemory&) = delete;

@@ -5,15 +5,15 @@
 namespace tactus
 {
 
-/// Keeps the signal that continues a stopped process until take_process_stop() takes it. Called by
-/// the main thread before it starts others, which inherit that.
+/// Keeps the signal that continues a stopped process until take_process_stop() takes it. Main
+/// thread, before it starts others, which inherit that.
 ///
 /// A stopped process is continued by SIGCONT alone, blocked or not, and the system makes the signal
 /// pending before any thread runs again. So no thread can see its own delay before the reason.
 void watch_process_stops() noexcept;
 
-/// Whether the process was stopped from outside and continued since the last call. Two system
-/// calls at most, neither of which blocks. False where nothing watches.
+/// True if the process was stopped from outside and continued since the last call; false without
+/// watch_process_stops(). Two system calls at most, neither of which blocks.
 [[nodiscard]] bool take_process_stop() noexcept;
 
 } // namespace tactus

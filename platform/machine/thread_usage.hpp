@@ -9,17 +9,17 @@
 namespace tactus
 {
 
-/// What the system has counted for one thread since it started; subtract two readings to judge a
-/// cycle. In a clean cycle of the haptic loop no fault and no switch but the one of its own sleep
-/// occurs; an involuntary switch is the machine's doing. Where the system does not count them for
-/// a thread (docs/internals/porting.md), faults and switches stay 0.
+/// System counts of one thread since it started; the difference of two readings judges a cycle. A
+/// clean cycle of the haptic loop has no fault and no switch except for its own sleep; an
+/// involuntary switch is the machine's doing. If the system does not count them for a thread
+/// (docs/internals/porting.md), faults and switches stay 0.
 struct ThreadUsage
 {
     std::int64_t minor_faults{0}; ///< Pages mapped without reading a disk.
     std::int64_t major_faults{0}; ///< Pages read from a disk.
     std::int64_t voluntary_switches{0};
     std::int64_t involuntary_switches{0};
-    Duration cpu_time; ///< Includes interrupts that were served meanwhile.
+    Duration cpu_time; ///< Processor time, including interrupts served meanwhile.
 };
 
 [[nodiscard]] constexpr ThreadUsage operator-(const ThreadUsage& a, const ThreadUsage& b) noexcept
@@ -29,8 +29,8 @@ struct ThreadUsage
             a.involuntary_switches - b.involuntary_switches, a.cpu_time - b.cpu_time};
 }
 
-/// Of the calling thread. Two system calls that never block, about 0.6 us together: once a cycle,
-/// outside the frame.
+/// Usage of the calling thread. Two system calls that never block, about 0.6 us together; call once
+/// a cycle, outside the frame.
 [[nodiscard]] ThreadUsage read_thread_usage() noexcept;
 
 /// ThreadUsage::cpu_time alone, at one system call.

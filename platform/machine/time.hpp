@@ -47,7 +47,7 @@ struct Duration
 {
     return {a.ns * factor};
 }
-/// How many whole `b` fit into `a`; `b` must not be zero.
+/// Number of whole `b` in `a`; `b` must not be zero.
 [[nodiscard]] constexpr std::int64_t operator/(Duration a, Duration b) noexcept
 {
     return a.ns / b.ns;
@@ -61,8 +61,8 @@ struct Duration
     return static_cast<double>(duration.ns) * 1e-3;
 }
 
-/// A point on a clock that never jumps, in nanoseconds from an arbitrary start. Deadlines and
-/// latencies are made of it; it means nothing on another machine or after a reboot.
+/// A point on a clock that never jumps, in nanoseconds from an arbitrary start, for deadlines and
+/// latencies. It has no meaning on another machine or after a reboot.
 struct MonotonicTime
 {
     std::int64_t ns{0};
@@ -83,8 +83,8 @@ struct MonotonicTime
     return {time.ns - duration.ns};
 }
 
-/// Nanoseconds since 1970-01-01 UTC, for people who read a report. It may be set back at any
-/// moment, so no arithmetic is offered and no deadline may be made of it.
+/// Nanoseconds since 1970-01-01 UTC, for the readers of reports. The system may set it back at any
+/// moment, so it has no arithmetic and no deadline may use it.
 struct WallTime
 {
     std::int64_t ns{0};

@@ -7,8 +7,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-/// For systems of which nothing is known but that they are POSIX, with /dev/urandom: each thing
-/// else is refused or left out, in the way that callers know from Linux.
+/// This file suits any POSIX system with /dev/urandom: all other extras are refused or left out, in
+/// the way that callers know from Linux.
 namespace tactus::linux_extras
 {
 

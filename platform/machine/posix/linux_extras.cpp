@@ -25,14 +25,14 @@ std::string describe_rtprio_limit(const rlimit& limit)
     return limit.rlim_cur == RLIM_INFINITY ? "unlimited" : std::to_string(limit.rlim_cur);
 }
 
-/// Unlimited where the system does not tell.
+/// Limit in bytes; unlimited if the system has no answer.
 rlim_t lock_limit_bytes() noexcept
 {
     rlimit limit{};
     return getrlimit(RLIMIT_MEMLOCK, &limit) == 0 ? limit.rlim_cur : RLIM_INFINITY;
 }
 
-/// As "0-1,3".
+/// Processors of this process, for instance "0-1,3".
 std::string allowed_cpus()
 {
     cpu_set_t set;
@@ -180,7 +180,7 @@ void read_fault_and_switch_counts(ThreadUsage& usage) noexcept
 
 void ask_for_huge_pages(std::span<std::byte> memory) noexcept
 {
-    // Refused where the kernel has no such pages: then the memory has small ones.
+    // Refusal is harmless: a kernel without such pages gives small ones.
     static_cast<void>(madvise(memory.data(), memory.size(), MADV_HUGEPAGE));
 }
 

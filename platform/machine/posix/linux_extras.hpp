@@ -9,53 +9,53 @@
 #include <span>
 #include <string>
 
-/// The only calls that Linux has and other POSIX systems do not, or have in another form. One
-/// source of two is built: linux_extras.cpp on Linux, generic_extras.cpp, which can do none of it
-/// and says so, everywhere else. A port may bring a third (docs/internals/porting.md).
+/// Calls that only Linux has, or that other POSIX systems have in another form. One of two sources
+/// is built: linux_extras.cpp on Linux, elsewhere generic_extras.cpp, which does without them. A
+/// port may add a third (docs/internals/porting.md).
 namespace tactus::linux_extras
 {
 
-/// Returns 0 or the errno of the refusal; EINVAL when this process may not run on `cpu`, ENOTSUP
-/// where threads can't be pinned.
+/// Pins the calling thread. Returns 0 or the errno of the refusal; EINVAL if this process may not
+/// run on `cpu`, ENOTSUP if threads can't be pinned.
 [[nodiscard]] int pin_calling_thread(int cpu) noexcept;
 
-/// Keeps the calling thread, and with it those that it starts, off `cpu` where there is another
-/// processor for them; where not, and where nobody can say, nothing changes.
+/// Keeps the calling thread, and all that it starts, off `cpu` if there is another processor for
+/// them; otherwise, or if that is unknown, nothing changes.
 void keep_calling_thread_off(int cpu) noexcept;
 
-/// Lets the calling thread use every processor that its process is given.
+/// Lets the calling thread use every processor of its process.
 void let_calling_thread_use_all() noexcept;
 
-/// The line that tells why a thread was not pinned to `cpu`, and which processors there are.
+/// A line that explains why a thread was not pinned to `cpu`, and lists the available processors.
 [[nodiscard]] std::string explain_pin_refusal(int cpu);
 
-/// The lowest processor other than `cpu` that this process may use; none when there is none or
-/// nobody knows.
+/// Lowest processor other than `cpu` that this process may use; none if there is none or it is
+/// unknown.
 [[nodiscard]] std::optional<int> another_cpu(int cpu) noexcept;
 
-/// The line that tells why SCHED_FIFO was refused and what would grant it.
+/// A line that explains why SCHED_FIFO was refused and what would grant it.
 [[nodiscard]] std::string explain_fifo_refusal(int priority, int error);
 
-/// With all memory locked, also what will be mapped later: maps more than the process may lock,
-/// without access and so without pages, and unmaps it. Returns 0 when nothing limits it, or the
+/// Requires all present and future memory to be locked: maps more than the process may lock,
+/// without access and so without pages, and unmaps it. Returns 0 if there is no limit, or the
 /// errno.
 [[nodiscard]] int try_to_exceed_lock_limit() noexcept;
 
-/// The line that tells why memory was not locked and what would grant it.
+/// A line that explains why memory was not locked and what would grant it.
 [[nodiscard]] std::string explain_lock_refusal(int error);
 
-/// Faults and context switches of the calling thread, which stay 0 where nobody counts them;
-/// leaves cpu_time alone.
+/// Reads faults and context switches of the calling thread, 0 if the system doesn't count them;
+/// cpu_time is unchanged.
 void read_fault_and_switch_counts(ThreadUsage& usage) noexcept;
 
-/// Lets the system back this memory with huge pages; it may as well not. `memory` starts on a page.
+/// Allows the system to back this memory with huge pages. `memory` starts on a page.
 void ask_for_huge_pages(std::span<std::byte> memory) noexcept;
 
-/// Fills `bytes`, 256 at most, with what nobody outside can know. False when the system gives none.
+/// Fills `bytes`, 256 at most, with unpredictable bits. False if the system gives none.
 [[nodiscard]] bool draw_random(std::span<std::byte> bytes) noexcept;
 
-/// While one lives no processor falls into a sleep that takes time to wake from, where that is
-/// granted. It costs power on the whole machine.
+/// Keeps the processors of the whole machine from deep sleep during its life, if granted. That
+/// costs power.
 class AwakeProcessors
 {
 public:
@@ -67,7 +67,7 @@ public:
     [[nodiscard]] bool are_granted() const noexcept { return descriptor_ >= 0; }
 
 private:
-    int descriptor_{-1}; ///< The wish holds while it is open.
+    int descriptor_{-1}; ///< The request holds while it is open.
 };
 
 } // namespace tactus::linux_extras

@@ -8,10 +8,10 @@
 namespace tactus::posix
 {
 
-/// Locks all present and future memory of the process. Returns nothing on success, or the line that
-/// tells why it was refused and what would grant it; nothing stays locked then.
-/// A finite limit that happens to suffice now is refused too: memory mapped later, a thread's stack
-/// for instance, would fail. Before the loop: it brings all memory in.
+/// Locks all present and future memory of the process. Returns nothing on success, or a line that
+/// explains the refusal and what would grant it; then nothing stays locked. A finite limit is
+/// refused even if it suffices now: memory mapped later, a thread's stack for instance, would fail.
+/// Call before the loop: it loads all memory.
 [[nodiscard]] std::optional<std::string> lock_all_memory();
 
 void unlock_all_memory() noexcept;

@@ -22,8 +22,8 @@ std::int64_t read_clock_ns(clockid_t id) noexcept
 
 } // namespace
 
-// The kernel serves this through the vDSO, which is no more than a read of memory; where it does
-// not, the trap of platform/machine/system_call_trap.hpp counts it.
+// The kernel serves this through the vDSO as a read of memory; otherwise the trap of
+// platform/machine/system_call_trap.hpp counts it.
 TACTUS_TRUSTED_BEGIN
 MonotonicTime PosixClock::now() const noexcept
 {

@@ -8,8 +8,8 @@
 namespace tactus
 {
 
-/// CLOCK_MONOTONIC and CLOCK_REALTIME. About 22 ns a call where the kernel maps its clock into the
-/// process; a real system call, 10 to 50 times that, where it does not.
+/// CLOCK_MONOTONIC and CLOCK_REALTIME. About 22 ns a call if the kernel maps its clock into the
+/// process; otherwise a real system call, 10 to 50 times that.
 class PosixClock final : public Clock
 {
 public:

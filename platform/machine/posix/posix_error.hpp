@@ -7,10 +7,10 @@
 namespace tactus::posix
 {
 
-/// The symbol of an errno value ("EPERM"), or "errno 123" for those that set-up does not meet.
+/// Symbol of an errno value ("EPERM"), or "errno 123" for those that set-up does not meet.
 [[nodiscard]] std::string name_of_error(int error);
 
-/// The login name of the effective user, or "uid 1000" when it has none.
+/// Login name of the effective user, or "uid 1000" if it has none.
 [[nodiscard]] std::string user_name();
 
 } // namespace tactus::posix

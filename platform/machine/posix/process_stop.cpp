@@ -38,7 +38,7 @@ bool take_process_stop() noexcept
     }
     const sigset_t only = only_continuation();
     int taken = 0;
-    return sigwait(&only, &taken) == 0; // It is pending, and no other thread takes it.
+    return sigwait(&only, &taken) == 0; // The signal is pending, and no other thread takes it.
 }
 
 } // namespace tactus

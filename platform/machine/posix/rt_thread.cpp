@@ -22,7 +22,7 @@ namespace tactus
 namespace
 {
 
-/// Owns a pthread_attr_t. The calls on it fail only for arguments that were checked before.
+/// Owns a pthread_attr_t. Its calls fail only for arguments that were checked before.
 class ThreadAttributes
 {
 public:
@@ -36,7 +36,7 @@ public:
         check(pthread_attr_setstack(&attributes_, memory.data(), memory.size()));
     }
 
-    /// Explicit, so that a starter with a policy of its own does not pass it on.
+    /// The policy is explicit, so that it is not inherited from the starter.
     void use_policy(int policy, int priority) noexcept
     {
         sched_param parameter{};
@@ -54,8 +54,8 @@ private:
     pthread_attr_t attributes_{};
 };
 
-/// A gate that one thread waits at until another opens it, once. By POSIX alone: the C++ library's
-/// semaphores go to each system in a way of their own.
+/// A gate at which one thread waits until another opens it, once. Uses POSIX alone, since the C++
+/// library implements semaphores differently on each system.
 class Gate
 {
 public:
@@ -77,7 +77,7 @@ private:
     sem_t semaphore_{};
 };
 
-/// While it lives, new threads start with every signal blocked.
+/// Blocks every signal in new threads during its life.
 class SignalsBlocked
 {
 public:
@@ -95,7 +95,7 @@ private:
     sigset_t before_{};
 };
 
-/// Empty when all values are in range.
+/// Fault of the options; empty if all values are in range.
 std::string find_bad_option(const RtThreadOptions& options)
 {
     using Options = RtThreadOptions;
@@ -126,7 +126,7 @@ Refusal join_lines(const std::vector<std::string>& lines)
 
 } // namespace
 
-/// Shared by starter and thread. The thread writes what it found out and then waits for the
+/// State shared by starter and thread. The thread writes its results and then waits for the
 /// starter's decision; the two gates order their accesses.
 struct RtThread::Running
 {
@@ -174,7 +174,7 @@ RtThread::Running::~Running()
     }
 }
 
-/// The new thread's first function.
+/// First function of the new thread.
 void* RtThread::Running::enter(void* context) noexcept
 {
     auto& self = *static_cast<Running*>(context);
@@ -200,7 +200,7 @@ void RtThread::Running::lock_memory()
     }
 }
 
-/// Where SCHED_FIFO is refused the thread starts without, so that everything else is found out too.
+/// If SCHED_FIFO is refused the thread starts without it, so that all other refusals are found too.
 /// Returns 0 or the errno.
 int RtThread::Running::create_thread()
 {
@@ -212,7 +212,8 @@ int RtThread::Running::create_thread()
     }
     if (error == EPERM)
     {
-        error = create_with(SCHED_OTHER, sched_get_priority_min(SCHED_OTHER)); // On Linux 0.
+        // The priority is 0 on Linux.
+        error = create_with(SCHED_OTHER, sched_get_priority_min(SCHED_OTHER));
     }
     if (error == 0)
     {

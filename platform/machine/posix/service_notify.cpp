@@ -34,7 +34,7 @@ std::optional<std::int64_t> number_in(std::string_view text)
                                                                     : std::nullopt;
 }
 
-/// A path, or behind '@' the name of a socket that is in no folder; other forms are not for us.
+/// Socket address of a path, or of an abstract name after '@'; empty for other forms.
 std::string address_in(std::string_view text)
 {
     const bool is_known = text.size() > 1 && text.size() < sizeof(sockaddr_un{}.sun_path) &&
@@ -56,7 +56,7 @@ ServiceNotify::ServiceNotify() : address_(address_in(variable("NOTIFY_SOCKET")))
     if (socket_ >= 0)
     {
         fcntl(socket_, F_SETFD, FD_CLOEXEC);
-        fcntl(socket_, F_SETFL, O_NONBLOCK); // A manager that doesn't listen holds up nobody.
+        fcntl(socket_, F_SETFL, O_NONBLOCK); // A manager that doesn't read blocks no thread.
     }
     const auto pid = number_in(variable("WATCHDOG_PID"));
     const auto time_us = number_in(variable("WATCHDOG_USEC"));

@@ -10,9 +10,8 @@
 namespace tactus
 {
 
-/// Tells a service manager how a program is doing, by the protocol of sd_notify(3): datagrams to
-/// the socket that the environment names. Without a manager all of it does nothing. Not for the
-/// haptic thread.
+/// Reports a program's state to a service manager by the protocol of sd_notify(3): datagrams to the
+/// socket of an environment variable. No effect without a manager. Not for the haptic thread.
 class ServiceNotify
 {
 public:
@@ -25,18 +24,19 @@ public:
     void ready() noexcept { send("READY=1"); }
     void stopping() noexcept { send("STOPPING=1"); }
 
-    /// Keeps the manager's watchdog quiet; call it whenever the work has got on. Sends at most four
-    /// times in the watchdog's time.
+    /// Resets the manager's watchdog; call it as work progresses. Sends at most four times in the
+    /// watchdog's time.
     void alive(MonotonicTime now) noexcept;
 
-    /// None without a watchdog.
+    /// Time of the watchdog; none without one.
     [[nodiscard]] const std::optional<Duration>& watchdog() const noexcept { return watchdog_; }
 
 private:
     void send(const char* state) noexcept;
 
     int socket_{-1};
-    std::string address_; ///< As in sockaddr_un::sun_path, an abstract one with its leading zero.
+    /// Address as in sockaddr_un::sun_path, an abstract one with its leading zero.
+    std::string address_;
     std::optional<Duration> watchdog_;
     std::optional<MonotonicTime> sent_;
 };

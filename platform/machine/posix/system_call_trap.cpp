@@ -5,7 +5,7 @@
 #include "platform/machine/posix/posix_error.hpp"
 #include "transport/base/refusal.hpp"
 
-// The thread sanitizer puts handlers off to where the trapped call would have to have returned.
+// The thread sanitizer delays handlers until the trapped call should have returned.
 #if defined(__has_feature)
 #if __has_feature(thread_sanitizer)
 #define TACTUS_PUTS_SIGNALS_OFF 1 // NOLINT(cppcoreguidelines-macro-usage): selects code.
@@ -42,8 +42,8 @@ namespace tactus::system_call_trap
 namespace
 {
 
-// Constant-initialised and in the program's own static storage: the handler's first access neither
-// allocates nor calls. A handler is given nothing of the program's, so global they must be.
+// They are constant-initialised and in the program's own static storage, so the handler's first
+// access neither allocates nor calls. They are global, since a handler has no user argument.
 // NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables)
 constinit thread_local TrappedCalls thread_calls{};
 constinit thread_local bool thread_runs_a_frame = false;
@@ -74,9 +74,9 @@ extern "C"
         long arguments[6]; // NOLINT(cppcoreguidelines-avoid-c-arrays): read by assembly.
     };
 
-    /// Makes the call and returns what the kernel returns: an error as its negative number.
+    /// Makes the call and returns the kernel's result: an error as its negative number.
     long tactus_make_call(const TactusSystemCall* call) noexcept;
-    /// Right behind the one instruction that the filter lets through.
+    /// Address directly after the one instruction that the filter permits.
     extern const char tactus_behind_call; // NOLINT(readability-identifier-naming): a label.
 }
 
@@ -159,8 +159,8 @@ void set_result(ucontext_t& context, long result) noexcept
 }
 #endif
 
-/// On the thread that called, which stands right behind its call. Registers and errno are as the
-/// call itself would leave them.
+/// Handles a trapped call on its thread, directly after the call. Registers and errno are left as
+/// by the call itself.
 void on_trapped_call(int /*signal*/, siginfo_t* info, void* raw_context) noexcept
 {
     auto& context = *static_cast<ucontext_t*>(raw_context);
@@ -175,7 +175,7 @@ void on_trapped_call(int /*signal*/, siginfo_t* info, void* raw_context) noexcep
     {
         ++thread_calls.outside;
     }
-    // A call through the door of another architecture can't be made again from here.
+    // A call by another architecture's interface can't be repeated here.
     const bool is_ours = info->si_arch == kArchitecture;
     set_result(context, is_ours ? tactus_make_call(&call) : -ENOSYS);
 }
@@ -186,7 +186,7 @@ Refusal refusal(const char* what, int error)
             posix::name_of_error(error) + ")"};
 }
 
-/// The handler is the process's, the mask this thread's: a blocked SIGSYS would end the process.
+/// Sets the process's handler and this thread's mask: a blocked SIGSYS would end the process.
 std::optional<Refusal> set_handler()
 {
     struct sigaction action
@@ -206,7 +206,7 @@ std::optional<Refusal> set_handler()
     return error == 0 ? std::nullopt : std::optional(refusal("SIGSYS stays blocked", error));
 }
 
-// The kernel's macros for filter programs hold C-style casts.
+// The kernel's macros for filter programs contain C-style casts.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wold-style-cast"
 
@@ -214,7 +214,7 @@ int install_filter(std::uint64_t behind_call) noexcept
 {
     const auto low = static_cast<std::uint32_t>(behind_call);
     const auto high = static_cast<std::uint32_t>(behind_call >> 32U);
-    // The halves of the address stand in the order of the machine, little-endian on both.
+    // The halves of the address are in the machine's order, little-endian on both.
     constexpr std::uint32_t kLow = offsetof(seccomp_data, instruction_pointer);
     constexpr std::uint32_t kHigh = kLow + 4;
     std::array<sock_filter, 10> filter{{
@@ -230,7 +230,7 @@ int install_filter(std::uint64_t behind_call) noexcept
         BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW),
     }};
     const sock_fprog program{static_cast<unsigned short>(filter.size()), filter.data()};
-    // Without TSYNC it is this thread's alone; without SPEC_ALLOW it would also slow the thread.
+    // Omitting TSYNC limits it to this thread; omitting SPEC_ALLOW would slow the thread.
     const long failed =
         // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): the C library has no other.
         syscall(__NR_seccomp, SECCOMP_SET_MODE_FILTER, SECCOMP_FILTER_FLAG_SPEC_ALLOW, &program);
@@ -247,7 +247,7 @@ Result<Done, Refusal> set_on_this_thread()
     {
         return std::move(*error);
     }
-    // Without it only the privileged may install a filter; it is this thread's, too.
+    // An unprivileged thread needs it to install a filter; it belongs to this thread, too.
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): the C library has no other.
     if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0)
     {

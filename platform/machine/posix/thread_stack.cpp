@@ -32,7 +32,8 @@ ThreadStack::~ThreadStack()
 {
     if (!mapped_.empty())
     {
-        static_cast<void>(munmap(mapped_.data(), mapped_.size())); // Ours and whole: cannot fail.
+        // It is the whole mapping, so it cannot fail.
+        static_cast<void>(munmap(mapped_.data(), mapped_.size()));
     }
 }
 

@@ -13,7 +13,7 @@ namespace tactus::posix
 class ThreadStack
 {
 public:
-    /// Rounds up to whole pages. Check memory(): it is empty when the system has none left.
+    /// Rounds up to whole pages. If the system has no memory left, memory() is empty: check it.
     explicit ThreadStack(std::size_t bytes) noexcept;
     ThreadStack(const ThreadStack&) = delete;
     ThreadStack& operator=(const ThreadStack&) = delete;
