@@ -24,13 +24,13 @@ namespace tactus::hrtc
 namespace
 {
 
-/// A reader of stderr that is alive reads within this time.
+/// A live reader of stderr reads within this time.
 constexpr std::chrono::seconds kPrintPatience{5};
-/// To finish a recording.
+/// Time to finish a recording.
 constexpr std::chrono::seconds kMainPatience{10};
-/// A device behind a bus obeys brake() in the next turn of its I/O thread, which takes less.
+/// A device behind a bus obeys brake() in the next cycle of its I/O thread, which takes less.
 constexpr std::chrono::milliseconds kBrakeTime{50};
-constexpr std::size_t kLineBytes = 1'024; ///< Below PIPE_BUF, so a pipe takes it as a whole.
+constexpr std::size_t kLineBytes = 1'024; ///< Below PIPE_BUF, so that a pipe writes it atomically.
 
 struct Failure
 {
@@ -47,16 +47,16 @@ enum class Report : std::uint8_t
     printed,
 };
 
-// All sequentially consistent: they are used once in a process.
+// All are sequentially consistent: they are used once in a process.
 std::atomic<HapticLoop*> running_loop{nullptr};
 std::atomic<std::thread::id> main_thread{};
 std::atomic<bool> has_any_failed{false};
-/// The first failure of the process. Its thread may fail again while the forces fade, and then
-/// never comes back to print the first.
+/// First failure of the process. Its thread may fail again during the fade, and then never prints
+/// the first one.
 Failure first_failure;
 std::atomic<Report> first_report{Report::none};
 
-/// Returns whether there was none before.
+/// Returns true for the first failure.
 bool note(const Failure& failure) noexcept
 {
     if (has_any_failed.exchange(true))
@@ -78,19 +78,19 @@ bool has_room_on_stderr() noexcept
     {
         ready = poll(&out, 1, static_cast<int>(patience.count()));
     } while (ready < 0 && errno == EINTR);
-    return ready > 0 && out.revents == POLLOUT; // Not with POLLERR: that write would be SIGPIPE.
+    return ready > 0 && out.revents == POLLOUT; // POLLERR would mean SIGPIPE on write.
 }
 
 using Line = std::array<char, kLineBytes>;
 
-/// What snprintf made, of that length. Neither allocates nor uses stdio's stream, whose lock a
-/// waiting thread may hold.
+/// Writes the output of snprintf, of that length. Neither allocates nor uses stdio's stream, whose
+/// lock a waiting thread may hold.
 void put(const Line& line, int length) noexcept
 {
     if (length > 0 && has_room_on_stderr())
     {
         const std::size_t bytes = std::min(static_cast<std::size_t>(length), line.size() - 1);
-        // Whether it worked cannot be told to anybody.
+        // A failed write can't be reported anywhere.
         [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, line.data(), bytes);
     }
 }
@@ -112,11 +112,12 @@ void print_first() noexcept
     }
 }
 
-/// Any thread.
+/// Any thread: handles a failed assertion.
 void on_assertion(const char* condition, const char* file, int line) noexcept
 {
     const Failure failure{condition, file, line};
-    const bool is_first = note(failure); // Before the loop is looked up: see ~AssertionBrake().
+    // It precedes the look-up of the loop: see ~AssertionBrake().
+    const bool is_first = note(failure);
     HapticLoop* loop = running_loop.load();
     if (loop != nullptr)
     {
@@ -148,8 +149,8 @@ AssertionBrake::AssertionBrake(HapticLoop& loop) noexcept
     running_loop.store(&loop);
 }
 
-/// A thread that fails notes that before it looks up the loop. So either it is seen here and the
-/// loop lives on, or that thread finds no loop.
+/// A failing thread notes the failure before it looks up the loop. So either the failure is seen
+/// here and the loop remains, or that thread finds no loop.
 AssertionBrake::~AssertionBrake()
 {
     running_loop.store(nullptr);

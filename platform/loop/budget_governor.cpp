@@ -12,11 +12,11 @@ namespace tactus
 namespace
 {
 
-/// The reserve takes at most this share of the set time, whatever the machine does.
+/// The reserve takes at most this share of the set time.
 constexpr double kScatterShare = 0.5;
-/// Added to the variance: work that varies by less than this says little of the pace.
+/// Added to the variance: work that varies by less than this hardly determines the pace.
 constexpr double kDoubt = 2'000.0 * 2'000.0;
-/// Share of the way that the pace goes in one frame, once the first frames are over.
+/// Share of the difference by which the pace follows in one frame, after the first frames.
 constexpr double kPaceGain = 1.0 / 16.0;
 
 } // namespace
@@ -58,7 +58,7 @@ double BudgetGovernor::predict_ns(double work) const noexcept
 
 void BudgetGovernor::learn(double time_ns, double work) noexcept
 {
-    if (frames_ > 0.0) // Nothing was expected of the first.
+    if (frames_ > 0.0) // The first frame has no prediction.
     {
         scatter_ns_.observe(
             std::clamp(time_ns - predict_ns(work), 0.0, kScatterShare * frame_budget_ns_));
@@ -71,7 +71,7 @@ void BudgetGovernor::learn(double time_ns, double work) noexcept
     mean_work_ += weight * work_off;
     work_work_ = (1.0 - weight) * (work_work_ + weight * work_off * work_off);
     work_time_ = (1.0 - weight) * (work_time_ + weight * work_off * time_off);
-    // Towards the pace that leaves no covariance between work and what it doesn't explain.
+    // The pace moves towards the value that leaves no covariance between work and unexplained time.
     const double left = work_time_ - work_work_ * pace_ns_;
     pace_ns_ = std::clamp(pace_ns_ + std::max(weight, kPaceGain) * left / (work_work_ + kDoubt),
                           kFirstPace / kPaceRange, kFirstPace * kPaceRange);

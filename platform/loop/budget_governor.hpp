@@ -10,15 +10,15 @@
 namespace tactus
 {
 
-/// What one frame took and did.
+/// Time and work of one frame.
 struct FrameCost
 {
     Duration frame;
     std::uint32_t work{0}; ///< WorkBudget::used().
 };
 
-/// Follows the upper end of values that scatter: up by an eighth of the way at once, down by one
-/// part in 256 a frame. Where values scatter evenly it comes to rest near the highest of 50.
+/// Upper level of scattered values: rises by an eighth of the difference at once, falls by one part
+/// in 256 a frame. For evenly scattered values it settles near the highest of 50.
 class UpperLevel
 {
 public:
@@ -34,41 +34,38 @@ private:
     double level_;
 };
 
-/// Chooses how much work each frame may do (Budgets::work) from what the frames before it took, so
-/// that a frame fits into a set time on a machine that is slower than an instruction a nanosecond.
-/// It works between frames and has no clock: its choice is an input of the frame like any other,
-/// and can be recorded.
+/// Chooses the work budget of each frame (Budgets::work) from the times of earlier frames, so that
+/// frames fit into a set time on machines slower than an instruction a nanosecond. It works between
+/// frames without a clock: the budget is an input of the frame and can be recorded.
 ///
-/// It learns a line by decayed least squares, time = rest + pace x work. The means follow in about
-/// kWindowFrames frames, and in the first ones as fast as they can; the pace moves only as far as
-/// the work varied. What is left of the time after the rest and a reserve for scatter is given to
-/// work. The budget falls to its new value at once and rises by a sixteenth of the way a frame,
-/// never above `most` and never below `least`, so a frame gets on even where the time
-/// is too short.
+/// It fits a line by decayed least squares, time = rest + pace x work. The means follow in about
+/// kWindowFrames frames, and faster in the first ones; the pace changes only as far as the work
+/// varied. The time left after the rest and a reserve for scatter is given to work. The budget
+/// falls to its new value at once and rises by a sixteenth of the difference a frame, within
+/// `least` and `most`. So every frame progresses, even if the time is too short.
 ///
-/// A single frame of more than kStall times the set time is taken for the machine's and teaches
-/// nothing; a second one in a row counts. Same inputs give same budgets. Haptic thread, about 20 ns
-/// a frame.
+/// A single frame of more than kStall times the set time is attributed to the machine and ignored;
+/// a second one in a row counts. Same inputs give same budgets. Haptic thread, about 20 ns a frame.
 class BudgetGovernor
 {
 public:
     static constexpr double kWindowFrames = 128.0;
     static constexpr std::int64_t kStall = 4;
-    /// Nanoseconds for a unit of work before anything is known, and how far from it the pace may
-    /// go: noise can't make work free.
+    /// Initial pace in nanoseconds a unit of work, and the factor by which the pace may differ from
+    /// it, so that noise can't make work free.
     static constexpr double kFirstPace = 1.0;
     static constexpr double kPaceRange = 40.0;
 
-    /// `frame_budget` must be positive, and `least` no more than `most`: Budgets::least_work().
+    /// `frame_budget` must be positive, and `least` (Budgets::least_work()) no more than `most`.
     BudgetGovernor(Duration frame_budget, std::uint32_t least, std::uint32_t most) noexcept;
 
-    /// Of the next frame.
+    /// Work budget of the next frame.
     [[nodiscard]] std::uint32_t work() const noexcept { return work_; }
 
-    /// Tells what the frame with work() took and did, and chooses the next one's.
+    /// Learns from the frame with budget work() and chooses the next budget.
     void observe(const FrameCost& cost) noexcept;
 
-    /// Whether the set time is too short for even the least work, by what is known now.
+    /// True if the set time is too short for even the least work, by the present estimate.
     [[nodiscard]] bool is_at_floor() const noexcept { return is_at_floor_; }
 
 private:
@@ -84,10 +81,10 @@ private:
     double frames_{0.0};
     double mean_ns_{0.0};
     double mean_work_{0.0};
-    double work_work_{0.0}; ///< Decayed variance,
-    double work_time_{0.0}; ///< and covariance.
+    double work_work_{0.0}; ///< Decayed variance of the work.
+    double work_time_{0.0}; ///< Decayed covariance of work and time.
     double pace_ns_{kFirstPace};
-    UpperLevel scatter_ns_{0.0}; ///< How far frames exceed what was expected of them.
+    UpperLevel scatter_ns_{0.0}; ///< Excess of frame times over their prediction.
     bool last_was_long_{false};
     bool is_at_floor_{false};
 };

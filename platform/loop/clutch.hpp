@@ -11,17 +11,16 @@
 namespace tactus::hrtc
 {
 
-/// A button that parts hand and tool: while it is held the tool stays where it is and the hand goes
-/// its own way; when it is let go the tool goes and turns with the hand again, from where it is. So
-/// a small workspace reaches far, as a mouse does that is lifted. Haptic thread.
+/// A button that decouples the tool from the device: while it is held the tool stays and the device
+/// moves freely; once it is released the tool follows the device again, from its present pose. So a
+/// small workspace reaches far. Haptic thread.
 class Clutch
 {
 public:
-    /// None: there is no clutch, and the tool is where the hand is.
+    /// Number of the button. None: no clutch, and the tool has the device's pose.
     explicit Clutch(std::optional<std::uint32_t> button) noexcept : button_(button) {}
 
-    /// Where the tool is while the hand is there. Both rotations are orthonormal to
-    /// kRotationTolerance.
+    /// Pose of the tool for this device pose. Both rotations are orthonormal to kRotationTolerance.
     [[nodiscard]] HandPlace tool_at(const HandPlace& hand, std::uint32_t buttons) noexcept
     {
         const bool was_held = is_held_;
@@ -41,7 +40,7 @@ public:
     }
 
     [[nodiscard]] bool is_held() const noexcept { return is_held_; }
-    /// Whether hand and tool were ever parted.
+    /// True once device and tool have been decoupled.
     [[nodiscard]] bool has_parted() const noexcept { return has_parted_; }
 
 private:
@@ -53,9 +52,9 @@ private:
     std::optional<std::uint32_t> button_;
     bool is_held_{false};
     bool has_parted_{false};
-    Vec3 offset_m_{0.0, 0.0, 0.0}; ///< From hand to tool, in the world.
-    Mat3 turn_{Mat3::Identity()};  ///< Of the tool in what the hand holds.
-    HandPlace tool_;               ///< The last one.
+    Vec3 offset_m_{0.0, 0.0, 0.0}; ///< Offset from device to tool, in the world.
+    Mat3 turn_{Mat3::Identity()};  ///< Rotation of the tool in the device's frame.
+    HandPlace tool_;               ///< Last pose.
     bool has_tool_{false};
 };
 

@@ -13,23 +13,23 @@
 namespace tactus::hrtc
 {
 
-/// What one cycle of the loop measured besides the frame's own output.
+/// Measures of one cycle of the loop besides the frame's own output.
 struct CycleMeasures
 {
     Cycle cycle;
-    Budgets budgets;              ///< That the frame had.
-    bool is_work_at_floor{false}; ///< Whether less was not to be had.
+    Budgets budgets;              ///< Budgets of the frame.
+    bool is_work_at_floor{false}; ///< True if the work budget can't be lower.
     std::array<Duration, kStages> stage;
-    Duration frame;           ///< From the start of the frame to the force written.
+    Duration frame;           ///< Time from the start of the frame to the force written.
     Duration cpu;             ///< Processor time of the thread in `frame`.
-    Duration outside;         ///< The part of `frame` outside of Frame::run(): devices and safety.
-    Duration beside;          ///< What the loop did besides: bookkeeping and rehearsal.
+    Duration outside;         ///< Part of `frame` outside of Frame::run(): devices and safety.
+    Duration beside;          ///< Time for bookkeeping and cache warming between frames.
     Duration beside_cpu;      ///< Processor time in `beside`.
-    Duration lateness_of_end; ///< End of the frame after its deadline; late when > one period.
-    ThreadUsage usage;        ///< Since the last cycle; no switch of the timer's sleeps is in it.
-    bool was_stopped{false};  ///< The process, from outside; since the last cycle.
-    std::uint64_t allocations{0};         ///< Since the last cycle.
-    system_call_trap::TrappedCalls calls; ///< Since the loop began.
+    Duration lateness_of_end; ///< Time from the frame's deadline to its end; late if > one period.
+    ThreadUsage usage; ///< Usage since the last cycle, without switches of the timer's sleeps.
+    bool was_stopped{false}; ///< True if the process was stopped from outside since the last cycle.
+    std::uint64_t allocations{0};         ///< Allocations since the last cycle.
+    system_call_trap::TrappedCalls calls; ///< Calls since the loop began.
 };
 
 } // namespace tactus::hrtc

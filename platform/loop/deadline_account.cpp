@@ -21,7 +21,7 @@ CycleFlag when(bool is_so, CycleFlag flag) noexcept
     return is_so ? flag : CycleFlag::none;
 }
 
-/// The flags of a cycle that took too much processor time: our own fault or the machine's.
+/// Flags of a cycle that took too much processor time: an overrun or the machine's fault.
 CycleFlag cpu_verdict(CycleFlag flags, bool is_slowed) noexcept
 {
     return without(flags, CycleFlag::over_cpu | CycleFlag::slowed) |
@@ -69,12 +69,12 @@ void DeadlineAccount::add(std::uint64_t frame, const CycleMeasures& measures, st
     }
     if (is_suspect && suspects_.size() < kSuspectsMax)
     {
-        suspects_.push_back({frame, work, flags}); // Within what is reserved.
+        suspects_.push_back({frame, work, flags}); // It is within the reserved capacity.
     }
 }
 
-/// How many times the work of a frame that took `time` fits in the shown share of the limit: 0 to
-/// kShownTimes.
+/// Number of times that the work of a frame of this `time` fits into the shown share of the limit:
+/// 0 to kShownTimes.
 std::uint64_t DeadlineAccount::times_shown(Duration time) const noexcept
 {
     const std::int64_t fits =
@@ -103,7 +103,7 @@ CycleFlag DeadlineAccount::flags_of(const CycleMeasures& measures, bool over_wor
            when(is_missed, CycleFlag::missed);
 }
 
-/// `sign`: 1 to count, or the number that takes away again.
+/// `sign`: 1 to count, or the number that subtracts 1.
 void DeadlineAccount::count(CycleFlag flags, std::uint64_t sign) noexcept
 {
     for (std::size_t bit = 0; bit < kCycleFlags; ++bit)
@@ -126,7 +126,7 @@ void DeadlineAccount::note(const NotedCycle& cycle) noexcept
         ++not_kept;
         return;
     }
-    noted_.push_back(cycle); // Within what is reserved.
+    noted_.push_back(cycle); // It is within the reserved capacity.
 }
 
 std::vector<std::uint64_t> DeadlineAccount::suspects() const
@@ -152,10 +152,10 @@ void DeadlineAccount::settle(std::span<const std::uint64_t> over) noexcept
     }
 }
 
-/// Counts the cycle again as what it is now known to be.
+/// Counts the cycle again with its new verdict.
 void DeadlineAccount::judge(Suspect& suspect, bool is_slowed) noexcept
 {
-    constexpr std::uint64_t kTakeAway = ~std::uint64_t{0}; // Modulo 2^64 one less.
+    constexpr std::uint64_t kTakeAway = ~std::uint64_t{0}; // Adding it modulo 2^64 subtracts one.
     count(suspect.flags, kTakeAway);
     suspect.flags = cpu_verdict(suspect.flags, is_slowed);
     count(suspect.flags, 1);

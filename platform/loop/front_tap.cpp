@@ -11,7 +11,7 @@ FrontTap::FrontTap(PagePool& pages, std::size_t most_slots) : pages_(pages)
 {
     const std::span<const PageMeta> shown =
         pages.metas.first(std::min(pages.metas.size(), most_slots));
-    copy_.slots.assign(shown.begin(), shown.end()); // What of them is shown.
+    copy_.slots.assign(shown.begin(), shown.end()); // The shown part of the slots.
     copy_.slots_left_out = static_cast<std::uint32_t>(pages.metas.size() - shown.size());
 }
 
@@ -41,7 +41,7 @@ void FrontTap::copy_times(const RunStatistics& statistics) noexcept
     copy_.times[kStages + 1] = copied(statistics.cpu);
 }
 
-/// Those of awake pairs, and in turn all others.
+/// Copies the objects of awake pairs, and all others in turn.
 void FrontTap::copy_objects(const ShownFront& shown) noexcept
 {
     const ObjectTable& objects = shown.made.objects();

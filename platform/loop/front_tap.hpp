@@ -19,21 +19,21 @@
 namespace tactus::hrtc
 {
 
-/// What is copied of one frame, in the controller's own numbers.
+/// Copy of one frame's refinement state, in the controller's own numbers.
 struct FrontCopy
 {
     struct Object
     {
         std::uint32_t number{0};
         std::uint32_t model{0};
-        Similarity pose; ///< Of the model's frame.
+        Similarity pose; ///< Pose of the model's frame.
     };
     struct Tool
     {
         SafetyState state{SafetyState::reset};
         ForceOff causes{ForceOff::none};
     };
-    /// Of all frames so far.
+    /// Times of all frames so far.
     struct Times
     {
         std::uint64_t count{0};
@@ -51,39 +51,39 @@ struct FrontCopy
     std::uint32_t sweep_begin{0};
     std::uint32_t sweep_end{0};
     StaticVector<Object, kMaxFrontObjects> objects;
-    StaticVector<FrontRegion, kMaxFrontRegions> regions; ///< The most urgent ones.
-    std::uint32_t regions_left_out{0};                   ///< The others.
-    std::vector<ShownPage> slots;                        ///< Of all models.
-    std::uint32_t slots_left_out{0};                     ///< Those beyond.
+    StaticVector<FrontRegion, kMaxFrontRegions> regions; ///< Regions of highest priority.
+    std::uint32_t regions_left_out{0};                   ///< Number of other regions.
+    std::vector<ShownPage> slots;                        ///< Page slots of all models.
+    std::uint32_t slots_left_out{0};                     ///< Number of slots beyond those.
 };
 
-/// One frame in a hundred, copied for whoever looks at what the controller has refined. One copy
-/// belongs to either the haptic thread, which fills it, or the transport thread, which reads it and
-/// gives it back; neither ever waits.
+/// One frame in a hundred, copied to show the refinement state. The copy belongs to either the
+/// haptic thread, which fills it, or the transport thread, which reads it and gives it back;
+/// neither ever waits.
 class FrontTap
 {
 public:
-    /// A copy is made at most every so many frames.
+    /// Least number of frames between copies.
     static constexpr std::uint64_t kFrames = 100;
 
-    /// Of the pool's first slots, before the loop. The pool outlives it and has no other tap.
-    /// Allocates 16 bytes a slot.
+    /// Copies the pool's first slots, before the loop. The pool outlives the tap and has no other
+    /// tap. Allocates 16 bytes a slot.
     explicit FrontTap(PagePool& pages, std::size_t most_slots = kMaxFrontPages);
 
     struct ShownFront
     {
-        std::uint64_t frame; ///< Counted from 0.
+        std::uint64_t frame; ///< Number of the frame, from 0.
         MonotonicTime start;
         const Frame& made;
         const FrameOutput& output;
-        std::span<const ToolForce> forces; ///< One a tool.
+        std::span<const ToolForce> forces; ///< Forces, one a tool.
         const Budgets& budgets;
     };
 
-    /// The haptic thread, after a frame. Nothing but a comparison in 99 frames of a hundred and
-    /// while the last copy is out; else it allocates nothing, copies 16 bytes of each page slot
-    /// that has changed since and goes through awake pairs, kMaxFrontRegions regions and
-    /// kFrontSweep objects once.
+    /// Haptic thread, after a frame. Costs one comparison in 99 frames of 100 and while the last
+    /// copy is in use. Otherwise copies 16 bytes of each page slot that has changed since and
+    /// visits awake pairs, kMaxFrontRegions regions and kFrontSweep objects once, without
+    /// allocating.
     void show(const ShownFront& shown, const RunStatistics& statistics) noexcept
     {
         // Pairs with the release in give_back().
@@ -94,7 +94,7 @@ public:
         }
     }
 
-    /// The transport thread: the newest copy, until give_back(); null when there is none.
+    /// Transport thread: the newest copy, until give_back(); null if there is none.
     [[nodiscard]] const FrontCopy* take() const noexcept
     {
         return is_out_.load(std::memory_order_acquire) ? &copy_ : nullptr; // Pairs with show().

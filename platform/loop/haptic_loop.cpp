@@ -90,8 +90,8 @@ Duration HapticLoop::cpu_time() const noexcept
     return parts_.is_virtual ? Duration{} : read_thread_cpu_time();
 }
 
-/// What the thread has used since the last cycle. A stop of the process looks like a sleep of the
-/// thread's own, or makes it late.
+/// Measures the thread's usage since the last cycle. A stop of the process looks like a sleep of
+/// the thread, or makes it late.
 void HapticLoop::measure_thread(const ThreadUsage& now) noexcept
 {
     measures_.usage = now - usage_;
@@ -106,12 +106,12 @@ void HapticLoop::measure_thread(const ThreadUsage& now) noexcept
     measures_.calls = system_call_trap::of_this_thread();
 }
 
-/// When somebody wants it, as soon as the forces have had the time to fade.
+/// After stop() the run ends as soon as the forces had the time to fade.
 bool HapticLoop::has_to_end() noexcept
 {
     if (stopped_.load(std::memory_order_relaxed))
     {
-        end_ = std::min(end_, frame_ + fade_frames_); // The first time it counts.
+        end_ = std::min(end_, frame_ + fade_frames_); // Only the first call changes it.
     }
     return frame_ >= end_ || failing_.load();
 }
@@ -129,13 +129,13 @@ void HapticLoop::wait_for_deadline() noexcept
     measures_.cycle = parts_.timer->spin_until_deadline();
     measures_.beside_cpu = asleep.cpu_time - usage_.cpu_time + (ready.cpu_time - awake.cpu_time);
     timer_switches_ = awake.voluntary_switches - asleep.voluntary_switches;
-    if (measures_.cycle.periods > 1) // Only after a stall does it sleep once more.
+    if (measures_.cycle.periods > 1) // The timer sleeps once more only after a stall.
     {
         timer_switches_ += thread_usage().voluntary_switches - ready.voluntary_switches;
     }
 }
 
-/// Rehearsal and frame are what must make no system call.
+/// Warms the caches. This and the frame must make no system call.
 void HapticLoop::rehearse() noexcept
 {
     system_call_trap::mark_frame(true);
@@ -153,7 +153,7 @@ FrameOutput HapticLoop::run_frame(const FrameInput& input) noexcept
     return output;
 }
 
-/// After the forces have gone out and the frame's time was taken.
+/// Runs after the forces are written and the frame's time is taken.
 void HapticLoop::record(const FrameInput& input, const FrameOutput& output) noexcept
 {
     if (parts_.tap != nullptr)
@@ -196,7 +196,7 @@ void HapticLoop::trace(const FrameOutput& output, MonotonicTime start) noexcept
     parts_.trace->add(traced);
 }
 
-/// Between frames, so that the frame that follows takes its budget as an input like any other.
+/// Runs between frames, so that the next frame takes its budget as an input like any other.
 void HapticLoop::choose_budgets(const FrameOutput& output) noexcept
 {
     if (parts_.governor != nullptr)
@@ -209,7 +209,7 @@ void HapticLoop::choose_budgets(const FrameOutput& output) noexcept
 
 void HapticLoop::fail() noexcept
 {
-    // A bug that is found while the forces fade ends that, too.
+    // A bug during the fade ends the fade, too.
     const bool is_first = !failing_.exchange(true);
     if (is_first && haptic_thread_.load() == std::this_thread::get_id())
     {
@@ -236,8 +236,8 @@ std::optional<GivenFrame> HapticLoop::failed_frame() noexcept
     return GivenFrame{given_, parts_.frame->pools().cache.taken(), devices_};
 }
 
-/// On the haptic thread, in the middle of a frame that can't be trusted any more: it uses nothing
-/// but what was sent last.
+/// Haptic thread, in the middle of a frame that is not to be trusted: it uses only the forces sent
+/// last.
 void HapticLoop::fade_last_forces() noexcept
 {
     for (std::size_t i = 0; i < ports_.size(); ++i)
@@ -285,7 +285,7 @@ std::span<const Vec3> HapticLoop::first_places_m() const noexcept
                                                        : std::span<const Vec3>();
 }
 
-/// What the network says of the objects enters the frame here and nowhere else.
+/// Network data on the objects enters the frame here and nowhere else.
 FrameInput HapticLoop::read_scene(MonotonicTime now) noexcept
 {
     FrameInput input{states_, {}, measures_.budgets, now.ns};
@@ -332,7 +332,7 @@ void HapticLoop::make_safe(const FrameOutput& output) noexcept
             note(i, forces_[i].state, forces_[i].causes);
         }
     }
-    if (parts_.pose_door != nullptr) // For the poses that the next frame begins with.
+    if (parts_.pose_door != nullptr) // The poses at the start of the next frame need them.
     {
         list_touches(*parts_.frame, output.pairs, parts_.pose_door->belief(), touches_);
     }
@@ -343,7 +343,7 @@ bool HapticLoop::may_touch(const PairOutput& pair, const FrameOutput& output) co
     return tactus::may_touch(pair, output.tools[pair.tool], radii_m_[pair.tool]);
 }
 
-/// As the frame found it.
+/// True if the tool may touch an object above the speed limit, as found by the frame.
 bool HapticLoop::meets_what_outruns(std::uint32_t tool) const noexcept
 {
     return std::ranges::any_of(touches_,
@@ -353,7 +353,7 @@ bool HapticLoop::meets_what_outruns(std::uint32_t tool) const noexcept
                                });
 }
 
-/// Whether the tool waits, and a piece doesn't come of a model that it is at.
+/// True if the tool is data-limited or halted near a starved model.
 bool HapticLoop::starves(std::uint32_t tool, const FrameOutput& output) const noexcept
 {
     if (parts_.starved == nullptr || !(output.tools[tool].held_back || output.tools[tool].frozen))
@@ -370,7 +370,7 @@ bool HapticLoop::starves(std::uint32_t tool, const FrameOutput& output) const no
                                });
 }
 
-/// Of all that the tool may touch.
+/// Largest damping of all objects that the tool may touch.
 double HapticLoop::damping_touched(std::uint32_t tool, const FrameOutput& output) const noexcept
 {
     double damping_n_s_per_m = 0.0;
@@ -390,7 +390,7 @@ ForceOff HapticLoop::causes_for_all(const FrameOutput& output) const noexcept
     return ends | (lacks_a_host(output) ? ForceOff::host : ForceOff::none);
 }
 
-/// Whether the tool is in contact and one of its answers rests on a pose that is too old.
+/// True if the tool is in contact and one of its answers uses a pose that is too old.
 bool HapticLoop::touches_old_pose(std::uint32_t tool, const FrameOutput& output) noexcept
 {
     return output.tools[tool].in_contact &&
@@ -398,7 +398,7 @@ bool HapticLoop::touches_old_pose(std::uint32_t tool, const FrameOutput& output)
                                { return pair.tool == tool && pair.kind == AnswerKind::stale; });
 }
 
-/// A model that is here as a whole needs nobody to send more of it.
+/// True if a model without host is streamed. A model that is resident as a whole needs no host.
 bool HapticLoop::lacks_a_host(const FrameOutput& output) const noexcept
 {
     return parts_.hosts_gone != nullptr &&

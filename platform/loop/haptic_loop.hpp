@@ -29,66 +29,66 @@
 namespace tactus::hrtc
 {
 
-/// What the loop works on. All of it outlives the loop.
+/// Parts of the loop. All outlive it.
 struct LoopParts
 {
     Frame* frame{nullptr};
     std::span<const ToolSetup> tools;
     PeriodicTimer* timer{nullptr};
     const Clock* clock{nullptr};
-    Budgets budgets;                       ///< Of every frame; the first one's work.
-    BudgetGovernor* governor{nullptr};     ///< Chooses the others' work; may be none.
-    FrameTap* tap{nullptr};                ///< Takes every frame for a recording; may be none.
-    LastInputs* last_inputs{nullptr};      ///< Takes every frame's hands; may be none.
-    std::uint64_t frames{0};               ///< How many to run.
-    bool is_virtual{false};                ///< No time is measured: others work on the thread, too.
-    const ModelMarks* hosts_gone{nullptr}; ///< May be none.
-    const ModelMarks* starved{nullptr};    ///< Likewise.
-    PoseDoor* pose_door{nullptr};          ///< How the objects move; may be none.
-    TelemetryTap* telemetry{nullptr};      ///< Shows every frame; may be none.
-    FrontTap* front{nullptr};              ///< Shows what is refined; may be none.
-    TraceTap* trace{nullptr};              ///< Takes every frame's times; may be none.
+    Budgets budgets; ///< Budgets of every frame; with a governor, work of the first.
+    BudgetGovernor* governor{nullptr}; ///< Chooses the work budget of later frames; may be null.
+    FrameTap* tap{nullptr};            ///< Records every frame; may be null.
+    LastInputs* last_inputs{nullptr};  ///< Keeps every frame's device poses; may be null.
+    std::uint64_t frames{0};           ///< Number of frames to run.
+    bool is_virtual{false}; ///< No time is measured, since others work on this thread, too.
+    const ModelMarks* hosts_gone{nullptr}; ///< Models whose host is gone; may be null.
+    const ModelMarks* starved{nullptr};    ///< Starved models; may be null.
+    PoseDoor* pose_door{nullptr};          ///< Motion of the objects; may be null.
+    TelemetryTap* telemetry{nullptr};      ///< Shows every frame; may be null.
+    FrontTap* front{nullptr};              ///< Shows the refinement state; may be null.
+    TraceTap* trace{nullptr};              ///< Traces every frame's times; may be null.
 };
 
-/// The haptic thread's work: every period read the devices, run the frame, see that its forces are
-/// safe, write them, keep the measures. Nothing else happens on that thread.
+/// The haptic thread's work. Every period reads the devices, runs the frame, checks its forces,
+/// writes them and records the measures. Nothing else happens on that thread.
 ///
-/// The loop orders the period; what happens at one tool is its ToolPort's. The last frames of a run
-/// fade the forces, whether the run ends as planned or by stop(). A device that somebody has braked
-/// is released at once and its force fades in from zero.
+/// The loop orders the period; a ToolPort does the work of one tool. The last frames of a run fade
+/// the forces, whether the run ends as planned or by stop(). A device that another thread has
+/// braked is released at once and its force fades in from zero.
 class HapticLoop
 {
 public:
     HapticLoop(const LoopParts& parts, RunStatistics& statistics);
 
-    /// Runs until all frames are done or stop() was called. The timer has been started. Allocates
-    /// nothing.
+    /// Runs until all frames are done or stop() was called. The timer must have been started.
+    /// Allocates nothing.
     void run() noexcept;
 
     /// Any thread: ends the loop once the forces have faded.
     void stop() noexcept { stopped_.store(true, std::memory_order_relaxed); }
-    /// Any thread: whether fail() has done its work: the devices are braked.
+    /// Any thread: true once fail() is done and the devices are braked.
     [[nodiscard]] bool has_failed() const noexcept { return failed_.load(); }
     [[nodiscard]] bool is_done() const noexcept { return done_.load(); }
     [[nodiscard]] std::uint64_t frames_done() const noexcept
     {
         return frames_done_.load(std::memory_order_relaxed);
     }
-    /// Ends the loop for a bug; called by the assertion handler of the thread that found it. On the
-    /// haptic thread the last forces fade first, with nothing but the timer and the devices' write;
-    /// then, and on any other thread at once, all devices are braked for good.
+    /// Ends the loop after a bug; called by the assertion handler of the thread that found it. On
+    /// the haptic thread the last forces fade first, using nothing but the timer and the devices'
+    /// write; then all devices are braked for good. On any other thread they are braked at once.
     void fail() noexcept;
 
-    /// Any thread, once has_failed(): whether the haptic thread found the bug, and works no more.
+    /// Any thread, once has_failed(): true if the haptic thread found the bug, and works no more.
     [[nodiscard]] bool has_failed_itself() const noexcept { return has_failed_itself_; }
-    /// Likewise: what the frame was given in which it failed, or with whose forces; none where it
-    /// was between frames.
+    /// Any thread, once has_failed(): input of the frame that failed, or whose forces failed; none
+    /// if it failed between frames.
     [[nodiscard]] std::optional<GivenFrame> failed_frame() noexcept;
 
-    /// What the supervisor watches.
+    /// Heartbeat for the supervisor.
     [[nodiscard]] const Heartbeat& heartbeat() const noexcept { return heartbeat_; }
-    /// Any thread: where the tools were in the first frame in which all devices told it. None
-    /// before.
+    /// Any thread: positions of the tools in the first frame with valid positions of all devices.
+    /// Empty before.
     [[nodiscard]] std::span<const Vec3> first_places_m() const noexcept;
     /// State changes of the tools; one other thread may take them.
     [[nodiscard]] SafetyLog& safety_log() noexcept { return log_; }
@@ -126,34 +126,37 @@ private:
 
     LoopParts parts_;
     RunStatistics& statistics_;
-    std::deque<ToolPort> ports_;        ///< One a tool; they are never moved.
-    std::vector<ToolState> states_;     ///< Copied from the ports, in one piece for the frame.
-    std::vector<ToolForce> forces_;     ///< Likewise, for those who keep figures.
-    std::vector<Vec3> first_places_m_;  ///< One a tool; written before has_places_ alone.
-    std::vector<double> radii_m_;       ///< One a tool.
-    std::vector<DeviceRecord> devices_; ///< Likewise, for those who show or record.
-    ObjectTouches touches_;             ///< What tools may touch soon, after the last frame.
-    FrameInput given_;                  ///< To the frame that runs, or ran last.
-    bool is_recorded_{true};            ///< That one.
-    bool has_failed_itself_{false};     ///< Before failed_ is set.
+    std::deque<ToolPort> ports_;    ///< Ports, one a tool; never moved.
+    std::vector<ToolState> states_; ///< States copied from the ports, contiguous for the frame.
+    std::vector<ToolForce> forces_; ///< Forces copied from the ports, for the statistics.
+    /// First positions, one a tool; written only before has_places_.
+    std::vector<Vec3> first_places_m_;
+    std::vector<double> radii_m_; ///< Tool radii, one a tool.
+    /// Device records, one a tool, for displays and recordings.
+    std::vector<DeviceRecord> devices_;
+    ObjectTouches touches_;         ///< Objects that tools may soon touch, after the last frame.
+    FrameInput given_;              ///< Input of the present or last frame.
+    bool is_recorded_{true};        ///< True if the frame of `given_` is recorded.
+    bool has_failed_itself_{false}; ///< Set before failed_.
     std::uint64_t frame_{0};
-    std::uint64_t fade_frames_{0}; ///< That the last forces of a run take.
-    std::uint64_t end_;            ///< Frame that is not run any more.
+    std::uint64_t fade_frames_{0}; ///< Duration of the last fade, in frames.
+    std::uint64_t end_;            ///< Number of the frame at which the run ends.
     std::atomic<std::thread::id> haptic_thread_{};
     Heartbeat heartbeat_;
     SafetyLog log_;
     CycleMeasures measures_;
     MonotonicTime stage_start_{};
-    MonotonicTime last_end_{};       ///< Of the last frame.
-    ThreadUsage usage_;              ///< Of this thread at that time.
-    std::int64_t timer_switches_{0}; ///< Voluntary ones in the timer's sleeps since then.
-    std::uint64_t allocations_{0};   ///< Likewise.
+    MonotonicTime last_end_{}; ///< End of the last frame.
+    ThreadUsage usage_;        ///< Usage of this thread at `last_end_`.
+    /// Voluntary switches in the timer's sleeps since `last_end_`.
+    std::int64_t timer_switches_{0};
+    std::uint64_t allocations_{0}; ///< Allocations of this thread until the last cycle.
     std::atomic<bool> has_places_{false};
     std::atomic<bool> stopped_{false}; ///< Relaxed: it orders nothing else.
-    std::atomic<bool> failing_{false}; ///< Set by the first that fails.
+    std::atomic<bool> failing_{false}; ///< Set by the first failure.
     std::atomic<bool> failed_{false};
     std::atomic<bool> done_{false};
-    std::atomic<std::uint64_t> frames_done_{0}; ///< Relaxed: shown, nothing more.
+    std::atomic<std::uint64_t> frames_done_{0}; ///< Relaxed: for display only.
 };
 
 } // namespace tactus::hrtc

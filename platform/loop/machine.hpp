@@ -8,21 +8,21 @@
 namespace tactus::hrtc
 {
 
-/// The machine a run was measured on, for the report's reader.
+/// The machine of a run, for its report.
 struct Machine
 {
-    std::string kernel;     ///< Release and version as the kernel states them.
-    std::string preemption; ///< "PREEMPT_RT" or what the kernel's version string says of it.
+    std::string kernel;     ///< Release and version as reported by the kernel.
+    std::string preemption; ///< "PREEMPT_RT" or the text of the kernel's version string.
     std::string processor;
     unsigned processors{0};
-    double load_average{0.0}; ///< Of the last minute.
-    std::string date_utc;     ///< ISO 8601.
+    double load_average{0.0}; ///< Average of the last minute.
+    std::string date_utc;     ///< Date as in ISO 8601.
 };
 
 [[nodiscard]] Machine describe_machine();
 
-/// For how many periods a loop may be silent here before that is a hang: a kernel without
-/// PREEMPT_RT keeps a thread waiting for some milliseconds again and again.
+/// Number of periods without a beat that count as a hang on this machine: a kernel without
+/// PREEMPT_RT delays threads by some milliseconds repeatedly.
 [[nodiscard]] std::uint32_t silent_periods(const Machine& machine);
 
 } // namespace tactus::hrtc

@@ -13,9 +13,8 @@
 namespace tactus::hrtc
 {
 
-/// Which models something holds of now: that their host is gone, for instance. One thread writes,
-/// any reads, without order to anything else; what is read while it changes is old for some models
-/// and new for others.
+/// A set of models with some present property, for instance a lost host. One thread writes, any
+/// thread reads, unordered with other data; a reader may see a change for some models only.
 class ModelMarks
 {
 public:
@@ -31,7 +30,7 @@ public:
     {
         return (words_[model / 64].load(std::memory_order_relaxed) >> model % 64 & 1U) != 0;
     }
-    /// Whether `matters(model)` holds of one of them.
+    /// True if `matters(model)` holds for a model of the set.
     template <typename Matters>
     [[nodiscard]] bool any_of(const Matters& matters) const noexcept
     {

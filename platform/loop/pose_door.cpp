@@ -25,13 +25,14 @@ constexpr std::uint64_t bit_of(std::size_t object) noexcept
     return std::uint64_t{1} << object % kWordBits;
 }
 
-/// The object of a word's lowest bit.
+/// Object of a word's lowest bit.
 constexpr std::size_t first_of(std::size_t word, std::uint64_t bits) noexcept
 {
     return word * kWordBits + static_cast<std::size_t>(std::countr_zero(bits));
 }
 
-/// Between two times of a host's clock, up to a day. Else 0: what a host says may be anything.
+/// Time between two times of a host's clock, up to a day; otherwise 0, since a host's times are not
+/// trusted.
 std::int64_t since_ns(std::int64_t before_ns, std::int64_t now_ns) noexcept
 {
     constexpr std::int64_t kDay_ns = 86'400'000'000'000;
@@ -176,8 +177,8 @@ std::span<const SceneChange> PoseDoor::refresh(MonotonicTime now,
     std::size_t changes = take_passages();
     take_letters(now);
     look_at_ages(now);
-    // What tools may touch has its turn in every frame, or the surface would jump under the tool;
-    // it leaves the others half of the room.
+    // Objects near tools have their turn in every frame, or the surface would jump under the tool;
+    // they leave half of the changes to others.
     const std::size_t passed = changes;
     for (const ObjectTouch& touch : touches)
     {
@@ -186,11 +187,12 @@ std::span<const SceneChange> PoseDoor::refresh(MonotonicTime now,
         if (has_room && (bits & bit_of(touch.object)) != 0)
         {
             changes += try_move(touch.object, now, changes_[changes]) ? 1U : 0U;
-            bits &= ~bit_of(touch.object); // It has had its turn.
+            bits &= ~bit_of(touch.object); // This object has had its turn.
         }
     }
     const std::size_t touched = changes;
-    // Once round from whose turn it is: the later bits of its word first, the earlier ones last.
+    // Visits all objects once from `first_` on: the later bits of its word first, the earlier ones
+    // last.
     const std::size_t words = awake_.size();
     const std::uint64_t from_first = ~std::uint64_t{0} << first_ % kWordBits;
     std::size_t next = first_;
@@ -224,14 +226,14 @@ std::span<const SceneChange> PoseDoor::refresh(MonotonicTime now,
     return {changes_.data(), changes};
 }
 
-/// What came since the last frame.
+/// Takes the poses put since the last frame.
 void PoseDoor::take_letters(MonotonicTime now) noexcept
 {
     for (std::size_t word = 0; word < unread_.size(); ++word)
     {
         if (came_[word].load(std::memory_order_relaxed) != 0)
         {
-            // Pairs with the release in put(): who sees the bit finds the letter.
+            // Pairs with the release in put(): a reader that sees the bit finds the letter.
             unread_[word] |= came_[word].exchange(0, std::memory_order_acquire);
         }
         for (std::uint64_t bits = unread_[word]; bits != 0; bits &= bits - 1)
@@ -240,15 +242,15 @@ void PoseDoor::take_letters(MonotonicTime now) noexcept
             Letter letter;
             if (!mailboxes_[object].try_read(letter))
             {
-                continue; // It is being written all the time: in the next frame.
+                continue; // The letter is being written; the next frame reads it.
             }
             const Letter& last = letters_[object];
             if (letter.generation > last.generation)
             {
-                continue; // Its own passage waits.
+                continue; // The object's own passage is still queued.
             }
             unread_[word] &= ~bit_of(object);
-            // What was put for another object under this number came too late.
+            // A letter for an earlier object of this number is too late.
             if (glides_[object].is_here && letter.generation == last.generation &&
                 letter.number > last.number)
             {
@@ -263,7 +265,7 @@ void PoseDoor::take_letters(MonotonicTime now) noexcept
 void PoseDoor::look_at_ages(MonotonicTime now) noexcept
 {
     const std::size_t objects = letters_.size();
-    // So often has each its turn.
+    // Frames until each object has its next turn.
     const std::size_t frames = (objects + kAgedAFrame - 1) / kAgedAFrame;
     for (std::size_t i = 0; i < std::min(objects, kAgedAFrame); ++i)
     {
@@ -284,7 +286,7 @@ void PoseDoor::look_at_ages(MonotonicTime now) noexcept
     }
 }
 
-/// Whether the frame has to be told of the object, and what.
+/// Returns true, with the change, if the frame needs a change of the object.
 bool PoseDoor::try_move(std::size_t object, MonotonicTime now, SceneChange& change) noexcept
 {
     const Duration age = age_of(object, now);
@@ -310,7 +312,8 @@ bool PoseDoor::try_move(std::size_t object, MonotonicTime now, SceneChange& chan
     return true;
 }
 
-/// Before the moves; returns how many changes they make. More wait for the next frame.
+/// Takes added, removed and changed objects before the moves; returns their number of changes. More
+/// are deferred to the next frame.
 std::size_t PoseDoor::take_passages() noexcept
 {
     std::size_t changes = 0;
@@ -350,13 +353,14 @@ void PoseDoor::begin_glide(std::size_t object, const Letter& letter, MonotonicTi
     Glide& glide = glides_[object];
     glide.from = places_[object];
     glide.to = Similarity{pose_of(letter)};
-    // The frame has not been told yet of one that was to be there at once: this one is.
+    // If the frame has not been given a pose that was to be taken at once, this one is taken at
+    // once.
     const bool is_overdue = glide.is_under_way && glide.time == Duration{0};
     if (!glide.is_under_way)
     {
         glide.moved = last_refresh_;
     }
-    const MonotonicTime start = std::min(glide.moved, now); // It was told to be there then.
+    const MonotonicTime start = std::min(glide.moved, now); // The object was due there then.
     const Duration left = glide.is_under_way ? glide.time - (start - glide.start) : Duration{0};
     glide.start = start;
     glide.is_under_way = true;
@@ -366,8 +370,8 @@ void PoseDoor::begin_glide(std::size_t object, const Letter& letter, MonotonicTi
     const bool rested = between_ns <= 0 || between_ns > kGlideMax.ns;
     const double way_m = (glide.to.translation_m - glide.from.translation_m).norm();
     const bool is_at_once = !uses_[object].is_followed || is_overdue || (rested && way_m > kJump_m);
-    // A pose that comes early finds the way before not gone yet: with its time the speed stays. A
-    // fifth less, so that what once came late doesn't stay behind for ever.
+    // If a pose is early, the blend before is not finished: adding its remaining time keeps the
+    // speed. A fifth of that time is dropped, so that one late pose causes no lasting lag.
     const std::int64_t whole_ns = between_ns + std::max<std::int64_t>(left.ns, 0) * 4 / 5;
     glide.time = is_at_once ? Duration{0}
                  : rested   ? kGlideMax
@@ -375,7 +379,7 @@ void PoseDoor::begin_glide(std::size_t object, const Letter& letter, MonotonicTi
     uses_[object].is_followed = true;
 }
 
-/// A frame's motion of an object on its way.
+/// Moves an object in motion by one frame.
 void PoseDoor::move_on(std::size_t object, MonotonicTime now) noexcept
 {
     Glide& glide = glides_[object];
@@ -400,7 +404,7 @@ void PoseDoor::move_on(std::size_t object, MonotonicTime now) noexcept
     glide.is_under_way = glide.is_held || now - glide.start < glide.time;
 }
 
-/// How far the object would move what some tool may meet of it; 0 where none is near.
+/// Largest displacement of the parts of the object that a tool may meet; 0 if no tool is near.
 double PoseDoor::way_near_m(std::size_t object, const Similarity& to) const noexcept
 {
     double way_m = 0.0;
@@ -429,7 +433,7 @@ Similarity PoseDoor::place_at(const Glide& glide, MonotonicTime now) noexcept
 
 Duration PoseDoor::age_of(std::size_t object, MonotonicTime now) const noexcept
 {
-    // What came since the frame began is not from the future.
+    // A host may have been heard since the frame began; its age is 0.
     const std::int64_t heard_ns = heard_ns_[object].load(std::memory_order_relaxed);
     return {std::max<std::int64_t>(now.ns - heard_ns, 0)};
 }

@@ -11,7 +11,7 @@ namespace tactus::hrtc
 namespace
 {
 
-/// How bad an answer is; a frame is as bad as its worst pair.
+/// Badness of an answer; a frame is as bad as its worst pair.
 int badness(AnswerKind kind) noexcept
 {
     switch (kind)
@@ -76,8 +76,8 @@ void ForceCounts::add(const ToolOutput& output, const ToolForce& force) noexcept
     }
 }
 
-/// The end of a run, and a force that goes off, damp the motion, in the air too: that is no force
-/// of what was touched, and going there and back no step of one.
+/// The fade of a run and of a force damps the motion, in the air too: that is no contact force, and
+/// its start and end are no step of one.
 void ForceCounts::add_sent(const ToolForce& force, bool in_contact) noexcept
 {
     const bool is_damping_air = force.causes != ForceOff::none && !in_contact;

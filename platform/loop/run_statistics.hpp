@@ -20,7 +20,7 @@
 namespace tactus::hrtc
 {
 
-/// Answers of frames or of one pair.
+/// Counts of the answers of frames or of one pair.
 struct AnswerCounts
 {
     std::uint64_t exact{0};
@@ -29,8 +29,8 @@ struct AnswerCounts
     std::uint64_t stale{0};
     std::uint64_t within_tolerance{0};
     std::uint64_t longest_inexact_run{0};
-    double width_max_m{0.0};     ///< Widest bracket of a frame that was open or stale.
-    double tolerated_max_m{0.0}; ///< Of answers within the tolerance.
+    double width_max_m{0.0};     ///< Widest bounds of a frame with a bounded or stale answer.
+    double tolerated_max_m{0.0}; ///< Largest tolerated_m of an answer within the tolerance.
 
     void add(AnswerKind kind, double width_m, double tolerated_m) noexcept;
     [[nodiscard]] std::uint64_t in_all() const noexcept
@@ -42,25 +42,25 @@ private:
     std::uint64_t inexact_run_{0};
 };
 
-/// One tool's forces over the run. The largest ones are those before its end, in which forces fade.
+/// One tool's forces over the run. The largest ones exclude the fade at its end.
 struct ForceCounts
 {
     double max_n{0.0};
     double max_step_n{0.0}; ///< Largest |F(k) - F(k - 1)|.
     double torque_max_nm{0.0};
-    double torque_max_step_nm{0.0}; ///< Likewise.
+    double torque_max_step_nm{0.0}; ///< Largest |T(k) - T(k - 1)|.
     double twist_max_rad{0.0};      ///< Largest angle between device and proxy, in contact.
-    double guide_max_n{0.0};        ///< Largest force that --guide wanted, before it was limited.
-    double load_max_n{0.0};         ///< Largest force that carried a load, not in the others.
-    double load_max_nm{0.0};        ///< Largest torque, likewise.
+    double guide_max_n{0.0};        ///< Largest force of --guide before it was limited.
+    double load_max_n{0.0};         ///< Largest force that carried a payload, not in the others.
+    double load_max_nm{0.0};        ///< Largest torque that carried a payload, not in the others.
     std::uint64_t contact_frames{0};
-    std::uint64_t force_frames{0}; ///< Of those, with a force that went out.
+    std::uint64_t force_frames{0}; ///< Contact frames with a force sent.
     std::uint64_t frozen_frames{0};
     std::uint64_t held_back_frames{0};
-    double lag_max_m{0.0}; ///< ToolOutput::lag_m.
-    /// Of the walls that were softened to what the device may have; infinite when none was.
+    double lag_max_m{0.0}; ///< Largest ToolOutput::lag_m.
+    /// Least stiffness to which a contact was reduced for the device; infinite if none was.
     double softest_wall_n_per_m{kInfinity};
-    double surplus_max_j{0.0}; ///< SpringForce::surplus_j, of force or torque.
+    double surplus_max_j{0.0}; ///< Largest SpringForce::surplus_j, of force or torque.
     std::array<std::uint64_t, kForceActions> conditioned{}; ///< Frames with each ForceAction.
 
     void add(const ToolOutput& output, const ToolForce& force) noexcept;
@@ -70,10 +70,10 @@ private:
 
     Vec3 last_n_{0.0, 0.0, 0.0};
     Vec3 last_nm_{0.0, 0.0, 0.0};
-    bool damped_air_{false}; ///< In the last frame.
+    bool damped_air_{false}; ///< True if air was damped in the last frame.
 };
 
-/// A number of each frame over the run.
+/// Range and sum of a number of each frame over the run.
 struct WorkRange
 {
     std::uint32_t min{0};
@@ -83,18 +83,18 @@ struct WorkRange
     void add(std::uint32_t work, bool is_first) noexcept;
 };
 
-/// Everything a run's report is made of. Filled by the haptic thread without allocating; read by
-/// others once the loop has ended.
+/// Everything for a run's report. Filled by the haptic thread without allocating; read by others
+/// once the loop has ended.
 class RunStatistics
 {
 public:
     RunStatistics(std::size_t tools, std::size_t objects, std::size_t models, Duration period);
 
-    /// `forces`: one a tool.
+    /// Adds a frame. `forces`: one a tool.
     void add(const FrameOutput& output, std::span<const ToolForce> forces,
              const CycleMeasures& measures) noexcept;
 
-    /// All that were measured, by the report's names. Allocates; for once the loop has ended.
+    /// All measured times, by the report's names. Allocates; call once the loop has ended.
     [[nodiscard]] std::vector<std::pair<const char*, LatencyHistogram>> times() const;
 
     std::uint64_t frames{0};
@@ -103,18 +103,18 @@ public:
     LatencyHistogram cpu; ///< Processor time of a frame.
     LatencyHistogram wake;
     RunSeries series;
-    std::vector<ToolPath> paths; ///< One a tool.
+    std::vector<ToolPath> paths; ///< Paths, one a tool.
     DeadlineAccount deadlines;
-    AnswerCounts answers; ///< By each frame's worst pair.
-    std::size_t objects;  ///< Places for them: one more than their largest number.
-    /// Tool by tool, in each the objects by their numbers; counts while they are near.
+    AnswerCounts answers; ///< Answers, each frame by its worst pair.
+    std::size_t objects;  ///< Capacity for objects: one more than their largest number.
+    /// Answers by tool, then object number; counted while they are near.
     std::vector<AnswerCounts> pairs;
     std::vector<ForceCounts> tools;
-    std::vector<ModelOutput> models; ///< Of the last frame; `used_max` covers the run.
+    std::vector<ModelOutput> models; ///< Models of the last frame; `used_max` covers the run.
 
     std::uint64_t contact_frames{0};   ///< Frames with some tool in contact.
-    std::uint64_t force_frames{0};     ///< Of those, with a force of it that went out.
-    std::uint64_t held_back_frames{0}; ///< Frames with some tool held back.
+    std::uint64_t force_frames{0};     ///< Contact frames in which a tool in contact sent a force.
+    std::uint64_t held_back_frames{0}; ///< Frames with some tool data-limited.
     std::uint64_t splits{0};
     std::uint64_t merges{0};
     std::uint64_t nodes_visited{0};
@@ -122,26 +122,27 @@ public:
     std::uint64_t cache_hits{0};
     std::uint64_t cache_misses{0};
     std::uint64_t evictions{0};
-    std::array<std::uint64_t, kSkips> skipped{}; ///< In the order of Skip.
+    std::array<std::uint64_t, kSkips> skipped{}; ///< Skipped stages, in the order of Skip.
     std::array<std::uint64_t, 32> faults{};      ///< Frames with each FrameFault bit.
 
-    std::uint32_t objects_now{0}; ///< In the last frame.
+    std::uint32_t objects_now{0}; ///< Objects in the last frame.
     std::uint32_t objects_max{0};
     std::uint32_t pairs_awake_max{0};
-    std::uint64_t crowded_frames{0}; ///< With some tool that is not clear as far as it asks.
-    /// With one of them held where it is proven clear.
+    /// Frames with some tool whose clearance is less than requested.
+    std::uint64_t crowded_frames{0};
+    /// Frames with one of them held at its proven clearance.
     std::uint64_t invisible_wall_frames{0};
-    std::uint64_t shed_pairs{0};  ///< Pairs that were shed, summed over the frames.
-    std::uint64_t scene_walks{0}; ///< BroadPhase's.
-    /// Changes that were not made, in the order of ChangeRefusal.
+    std::uint64_t shed_pairs{0};  ///< Pairs dropped, summed over the frames.
+    std::uint64_t scene_walks{0}; ///< Walks of BroadPhase.
+    /// Changes refused, in the order of ChangeRefusal.
     std::array<std::uint64_t, kChangeRefusals> changes_refused{};
 
-    WorkRange work_allowed;         ///< Budgets::work,
-    WorkRange work_done;            ///< and WorkBudget::used().
-    std::uint64_t work_at_floor{0}; ///< Frames for which the least work is more than fits.
+    WorkRange work_allowed;         ///< Range of Budgets::work.
+    WorkRange work_done;            ///< Range of WorkBudget::used().
+    std::uint64_t work_at_floor{0}; ///< Frames in which even the least work did not fit.
 
 private:
-    /// The width of the widest bracket, in m.
+    /// Returns the width of the widest bounded answer, in m.
     double add_answers(const FrameOutput& output) noexcept;
     void add_point(const CycleMeasures& measures, std::span<const ToolForce> forces,
                    double width_m) noexcept;

@@ -15,36 +15,36 @@
 namespace tactus::hrtc
 {
 
-/// A tool's state or causes became others.
+/// A change of a tool's state or causes.
 struct SafetyEvent
 {
     MonotonicTime time;
-    std::uint64_t frame{0}; ///< Of the loop, from 0.
+    std::uint64_t frame{0}; ///< Number of the loop's frame, from 0.
     std::uint32_t tool{0};
     SafetyState state{SafetyState::reset};
     ForceOff causes{ForceOff::none};
-    bool by_supervisor{false}; ///< Noted by the supervisor, which has braked the device.
+    bool by_supervisor{false}; ///< True if noted by the supervisor, which has braked the device.
 };
 
-/// Carries events from one real-time thread to one that has time: a queue of fixed size. What finds
-/// no room is counted and dropped.
+/// Passes events from one real-time thread to one other thread in a queue of fixed size. Events
+/// beyond it are counted and dropped.
 class SafetyLog
 {
 public:
-    /// Taken every 20 ms; even at 10 kHz and with a change in every frame four tools need fewer.
-    /// 32 KiB.
+    /// Capacity, 32 KiB. Events are taken every 20 ms; even at 10 kHz and with a change in every
+    /// frame four tools need fewer.
     static constexpr std::size_t kEvents = 1'024;
 
-    /// The thread whose events these are. Allocates nothing.
+    /// Thread of the events. Allocates nothing.
     void note(const SafetyEvent& event) noexcept
     {
         if (!queue_.try_push(event))
         {
-            lost_.fetch_add(1, std::memory_order_relaxed); // A number to show; orders nothing.
+            lost_.fetch_add(1, std::memory_order_relaxed); // A number for display; orders nothing.
         }
     }
 
-    /// The other thread: moves what waits to the end of `events`.
+    /// Other thread: appends the waiting events to `events`.
     void take_into(std::vector<SafetyEvent>& events)
     {
         SafetyEvent event;
@@ -54,7 +54,7 @@ public:
         }
     }
 
-    /// Any thread.
+    /// Any thread: number of dropped events.
     [[nodiscard]] std::uint64_t lost() const noexcept
     {
         return lost_.load(std::memory_order_relaxed);

@@ -9,7 +9,8 @@ namespace tactus::hrtc
 
 void SafetyRecord::add(const SafetyEvent& event)
 {
-    if (!event.by_supervisor) // What it does is noted by the loop as well, when that is back.
+    // The loop notes the supervisor's effects as well, once it runs again.
+    if (!event.by_supervisor)
     {
         ForceOff& last = last_causes_[event.tool];
         const std::uint32_t began =

@@ -16,7 +16,8 @@ void Supervisor::run() noexcept
         const Duration until = look() - parts_.clock->now();
         const Duration sleep =
             std::clamp(until, PeriodicTimer::kPeriodMin, PeriodicTimer::kPeriodMax);
-        static_cast<void>(parts_.timer->start(sleep, Duration{})); // In range, so not refused.
+        // It is in range, so it is not refused.
+        static_cast<void>(parts_.timer->start(sleep, Duration{}));
         parts_.timer->sleep_until_margin();
     }
 }
@@ -25,7 +26,8 @@ MonotonicTime Supervisor::look() noexcept
 {
     const Duration patience = parts_.period * parts_.silent_periods;
     const std::optional<MonotonicTime> last = parts_.heartbeat->last();
-    const MonotonicTime now = parts_.clock->now(); // After the beat, so that it is never earlier.
+    // It is read after the beat, so it is never earlier.
+    const MonotonicTime now = parts_.clock->now();
     if (!last)
     {
         return now + patience;
@@ -42,7 +44,7 @@ MonotonicTime Supervisor::look() noexcept
     }
     else if (now - noticed_at_ >= kBrakeFade)
     {
-        brake(); // Also where a device's own thread, which fades, didn't run.
+        brake(); // It also covers a device whose own thread, which fades, did not run.
     }
     return now + parts_.period;
 }
@@ -73,8 +75,8 @@ RtThreadOptions Supervisor::thread_beside(const RtThreadOptions& loop)
     RtThreadOptions options = loop;
     options.priority = loop.priority + 1;
     options.is_supervisor = true;
-    options.lock_memory = false;      // The loop's thread locks that of the process, and keeps
-    options.processors_awake = false; // the processors awake.
+    options.lock_memory = false;      // The loop's thread locks the memory of the process.
+    options.processors_awake = false; // The loop's thread keeps the processors awake.
     options.cpu = loop.cpu ? linux_extras::another_cpu(*loop.cpu) : std::nullopt;
     return options;
 }

@@ -17,55 +17,55 @@
 namespace tactus::hrtc
 {
 
-/// What the supervisor looks at; all of it outlives the supervisor.
+/// Parts of the supervisor. All outlive it.
 struct SupervisorParts
 {
-    std::span<const ToolSetup> tools; ///< Whose devices it brakes.
+    std::span<const ToolSetup> tools; ///< Tools whose devices it brakes.
     const Heartbeat* heartbeat{nullptr};
-    const Clock* clock{nullptr};     ///< The one that the heartbeat's times are of.
-    PeriodicTimer* timer{nullptr};   ///< Its own; used as an alarm.
-    Duration period;                 ///< Of the watched loop.
-    std::uint32_t silent_periods{3}; ///< Without a beat; then it brakes. At least 1.
+    const Clock* clock{nullptr};   ///< Clock of the heartbeat's times.
+    PeriodicTimer* timer{nullptr}; ///< Timer of its own, used as an alarm.
+    Duration period;               ///< Period of the watched loop.
+    /// Number of periods without a beat until it brakes, at least 1.
+    std::uint32_t silent_periods{3};
 };
 
-/// Brakes all devices when the haptic loop has given no sign of life for so many periods (here 3),
-/// whatever it hangs in: the device's own read, an endless loop, a processor that somebody else
-/// has taken.
+/// Brakes all devices if the haptic loop has no beat for `silent_periods` (here 3): because of the
+/// device's own read, an endless loop, or a processor taken by another thread.
 ///
 ///     beat    beat    beat                              beat
 ///      |-------|-------|-------.-------.-------|  . . .  |
-///                                   brake_softly()        the loop releases it and goes on from
-///                                                         what is left of the force, or from zero
+///                                   brake_softly()        the loop releases it and continues from
+///                                                         the rest of the force, or from zero
 ///
-/// When the fade should be over it calls brake(), in case that a device's own thread hangs, too.
-/// It sleeps until the silence would be long enough and looks then, so it costs one wake-up in
-/// that time. It does not release: the loop does, when it is back.
+/// After the fade it calls brake(), in case that a device's own thread hangs, too. It sleeps until
+/// the silence would be long enough, so it costs one wake-up in that time. Only the loop releases
+/// the brake, once it runs again.
 class Supervisor
 {
 public:
     explicit Supervisor(const SupervisorParts& parts) noexcept : parts_(parts) {}
 
-    /// Looks and sleeps by turns until stop(). Allocates nothing.
+    /// Checks and sleeps in turn until stop(). Allocates nothing.
     void run() noexcept;
 
-    /// One look: brakes when the silence is long enough and it has not been noticed yet. Returns
-    /// when to look again.
+    /// Checks once: brakes if the silence is long enough and new. Returns the time of the next
+    /// check.
     [[nodiscard]] MonotonicTime look() noexcept;
 
-    /// Any thread: ends run() within the silence that it allows.
+    /// Any thread: ends run() within the permitted silence.
     void stop() noexcept { stopped_.store(true, std::memory_order_relaxed); }
 
-    /// Any thread: how many silences it has ended with the brake.
+    /// Any thread: number of silences ended with the brake.
     [[nodiscard]] std::uint64_t brakes() const noexcept
     {
         return brakes_.load(std::memory_order_relaxed);
     }
-    /// One event a device and brake.
+    /// Events, one for each device and brake.
     [[nodiscard]] SafetyLog& log() noexcept { return log_; }
 
-    /// The thread that it should have beside a loop with these options: one priority above, on a
-    /// processor other than the loop's where there is one, and without real-time rights where the
-    /// loop has none.
+    /// Options of its thread beside a loop with these options: one priority above, on another
+    /// processor than the loop's if there is one, and without real-time rights if the loop has
+    /// none.
     [[nodiscard]] static RtThreadOptions thread_beside(const RtThreadOptions& loop);
 
 private:
@@ -73,11 +73,11 @@ private:
     void brake_softly(MonotonicTime now) noexcept;
 
     SupervisorParts parts_;
-    std::optional<MonotonicTime> noticed_; ///< The last beat before a silence that was ended,
-    MonotonicTime noticed_at_;             ///< and when that was.
+    std::optional<MonotonicTime> noticed_; ///< Last beat before a silence that was ended.
+    MonotonicTime noticed_at_;             ///< Time when that silence was noticed.
     SafetyLog log_;
     std::atomic<bool> stopped_{false};     ///< Relaxed: it orders nothing else.
-    std::atomic<std::uint64_t> brakes_{0}; ///< Relaxed: shown, nothing more.
+    std::atomic<std::uint64_t> brakes_{0}; ///< Relaxed: for display only.
 };
 
 } // namespace tactus::hrtc

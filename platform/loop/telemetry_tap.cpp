@@ -50,7 +50,7 @@ void TelemetryTap::show_pairs(const ShownFrame& frame) noexcept
 {
     const std::span<const PairOutput> pairs = frame.output.pairs;
     std::array<Vec3, kMaxPairs> pushes_n;
-    for (std::size_t begin = 0; begin < pairs.size();) // They are sorted by tools.
+    for (std::size_t begin = 0; begin < pairs.size();) // Pairs are sorted by tools.
     {
         const std::uint32_t tool = pairs[begin].tool;
         std::size_t end = begin + 1;

@@ -16,30 +16,29 @@
 namespace tactus::hrtc
 {
 
-/// What the haptic thread shows of one frame.
+/// Data of one frame for display.
 struct ShownFrame
 {
     MonotonicTime start;
     std::span<const ToolState> tools;
-    std::span<const DeviceRecord> devices; ///< One a tool.
-    std::span<const double> radii_m;       ///< Likewise.
+    std::span<const DeviceRecord> devices; ///< Records, one a tool.
+    std::span<const double> radii_m;       ///< Radii, one a tool.
     const FrameOutput& output;
 };
 
-/// Shows every frame to whoever looks, through a mailbox: the haptic thread never waits and never
-/// knows whether anybody does.
+/// Shows every frame through a mailbox: the haptic thread never waits for readers.
 class TelemetryTap
 {
 public:
     explicit TelemetryTap(Duration period) { news_.period_ns = period.ns; }
 
-    /// The haptic thread, after the forces have gone out and the statistics have the frame.
-    /// Allocates nothing; some 0.6 us, and 0.2 us a tool that touches several objects.
+    /// Haptic thread, after the forces are written and the statistics updated. Allocates nothing;
+    /// about 0.6 us, and 0.2 us for each tool that touches several objects.
     void show(const ShownFrame& frame, const RunStatistics& statistics) noexcept;
 
-    /// Any thread: the newest frame; false, with `telemetry` as it was, before the first one. What
-    /// only the transport knows (hosts, poses, pieces) is left zero, objects have the
-    /// controller's numbers.
+    /// Any thread: reads the newest frame; before the first one returns false and leaves
+    /// `telemetry` unchanged. Fields that only the transport knows (hosts, poses, chunks) are zero,
+    /// objects have the controller's numbers.
     [[nodiscard]] bool try_read(Telemetry& telemetry) const noexcept
     {
         return mailbox_.try_read(telemetry);
@@ -48,7 +47,7 @@ public:
 private:
     void show_pairs(const ShownFrame& frame) noexcept;
 
-    Telemetry news_; ///< The haptic thread's.
+    Telemetry news_; ///< Newest telemetry; the haptic thread's.
     Mailbox<Telemetry> mailbox_;
 };
 

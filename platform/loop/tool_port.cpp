@@ -51,7 +51,7 @@ const ToolState& ToolPort::read(std::uint32_t periods) noexcept
     state_.sample_time_ns = sample_.time.ns;
     state_.elapsed_periods = periods;
     state_.valid = sample_.valid && sample_.connected && is_turn_known && is_rotation_sound;
-    // Of a hand that isn't where it says nothing is taken, nor of its button.
+    // A device without a finite position contributes neither pose nor button.
     if (state_.valid && hand_.position_m.allFinite())
     {
         hand_.rotation = orthonormalised(to_rotation(rotation));
@@ -67,7 +67,7 @@ const ToolState& ToolPort::read(std::uint32_t periods) noexcept
     return state_;
 }
 
-/// What the device says beside the ToolState.
+/// Records the device's data beside the ToolState.
 void ToolPort::look() noexcept
 {
     record_.connected = sample_.connected;
@@ -96,8 +96,8 @@ OwnForce ToolPort::own_force(const ToolOutput& output) noexcept
     return own_source_ != nullptr ? own_source_->next(sample_, state_, output) : OwnForce{};
 }
 
-/// Returns how much the device has left of the last force: less than all when somebody braked it,
-/// nothing when its own watchdog ended the force.
+/// Returns the fraction of the last force that the device still renders: less than 1 if another
+/// thread braked it, 0 if its own watchdog ended the force.
 double ToolPort::take_back() noexcept
 {
     static_assert(to_seconds(kBrakeFade) == kFadeTime_s);
@@ -115,7 +115,7 @@ double ToolPort::take_back() noexcept
     return 1.0;
 }
 
-/// Another thread may call brake() between the look at the flag and the release, so it looks again.
+/// Another thread may call brake() between the check and the release, so the flag is checked again.
 void ToolPort::release_brake() noexcept
 {
     if (is_braked_for_good_.load())

@@ -18,13 +18,13 @@
 namespace tactus::hrtc
 {
 
-/// What a program adds to what surfaces do to one tool. It goes through all stages as theirs does.
+/// External force that a program adds to the contact forces of one tool. It passes the same stages.
 class OwnForceSource
 {
 public:
     virtual ~OwnForceSource() = default;
-    /// Once a frame, on the haptic thread: it must not block, allocate or throw. Where anything is
-    /// no number there is no force at all.
+    /// Force of this frame. Haptic thread: must not block, allocate or throw. If any component is
+    /// not a number, the whole force is zero.
     [[nodiscard]] virtual OwnForce next(const DeviceSample& sample, const ToolState& tool,
                                         const ToolOutput& output) noexcept = 0;
 
@@ -34,24 +34,25 @@ protected:
     OwnForceSource& operator=(const OwnForceSource&) = default;
 };
 
-/// One tool as the controller sets it up before the loop starts.
+/// Setup of one tool before the loop starts.
 struct ToolSetup
 {
-    ToolSpec spec;             ///< The frame's part.
-    std::string shape;         ///< In the words of --tool.
-    std::string guide;         ///< In the words of --guide; empty: none.
-    double hand_radius_m{0.0}; ///< How far from a surface a simulated hand holds it.
+    ToolSpec spec;     ///< Tool of the frame.
+    std::string shape; ///< Shape as given by --tool.
+    std::string guide; ///< Virtual fixture as given by --guide; empty: none.
+    /// Distance from surfaces at which a simulated operator holds it.
+    double hand_radius_m{0.0};
     std::unique_ptr<HapticDevice> device;
     SafetyLimits limits;
     ConditionerSetup conditioner;
     std::optional<std::uint32_t> clutch_button;
-    OwnForceSource* own_force{nullptr}; ///< Lent; may be none.
-    ToolLoad load;                      ///< Its weight no more than the device's largest force.
+    OwnForceSource* own_force{nullptr}; ///< Source of an external force; borrowed, may be null.
+    ToolLoad load; ///< Payload; its weight must not exceed the device's largest force.
     ChangeRule change;
 };
 
-/// One tool on the haptic thread: its device, and the ForcePipeline between the frame and that. The
-/// loop calls the methods of one period in this order:
+/// One tool on the haptic thread: its device, and the ForcePipeline between the frame and the
+/// device. The loop calls the methods of one period in this order:
 ///
 ///     read -> (frame) -> make_safe -> write
 ///
@@ -65,22 +66,21 @@ public:
     /// Reads the device. `periods`: whole periods since the last frame.
     [[nodiscard]] const ToolState& read(std::uint32_t periods) noexcept;
 
-    /// Decides which force goes out. Releases the device's brake if somebody has braked it, unless
-    /// brake() was called on this port.
-    /// `context.force_left` is found here.
+    /// Determines the force to send. Releases the device's brake if another thread has braked it,
+    /// unless brake() was called on this port. `context.force_left` is determined here.
     const ToolForce& make_safe(const ToolOutput& output, PeriodContext context) noexcept;
 
     /// Sends the force that make_safe() has returned.
     void write() noexcept { send(pipeline_.force()); }
 
-    /// What passed between it and the device in this period, beside the ToolState.
+    /// Record of the data exchanged with the device in this period, beside the ToolState.
     [[nodiscard]] const DeviceRecord& record() const noexcept { return record_; }
 
-    /// Sends the last force, faded by this much more time. It uses nothing but that force and the
-    /// device's write, so it can be called in the middle of a frame that a bug has interrupted.
+    /// Sends the last force, faded by this much more time. It uses only that force and the device's
+    /// write, so it may be called in the middle of a frame that a bug has interrupted.
     void fade(double elapsed_s, ForceOff cause) noexcept { send(pipeline_.fade(elapsed_s, cause)); }
 
-    /// The run is over: no force.
+    /// Sends zero force at the end of the run.
     void rest() noexcept { device_.write({}); }
 
     /// Any thread: brakes the device for good.
@@ -98,7 +98,7 @@ private:
     ForcePipeline pipeline_;
     OwnForceSource* own_source_;
     DeviceSample sample_;
-    HandPlace hand_; ///< Of the last sample.
+    HandPlace hand_; ///< Device pose of the last sample.
     ToolState state_;
     DeviceRecord record_;
     std::atomic<bool> is_braked_for_good_{false};

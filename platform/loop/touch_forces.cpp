@@ -17,22 +17,23 @@ namespace tactus::hrtc
 namespace
 {
 
-/// Pairs are measured at the proxy as the frame found it, forces made where it went.
+/// Slack between pairs, measured at the proxy's place before the frame, and forces, made at its new
+/// place.
 constexpr double kTouchSlack_m = 1e-3;
-/// More than three planes never hold a proxy; more objects are touched in corners only.
+/// Three planes at most hold a proxy; more objects are touched in corners only.
 constexpr std::size_t kMaxTouched = 8;
 constexpr int kRounds = 32;
 
 struct Touched
 {
     std::size_t pair{0};
-    Vec3 inward{0.0, 0.0, 0.0}; ///< From the tool into the object, of length 1.
+    Vec3 inward{0.0, 0.0, 0.0}; ///< Direction from the tool into the object, of length 1.
     double push_n{0.0};
 };
 
 using TouchedList = StaticVector<Touched, kMaxTouched>;
 
-/// Where tool and surface are one point nothing tells the normal but the push itself.
+/// Normal into the object. If tool and surface coincide, only the push determines it.
 Vec3 inward_of(const PairOutput& pair, const Vec3& push_n) noexcept
 {
     const Vec3 way_m = pair.nearest_point_m - pair.point_m;

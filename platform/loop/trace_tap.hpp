@@ -16,19 +16,19 @@
 namespace tactus::hrtc
 {
 
-/// When a frame did what.
+/// Times of one frame.
 struct TracedFrame
 {
     std::uint64_t frame{0};
-    MonotonicTime deadline{}; ///< At which it was due.
+    MonotonicTime deadline{}; ///< Deadline at which the frame was due.
     MonotonicTime start{};
-    MonotonicTime end{};                   ///< The force is written.
-    std::array<Duration, kStages> stage{}; ///< One after the other, from the start on.
+    MonotonicTime end{};                   ///< Time when the force was written.
+    std::array<Duration, kStages> stage{}; ///< Durations of the stages, consecutive from the start.
     Duration wake_lateness{};
-    std::uint32_t periods{1};      ///< Since the frame before.
-    std::uint32_t arrivals{0};     ///< Taken from the door.
-    std::uint32_t link_updates{0}; ///< Likewise.
-    std::uint32_t wishes{0};       ///< Given to the door.
+    std::uint32_t periods{1};      ///< Periods since the frame before.
+    std::uint32_t arrivals{0};     ///< Arrivals taken from the queues.
+    std::uint32_t link_updates{0}; ///< Link updates taken from the queues.
+    std::uint32_t wishes{0};       ///< Requests put into the queues.
     std::uint32_t splits{0};
     std::uint32_t merges{0};
     std::uint32_t triangles{0};
@@ -36,9 +36,9 @@ struct TracedFrame
     bool in_contact{false};
 };
 
-static_assert(sizeof(TracedFrame) == 120); // What the haptic thread copies: docs/report.md.
+static_assert(sizeof(TracedFrame) == 120); // The haptic thread copies this: docs/report.md.
 
-/// When a round of the courier did what, and what came of it.
+/// Times and results of one round of the courier.
 struct TracedRound
 {
     MonotonicTime start{};
@@ -50,12 +50,12 @@ struct TracedRound
     std::uint64_t refused{0};
 };
 
-/// Carries times from the threads that work to the one that writes them, through queues of fixed
-/// size. Nobody waits: what finds no room is counted and left out.
+/// Passes times from working threads to the one that writes them, in queues of fixed size. No
+/// thread waits: entries beyond the queues are counted and dropped.
 class TraceTap
 {
 public:
-    /// At least a second of either.
+    /// Capacities, at least a second of either.
     static constexpr std::size_t kFrames = 16'384;
     static constexpr std::size_t kRounds = 4'096;
 
@@ -64,15 +64,15 @@ public:
     {
     }
 
-    /// The haptic thread, after each frame. Allocates nothing.
+    /// Haptic thread, after each frame. Allocates nothing.
     void add(const TracedFrame& frame) noexcept
     {
         if (!frames_.try_push(frame))
         {
-            lost_.fetch_add(1, std::memory_order_relaxed); // A number to show; orders nothing.
+            lost_.fetch_add(1, std::memory_order_relaxed); // A number for display; orders nothing.
         }
     }
-    /// The transport thread, after each round that did something.
+    /// Transport thread, after each round that did something.
     void add(const TracedRound& round) noexcept
     {
         if (!rounds_.try_push(round))
@@ -81,11 +81,11 @@ public:
         }
     }
 
-    /// One other thread: the next, if one waits.
+    /// One other thread: takes the next entry, if any.
     [[nodiscard]] bool try_take(TracedFrame& frame) noexcept { return frames_.try_pop(frame); }
     [[nodiscard]] bool try_take(TracedRound& round) noexcept { return rounds_.try_pop(round); }
 
-    /// Any thread: how many found no room.
+    /// Any thread: number of dropped entries.
     [[nodiscard]] std::uint64_t lost() const noexcept
     {
         return lost_.load(std::memory_order_relaxed);
