@@ -17,12 +17,12 @@ namespace tactus::hrtc
 namespace
 {
 
-/// Surface damping, in N s/m, with which the device may have such a wall; the wall is one that it
-/// may have without. Rounded down to thousandths.
+/// Largest surface damping, in N s/m, with which the device still allows this stiffness, which it
+/// allows undamped. Rounded down to thousandths.
 double largest_damping(const DeviceLimits& device, double period_s, double wall_n_per_m)
 {
     double enough = 0.0;
-    double too_much = device.damping_n_s_per_m; // As much as it has: no wall.
+    double too_much = device.damping_n_s_per_m; // The device's whole damping leaves no stiffness.
     while (too_much - enough > 1e-6)
     {
         const double middle = 0.5 * (enough + too_much);
@@ -65,7 +65,7 @@ std::optional<std::string> why_unfelt(const std::string& name, const Material& m
     return why;
 }
 
-/// The wall that is left may be another object's, which the tool touches beside this one.
+/// The tool's remaining stiffness may belong to another object that it touches beside this one.
 Material limited(const Material& material, std::span<const ToolSetup> tools)
 {
     Material felt = within_ranges(material);

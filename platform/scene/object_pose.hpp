@@ -9,11 +9,11 @@
 namespace tactus::hrtc
 {
 
-/// A host's pose as the frame computes with it. The quaternion is not zero, whatever its length;
-/// the rotation is orthonormal to 2e-15.
+/// A host's pose in the frame's form. The quaternion must not be zero but may have any length; the
+/// rotation is orthonormal to 2e-15.
 [[nodiscard]] Similarity to_similarity(const Pose& pose);
 
-/// An object of this model that stands there, for the model's present revision.
+/// Pose of an object of this model at `place`, for the model's present revision.
 [[nodiscard]] ObjectPose object_pose(const Similarity& place, const ModelHeader& header);
 
 } // namespace tactus::hrtc

@@ -28,13 +28,13 @@ namespace
 
 constexpr std::chrono::milliseconds kPause{2};
 
-/// Without a scene a host that tells nothing of its objects for so long has none that counts.
+/// Time after which a host that reports no objects is treated as having none, without a scene.
 constexpr std::chrono::seconds kPlacesMax{3};
 
-/// Hosts that are asked at the same time; only strangers could be so many.
+/// Number of candidate hosts at the same time; only an attack could exceed it.
 constexpr std::size_t kMaxCandidates = 256;
 
-/// What the host shows, as far as it serves the models.
+/// Takes the host's objects of the models that it serves.
 void take_objects(Options& options, ShownScene& scene, const dds::Catalogue& catalogue,
                   const dds::SceneReader& reader)
 {
@@ -50,7 +50,7 @@ void take_objects(Options& options, ShownScene& scene, const dds::Catalogue& cat
     {
         const auto offer =
             std::ranges::find(offers, object.shown.model, &dds::Catalogue::Offer::hash);
-        if (offer != offers.end()) // Otherwise the keeper names it in the run.
+        if (offer != offers.end()) // Otherwise the keeper names it during the run.
         {
             const ShownObject& shown = object.shown;
             options.objects.push_back(
@@ -63,7 +63,7 @@ void take_objects(Options& options, ShownScene& scene, const dds::Catalogue& cat
     }
 }
 
-/// Of the first host that has shown all by now. None yet: why.
+/// Takes the scene of the first host that has shown all. If there is none yet, returns the reason.
 std::optional<std::string> try_take(Options& options, const ModelSelector& selector,
                                     ShownScene& scene, const dds::Catalogue& catalogue,
                                     dds::SceneReader& reader)

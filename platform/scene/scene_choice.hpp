@@ -18,7 +18,7 @@
 namespace tactus::hrtc
 {
 
-/// An object as its host knows it.
+/// Identity of an object at its host.
 struct HostObject
 {
     std::uint64_t host_epoch{0};
@@ -27,29 +27,29 @@ struct HostObject
     auto operator<=>(const HostObject&) const noexcept = default;
 };
 
-/// A scene that a host shows.
+/// A scene shown by a host.
 struct ShownScene
 {
     std::string name;
     std::uint64_t host_epoch{0};
-    std::vector<HostObject> objects; ///< In the order of Options::objects.
-    SceneMaterials materials;        ///< That go before the host's.
+    std::vector<HostObject> objects; ///< Objects in the order of Options::objects.
+    SceneMaterials materials;        ///< Materials that override the host's.
 };
 
-/// Reads the scene file that the options name and puts its models and objects in their places.
-/// Returns why it can't be used.
+/// Reads the scene file named in the options and sets its models and objects. Returns the reason if
+/// it can't be used.
 [[nodiscard]] std::optional<Refusal> take_scene_file(Options& options);
 
-/// Waits, at most Options::wait_s and as long as `goes_on`, until a host whose scene the options
-/// name has shown all its objects to `reader`, and one at least is there: the first that has, and
-/// of those that have the one that was seen first. Puts its objects in their places and all models
-/// that it serves, so that later objects find theirs. Returns why there are none.
+/// Waits, at most Options::wait_s and while `goes_on`, until a host of the named scene has shown
+/// all its objects to `reader`, at least one; of several hosts, the one seen first. Sets its
+/// objects and all models that it serves, so that later objects find theirs. Returns the reason if
+/// there are none.
 [[nodiscard]] Result<ShownScene, Refusal> take_shown_scene(Options& options, dds::DdsClient& client,
                                                            dds::SceneReader& reader,
                                                            const std::function<bool()>& goes_on);
 
-/// Waits a moment for what the models' hosts show, and puts the first object of each model where
-/// its host has the first one that shows it, under that one's name. The others stay where they are.
+/// Waits shortly for the objects of the models' hosts. Moves the first object of each model to the
+/// first one that its host shows, and takes its name. The others are unchanged.
 void take_first_places(Options& options, std::span<const ServedModel> models,
                        dds::DdsClient& client, dds::SceneReader& reader,
                        const std::function<bool()>& goes_on);

@@ -60,7 +60,7 @@ void SceneKeeper::connect(PoseDoor& door, MonotonicTime now, NameSink names)
 {
     door_ = &door;
     names_ = std::move(names);
-    for (const auto& [name, place] : places_) // What has come since comes with the first step.
+    for (const auto& [name, place] : places_) // Objects added since are added in the first step.
     {
         const auto& objects = reader_->objects(name.host_epoch);
         if (const auto object = objects.find(name.number); object != objects.end())
@@ -93,7 +93,7 @@ std::optional<HostObject> SceneKeeper::shown_as(std::uint32_t object) const
     return object < slots_.size() ? slots_[object].bound : std::nullopt;
 }
 
-/// What the one before showed goes when another takes its place.
+/// Removes the objects of a host that another host replaces.
 void SceneKeeper::follow_scene_host()
 {
     const std::uint64_t epoch = authorities_.front().host();
@@ -175,7 +175,7 @@ void SceneKeeper::take_news(dds::SceneNews news, const dds::SeenObject& object, 
     }
 }
 
-/// The one with the least number of those with the model; nothing where none of ours shows it.
+/// Finds the host's object of that model with the least number; none if none of ours shows it.
 void SceneKeeper::find_first(std::size_t model, MonotonicTime now)
 {
     const std::uint32_t place = first_[model];
@@ -201,7 +201,7 @@ void SceneKeeper::find_first(std::size_t model, MonotonicTime now)
     }
 }
 
-/// With a scene: an object that isn't ours yet.
+/// Adds an object of the scene that is not ours yet.
 void SceneKeeper::offer(const dds::SeenObject& object, MonotonicTime now)
 {
     const Generation name{{object.host_epoch, object.number}, object.generation};
@@ -272,7 +272,7 @@ void SceneKeeper::move(std::uint32_t place, const dds::SeenObject& object, Monot
     }
 }
 
-/// The newest counts, however many came while the door was full.
+/// If several changes arrive while the queue is full, only the newest is sent.
 void SceneKeeper::feel(std::uint32_t place, const ShownObject& shown)
 {
     Slot& slot = slots_[place];
@@ -289,7 +289,7 @@ void SceneKeeper::feel(std::uint32_t place, const ShownObject& shown)
     }
 }
 
-/// Neither a server nor --material takes a wall from a device.
+/// A stiffness limit of a device holds against servers and --material.
 Material SceneKeeper::felt(const HostObject& object, const ShownObject& shown)
 {
     const Material& wanted = materials_.felt(shown.name, shown.material);
@@ -313,7 +313,7 @@ void SceneKeeper::leave(std::uint32_t place)
     untold_.push_back(place);
 }
 
-/// What comes and goes, as far as the door takes it.
+/// Queues added, removed and changed objects until the queue is full.
 void SceneKeeper::pass_on(MonotonicTime now)
 {
     while (!untold_.empty())
@@ -332,7 +332,7 @@ void SceneKeeper::pass_on(MonotonicTime now)
                 names_(place, slot.generation, slot.name);
             }
             ++news_.came;
-            slot.owes_feel = false; // It comes with the newest.
+            slot.owes_feel = false; // An added object has its newest material.
         }
         else if (!slot.is_here && slot.is_told)
         {
@@ -360,7 +360,7 @@ void SceneKeeper::pass_on(MonotonicTime now)
     }
 }
 
-/// What had no room before, as far as there is some now.
+/// Binds left-out objects as far as there is room now.
 void SceneKeeper::offer_left_out(MonotonicTime now)
 {
     while (!free_.empty() && !left_out_.empty())
@@ -375,7 +375,7 @@ void SceneKeeper::offer_left_out(MonotonicTime now)
     }
 }
 
-/// The hosts that were heard, and what they counted.
+/// Records the hosts that were heard, and their counts.
 void SceneKeeper::hear(MonotonicTime now)
 {
     for (const std::uint64_t epoch : hosts_)
@@ -408,7 +408,7 @@ void SceneKeeper::hear(MonotonicTime now)
     }
 }
 
-/// Of the source mesh, as the controller's poses are.
+/// Pose of the source mesh, like the controller's poses.
 ObjectPose SceneKeeper::pose_of(std::size_t model, const dds::SeenObject& object) const
 {
     ObjectPose pose = object_pose(to_similarity(object.shown.pose), headers_[model]);

@@ -26,50 +26,48 @@
 namespace tactus::hrtc
 {
 
-/// What has become of a scene's objects since the start.
+/// Counts of a scene's changes since the start.
 struct SceneNewsCounts
 {
-    std::uint64_t came{0};            ///< Objects that the frame was told of,
-    std::uint64_t went{0};            ///< and that left it.
-    std::uint64_t feels{0};           ///< Other materials that it was told of.
-    std::uint64_t limited{0};         ///< Materials that are felt otherwise than their server says.
-    std::uint64_t passed_over{0};     ///< That can't be touched: no such model, or no room.
+    std::uint64_t came{0};            ///< Objects added to the frame.
+    std::uint64_t went{0};            ///< Objects removed from the frame.
+    std::uint64_t feels{0};           ///< Materials changed in the frame.
+    std::uint64_t limited{0};         ///< Materials limited to less than their server's.
+    std::uint64_t passed_over{0};     ///< Objects that can't be touched: no such model, or no room.
     std::uint64_t motion_regained{0}; ///< See dds::SceneReader.
 };
 
-/// Keeps our objects where the hosts have theirs. Transport thread.
+/// Keeps the controller's objects at the poses of the hosts. Transport thread.
 ///
-/// With a scene ours are all objects of the host whose word counts for it: they come, move and go
-/// as it says. When it is gone they stay and grow stale; where another takes its place, they go and
-/// its objects come.
+/// A scene has all objects of its authoritative host: they are added, moved and removed with it. If
+/// the host is gone, they stay and become stale; if another host replaces it, they are removed and
+/// its objects added.
 ///
-/// Without one, the first object of ours that shows a model moves like an object of the host whose
-/// word counts for the model: the one with the least number of those with that model.
+/// Without a scene, the first object that shows a model follows one object of the model's
+/// authoritative host: the one with the least number of those with that model.
 class SceneKeeper
 {
 public:
-    /// `reader` has followed the scene's host, if there is a scene. `authorities` are the scene's,
-    /// or one a model; they are stepped elsewhere. They and the parts must outlive it. `log`
-    /// gets a line for what can't be touched, and one for each object that is felt otherwise than
-    /// its server says.
+    /// `reader` has followed the scene's host, if there is a scene. `authorities`: the scene's, or
+    /// one a model; stepped by the caller. They and the parts must outlive it. `log` gets a line
+    /// for each object that can't be touched, and for each material that is limited.
     SceneKeeper(std::span<const dds::Authority> authorities,
                 std::unique_ptr<dds::SceneReader> reader, SceneParts parts, ShownScene scene,
                 Log log);
 
-    /// Gets an object's number, its generation and its name when it comes.
+    /// Sink of an object's number, its generation and its name when it is added.
     using NameSink = std::function<void(std::uint32_t, std::uint32_t, const std::string&)>;
 
-    /// Where it puts what it learns; both live as long as the run, and `names` may be empty. First
-    /// of all.
+    /// Connects the output; call it first. Both live as long as the run, and `names` may be empty.
     void connect(PoseDoor& door, MonotonicTime now, NameSink names = {});
     /// Never waits.
     void step(MonotonicTime now);
 
-    /// Whose pose our object has; nothing where no host shows it.
+    /// Host object whose pose our object has; none if no host shows it.
     [[nodiscard]] std::optional<HostObject> shown_as(std::uint32_t object) const;
-    /// Of all objects of ours that show the model.
+    /// Pose counts of all our objects that show the model.
     [[nodiscard]] const dds::PoseCounts& counts(std::size_t model) const { return counts_[model]; }
-    /// When a host that shows the model was heard last; 0: never.
+    /// Time when a host that shows the model was last heard; 0: never.
     [[nodiscard]] MonotonicTime heard(std::size_t model) const { return heard_[model]; }
     [[nodiscard]] SceneNewsCounts news() const noexcept
     {
@@ -79,20 +77,20 @@ public:
     }
 
 private:
-    /// An object of a host, and which of those under its number.
+    /// An object of a host, and the generation under its number.
     using Generation = std::pair<HostObject, std::uint32_t>;
 
-    /// One object of ours.
+    /// One object of the controller.
     struct Slot
     {
         std::optional<HostObject> bound;
-        std::string name; ///< Empty unless the object came later.
+        std::string name; ///< Name; empty unless the object was added later.
         ObjectSpec spec;
-        ObjectPose pose;       ///< The newest.
-        dds::PoseCounts known; ///< What is in `counts_` of the host's object.
-        bool is_here{false};   ///< It is to be in the frame's scene,
-        bool is_told{false};   ///< and is, or will be with what waits at the door.
-        bool owes_feel{false}; ///< That it has another material the frame wasn't told.
+        ObjectPose pose;       ///< Newest pose.
+        dds::PoseCounts known; ///< Part in `counts_` of the host's object.
+        bool is_here{false};   ///< True if it should be in the frame's scene.
+        bool is_told{false};   ///< True if the frame knows it, or the change is queued.
+        bool owes_feel{false}; ///< True if a change of its material is still to be queued.
         std::uint32_t generation{0};
     };
 
@@ -119,19 +117,20 @@ private:
     std::string scene_;
     SceneMaterials materials_;
     RateLimitedLog log_;
-    std::vector<ModelHeader> headers_; ///< Views into the parts' models.
+    std::vector<ModelHeader> headers_; ///< Headers of the parts' models, as views.
     PoseDoor* door_{nullptr};
     NameSink names_;
-    std::vector<std::uint64_t> hosts_;       ///< That are followed.
-    std::vector<std::uint64_t> model_hosts_; ///< Without a scene: of each model, or 0.
-    std::vector<std::uint32_t> first_;       ///< Without a scene: the object of each model.
+    std::vector<std::uint64_t> hosts_;       ///< Hosts that are followed.
+    std::vector<std::uint64_t> model_hosts_; ///< Host of each model without a scene, or 0.
+    std::vector<std::uint32_t> first_;       ///< Object of each model without a scene.
     std::vector<Slot> slots_;
-    std::map<HostObject, std::uint32_t> places_; ///< Of what is bound.
-    std::set<std::uint32_t> free_;               ///< Places of no object.
-    std::set<Generation> passed_over_;           ///< Nobody can touch them,
-    std::set<Generation> left_out_;              ///< or there is no room for them.
-    std::set<HostObject> limited_;               ///< A line has told of their materials.
-    std::deque<std::uint32_t> untold_; ///< Where is_here and is_told differ, or a feel is owed.
+    std::map<HostObject, std::uint32_t> places_; ///< Places of bound objects.
+    std::set<std::uint32_t> free_;               ///< Places without an object.
+    std::set<Generation> passed_over_;           ///< Objects that can't be touched.
+    std::set<Generation> left_out_;              ///< Objects beyond the capacity.
+    std::set<HostObject> limited_;               ///< Objects with a line on their limited material.
+    /// Places where is_here and is_told differ, or a material is owed.
+    std::deque<std::uint32_t> untold_;
     std::vector<dds::PoseCounts> counts_;
     std::vector<MonotonicTime> heard_;
     SceneNewsCounts news_;

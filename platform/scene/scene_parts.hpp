@@ -14,19 +14,18 @@
 namespace tactus::hrtc
 {
 
-/// What a controller has of a scene, as it stands at the start. The spans are lent.
+/// A controller's part of a scene at the start. The spans are borrowed.
 struct SceneParts
 {
     std::span<const ServedModel> models;
     std::span<const ObjectSpec> objects; ///< Object i has the number i.
     std::span<const ToolSetup> tools;
-    /// For each model the number of the first object that shows it; that of no object where none
-    /// does.
+    /// Number of the first object of each model; the number of objects if there is none.
     std::vector<std::uint32_t> first_objects;
-    std::size_t objects_max{0}; ///< Places for objects.
+    std::size_t objects_max{0}; ///< Capacity for objects.
 };
 
-/// Whether a tool has the model's shape.
+/// True if a tool has the model's shape.
 [[nodiscard]] bool is_of_tool(std::span<const ToolSetup> tools, std::size_t model) noexcept;
 
 } // namespace tactus::hrtc

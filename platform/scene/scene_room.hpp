@@ -11,8 +11,8 @@
 namespace tactus::hrtc
 {
 
-/// How large a scene may be, where nobody says: objects and pairs take some 6 % of the pools each.
-/// The objects that are there from the start always have room.
+/// Default capacity of a scene: objects and pairs take some 6 % of the pools each. The objects at
+/// the start always have room.
 struct SceneRoom
 {
     static constexpr std::size_t kPoolAnObject = std::size_t{4} << 10U;
@@ -20,10 +20,10 @@ struct SceneRoom
     static constexpr std::size_t kLeastObjects = 64;
     static constexpr std::size_t kLeastPairs = 16;
 
-    std::uint32_t objects{0}; ///< 64 to kMaxObjects.
-    std::uint32_t pairs{0};   ///< 16 to kMaxPairs.
+    std::uint32_t objects{0}; ///< Capacity for objects, 64 to kMaxObjects.
+    std::uint32_t pairs{0};   ///< Capacity for pairs, 16 to kMaxPairs.
 
-    /// In pools of this size, everything counted.
+    /// Capacity for pools of this size in total.
     [[nodiscard]] static constexpr SceneRoom of(std::size_t pool_bytes) noexcept
     {
         return {static_cast<std::uint32_t>(std::clamp<std::size_t>(pool_bytes / kPoolAnObject,
