@@ -17,7 +17,7 @@ namespace tactus::hrtc
 struct CycleMeasures
 {
     Cycle cycle;
-    Budgets budgets;              ///< Budgets of the frame.
+    Budgets budgets;
     bool is_work_at_floor{false}; ///< True if the work budget can't be lower.
     std::array<Duration, kStages> stage;
     Duration frame;           ///< Time from the start of the frame to the force written.

@@ -71,8 +71,8 @@ struct NotedCycle
     Duration lateness_of_end;
 };
 
-/// Attributes each failed cycle to its cause: an overrun if the loop did what it must not do, even
-/// if the deadline was met. Any other missed deadline is attributed to the stop if the process was
+/// Attributes each failed cycle to its cause: an overrun if a flag of kOwnFaults is set, even if
+/// the deadline was met. Any other missed deadline is attributed to the stop if the process was
 /// stopped from outside, otherwise to the machine.
 ///
 /// Too much processor time is an overrun unless the same work is shown to need less: the clock of a

@@ -76,7 +76,7 @@ public:
     }
     /// Ends the loop after a bug; called by the assertion handler of the thread that found it. On
     /// the haptic thread the last forces fade first, using nothing but the timer and the devices'
-    /// write; then all devices are braked for good. On any other thread they are braked at once.
+    /// write; then all devices are braked permanently. On any other thread they are braked at once.
     void fail() noexcept;
 
     /// Any thread, once has_failed(): true if the haptic thread found the bug, and works no more.
@@ -85,7 +85,6 @@ public:
     /// if it failed between frames.
     [[nodiscard]] std::optional<GivenFrame> failed_frame() noexcept;
 
-    /// Heartbeat for the supervisor.
     [[nodiscard]] const Heartbeat& heartbeat() const noexcept { return heartbeat_; }
     /// Any thread: positions of the tools in the first frame with valid positions of all devices.
     /// Empty before.

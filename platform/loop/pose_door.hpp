@@ -123,8 +123,8 @@ private:
         std::int64_t stamp_ns{0};
         std::uint32_t revision{0};
         std::int64_t arrival_ns{0};
-        std::uint32_t generation{0}; ///< Generation of the object.
-        std::uint64_t number{0};     ///< Number of the pose for this object, from 1.
+        std::uint32_t generation{0};
+        std::uint64_t number{0}; ///< Number of the pose for this object, from 1.
     };
 
     /// An object that is added, removed or gets another material, trivially copyable.

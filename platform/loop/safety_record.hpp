@@ -32,7 +32,7 @@ public:
     {
         return begun_;
     }
-    /// Brakes of the supervisor.
+    /// Number of silences that the supervisor ended with the brake.
     [[nodiscard]] std::uint64_t brakes() const noexcept { return brakes_; }
     /// Events that are not in events(): counted in begun(), or lost.
     [[nodiscard]] std::uint64_t left_out() const noexcept { return left_out_; }

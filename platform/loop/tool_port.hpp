@@ -83,7 +83,7 @@ public:
     /// Sends zero force at the end of the run.
     void rest() noexcept { device_.write({}); }
 
-    /// Any thread: brakes the device for good.
+    /// Any thread: brakes the device permanently.
     void brake() noexcept;
 
 private:

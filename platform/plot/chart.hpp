@@ -26,7 +26,6 @@ struct Mark
     MarkKind kind{MarkKind::plain};
 };
 
-/// One line of a chart.
 struct Line
 {
     std::string name;

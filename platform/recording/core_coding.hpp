@@ -16,7 +16,7 @@ namespace tactus
 /// Vertices of a recording's hulls; copies share them.
 using HullVertices = std::vector<std::shared_ptr<const std::vector<Vec3>>>;
 
-/// Appends a tool's core: a byte for its kind, and its numbers (docs/recording.md). A body given
+/// Appends a tool's core: a byte for its kind, and its numbers (docs/recording.md). A core given
 /// only by its support function has none, since that is code.
 void append_core(std::vector<std::byte>& bytes, const ToolCore& core);
 

@@ -22,7 +22,6 @@ struct FrameShape
     std::size_t models{0};
 };
 
-/// A recorded frame.
 struct RecordedFrame
 {
     std::int64_t now_ns{0};

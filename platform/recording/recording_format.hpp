@@ -63,7 +63,6 @@ struct RecordedName
     auto operator<=>(const RecordedName&) const noexcept = default;
 };
 
-/// Set-up of a recorded frame.
 struct RecordedSetup
 {
     std::int64_t period_ns{1'000'000};

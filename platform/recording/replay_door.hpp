@@ -16,11 +16,11 @@ namespace tactus
 {
 
 /// The transport thread's part in a replay: fills the recorded slots, links and frees in the
-/// recorded order, and puts into the queues what the frame took.
+/// recorded order, and puts into the queues the items that the frame took.
 class ReplayDoor
 {
 public:
-    /// Both must outlive the door; the frame is of the recording's setup.
+    /// Both must outlive this; the frame is of the recording's setup.
     ReplayDoor(const Recording& recording, Frame& frame);
 
     /// Prepares the queues for the frame. Returns the mismatch, if any: if an earlier frame

@@ -27,7 +27,6 @@ struct HostObject
     auto operator<=>(const HostObject&) const noexcept = default;
 };
 
-/// A scene shown by a host.
 struct ShownScene
 {
     std::string name;

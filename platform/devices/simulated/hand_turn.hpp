@@ -31,7 +31,7 @@ struct HandTurnOptions
 class HandTurn
 {
 public:
-    /// Refuses what HandAndDevice refuses.
+    /// Refuses the same values as HandAndDevice.
     [[nodiscard]] static Result<HandTurn, Refusal> create(const HandTurnOptions& options);
 
     /// Simulates one period under `torque_nm`, while the wrist's target rotates to `target` at

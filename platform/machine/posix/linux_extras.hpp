@@ -33,7 +33,7 @@ void let_calling_thread_use_all() noexcept;
 /// unknown.
 [[nodiscard]] std::optional<int> another_cpu(int cpu) noexcept;
 
-/// A line that explains why SCHED_FIFO was refused and what would grant it.
+/// A line that explains why SCHED_FIFO was refused and how to grant it.
 [[nodiscard]] std::string explain_fifo_refusal(int priority, int error);
 
 /// Requires all present and future memory to be locked: maps more than the process may lock,
@@ -41,7 +41,7 @@ void let_calling_thread_use_all() noexcept;
 /// errno.
 [[nodiscard]] int try_to_exceed_lock_limit() noexcept;
 
-/// A line that explains why memory was not locked and what would grant it.
+/// A line that explains why memory was not locked and how to grant it.
 [[nodiscard]] std::string explain_lock_refusal(int error);
 
 /// Reads faults and context switches of the calling thread, 0 if the system doesn't count them;
