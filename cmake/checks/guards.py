@@ -253,8 +253,9 @@ def line_length(tree):
 
 
 # Folders whose comments are still to be rewritten.
-OLD_COMMENTS = ('platform/', 'tests/', 'rt_core/abtree/', 'rt_core/force/', 'rt_core/frame/',
-                'rt_core/kernels/', 'rt_core/query/')
+OLD_COMMENTS = ('platform/choices/', 'platform/controller/', 'platform/diagnose/', 'platform/hrtc/',
+                'platform/options/', 'platform/program/', 'platform/report/', 'rt_core/abtree/',
+                'rt_core/force/', 'rt_core/frame/', 'rt_core/kernels/', 'rt_core/query/')
 BACKWARDS = r'///<? *(Of|By|As|And|Likewise|Else|Than)\b'
 VAGUE = r'(?i)//.*\b(whoever|whatever|nobody|lately|anew|for ever|mend|foretell|seldom|askew)\b'
 

@@ -12,6 +12,9 @@ awk 'BEGIN {
         printf "%.3f bumpy %.6f 0 0 0 0 0 1\n", i / 100, 0.002 * sin(i * 3.14159265 / 100)
 }' >swing.txt
 
+# check_steps: a followed object moves little in each frame, unless frames were lost.
+check_steps() { was_held_up report.json || check report.json models.0.pose.step_max_m '<' 0.005; }
+
 # The object moves, the force follows, and the server reports it.
 start_publisher bumpy.spm --poses swing.txt --poses-loop --watch
 run_hrtc --model bumpy --duration 2.5 --record swing.rec

@@ -20,6 +20,9 @@ check report.json budgets.frame_us == 100 budgets.work.max == 100000 \
 check_clean report.json
 
 # A slow machine may get less in real time, and never more.
+touch_it
+check report.json budgets.frame_us == 500 budgets.splits == 64 budgets.work.max '<=' 500000 \
+    budgets.work.min '>=' 80000 deadline.over_budget == 0
 touch_it --frame-budget-us 900 --splits 100
 check report.json budgets.splits == 100 budgets.work.max '<=' 900000 budgets.work.min '>=' 80000 \
     deadline.over_budget == 0

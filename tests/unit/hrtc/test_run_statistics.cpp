@@ -85,8 +85,8 @@ TEST(RunStatistics, counts_a_frame_as_over_budget_from_one_beyond_what_it_may_do
     EXPECT_EQ(run.sut.frames, 5U);
 }
 
-/// A long frame with more work than any before is our overrun; with as much as in a quick
-/// one, the machine's delay.
+/// A long frame is an overrun if its work is more than a quick frame showed to fit: four times that
+/// frame's work.
 TEST(RunStatistics, compares_long_frames_with_quick_ones_by_their_work)
 {
     for (const std::uint32_t done : {12'000U, 12'001U})
