@@ -55,7 +55,7 @@ public:
 
     /// Blocks the link from now on and drops all frames in transit.
     void cut();
-    void mend() { is_cut_ = false; }
+    void restore() { is_cut_ = false; }
 
     [[nodiscard]] const OneWayCounts& counts() const { return counts_; }
 

@@ -118,7 +118,7 @@ void Relay::follow(const Command& command)
     const bool is_cut = std::holds_alternative<Cut>(command);
     for (Direction* direction : {&to_controller_, &to_host_})
     {
-        is_cut ? direction->way.cut() : direction->way.mend();
+        is_cut ? direction->way.cut() : direction->way.restore();
     }
 }
 

@@ -58,9 +58,9 @@ std::optional<Command> parse_command(std::string_view line)
     {
         return Cut{};
     }
-    if (line == "mend")
+    if (line == "restore")
     {
-        return Mend{};
+        return Restore{};
     }
     if (line == "count")
     {
@@ -71,7 +71,7 @@ std::optional<Command> parse_command(std::string_view line)
 
 std::string command_forms()
 {
-    std::string forms = "cut, mend, count";
+    std::string forms = "cut, restore, count";
     for (const Figure& figure : kFigures)
     {
         forms += fmt::format(", set {} 0..{}", figure.name, figure.most);

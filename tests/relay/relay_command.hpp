@@ -25,7 +25,7 @@ struct LinkCondition
 struct Cut
 {
 };
-struct Mend
+struct Restore
 {
 };
 struct Count
@@ -39,9 +39,9 @@ struct Set
 };
 
 /// Command to a running relay.
-using Command = std::variant<Cut, Mend, Count, Set>;
+using Command = std::variant<Cut, Restore, Count, Set>;
 
-/// Parses a line: "cut", "mend", "count", or "set" with "delay-ms", "jitter-ms", "loss" or
+/// Parses a line: "cut", "restore", "count", or "set" with "delay-ms", "jitter-ms", "loss" or
 /// "duplicates" and a number in its range. Empty for any other.
 [[nodiscard]] std::optional<Command> parse_command(std::string_view line);
 

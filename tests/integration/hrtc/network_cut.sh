@@ -23,7 +23,7 @@ cut_in_mid_run() {
     wait_for_line publish.log ' left ('
     wait_for_more "$controller" # The participants' lease also ends.
     [[ $(lines 'served again' hrtc.log) == 0 ]] || fault 'the host is back over a cut link'
-    relay_say mend
+    relay_say restore
     wait_for_line hrtc.log "model '$model' is served again by the same host"
     wait_for_line publish.log ' subscribed' 2
     # A hand that has sunk in too deep first moves out.

@@ -65,7 +65,7 @@ for ((cycle = 1; cycle <= cycles; ++cycle)); do
     relay_say cut
     wait_for_line hrtc.log 'is gone' "$cycle"
     wait_for_line publish.log ' left (' $((2 * cycle))
-    relay_say mend
+    relay_say restore
     served=$((served + 1))
     wait_for_line hrtc.log 'is served again' "$served"
     wait_for_line publish.log ' subscribed' $((2 * cycle + 1))

@@ -18,8 +18,8 @@ namespace
 std::vector<Finding> one_of_each()
 {
     return {{"a", Verdict::good, "all is well", "It matters.", {}},
-            {"b", Verdict::advice, "so-so", "It helps.", {"mend b", "and b again"}},
-            {"c", Verdict::critical, "broken", "It must be.", {"mend c"}},
+            {"b", Verdict::advice, "so-so", "It helps.", {"restore b", "and b again"}},
+            {"c", Verdict::critical, "broken", "It must be.", {"restore c"}},
             {"d", Verdict::unknown, "/d is not there", "It may be.", {"ls -l /d"}}};
 }
 
@@ -71,13 +71,13 @@ TEST(DoctorReport, shows_the_worst_first_and_what_is_good_when_asked)
     const std::string bad = "1 critical, 1 unknown, 1 advice, 1 good\n\n"
                             "critical  c                  broken\n"
                             "                             It must be.\n"
-                            "                             $ mend c\n\n"
+                            "                             $ restore c\n\n"
                             "unknown   d                  /d is not there\n"
                             "                             It may be.\n"
                             "                             $ ls -l /d\n\n"
                             "advice    b                  so-so\n"
                             "                             It helps.\n"
-                            "                             $ mend b\n"
+                            "                             $ restore b\n"
                             "                             $ and b again\n\n";
     EXPECT_EQ(make_text(one_of_each(), true), bad + "good      a                  all is well\n"
                                                     "                             It matters.\n");

@@ -156,7 +156,7 @@ TEST(OneWay, a_cut_takes_what_is_under_way_and_what_comes_until_it_is_mended)
     sut.take(numbered(2), condition, at_us(1));
     EXPECT_FALSE(sut.take_due(kEnd));
     EXPECT_EQ(sut.counts().cut, 2U);
-    sut.mend();
+    sut.restore();
     sut.take(numbered(3), condition, at_us(3));
     const auto list = arrivals(sut);
     ASSERT_EQ(list.size(), 1U);
