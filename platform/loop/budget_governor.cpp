@@ -16,6 +16,8 @@ namespace
 constexpr double kScatterShare = 0.5;
 /// Added to the variance: work that varies by less than this hardly determines the pace.
 constexpr double kDoubt = 2'000.0 * 2'000.0;
+/// Variance of work below which the pace is nearer to kFirstPace than to what frames tell.
+constexpr double kPrior = 1'000.0 * 1'000.0;
 /// Share of the difference by which the pace follows in one frame, after the first frames.
 constexpr double kPaceGain = 1.0 / 16.0;
 
@@ -72,7 +74,8 @@ void BudgetGovernor::learn(double time_ns, double work) noexcept
     work_work_ = (1.0 - weight) * (work_work_ + weight * work_off * work_off);
     work_time_ = (1.0 - weight) * (work_time_ + weight * work_off * time_off);
     // The pace moves towards the value that leaves no covariance between work and unexplained time.
-    const double left = work_time_ - work_work_ * pace_ns_;
+    // Without variation it tends to kFirstPace, so that noise does not accumulate in it.
+    const double left = work_time_ - work_work_ * pace_ns_ + kPrior * (kFirstPace - pace_ns_);
     pace_ns_ = std::clamp(pace_ns_ + std::max(weight, kPaceGain) * left / (work_work_ + kDoubt),
                           kFirstPace / kPaceRange, kFirstPace * kPaceRange);
 }

@@ -313,7 +313,7 @@ SummaryFacts run_facts(const Json& report)
 {
     SummaryFacts facts;
     if (const Json& budgets = report["budgets"];
-        budgets["work"].is_object() && budgets["work"]["min"] != budgets["work"]["max"])
+        100 * budgets["at_floor"].get<std::uint64_t>() > report["frames"].get<std::uint64_t>())
     {
         facts.emplace_back("work", work_text(budgets));
     }

@@ -12,7 +12,7 @@ touch_it --virtual-time --splits 48
 check report.json budgets.frame_us == 500 budgets.splits == 48 budgets.work.min == 500000 \
     budgets.work.max == 500000 budgets.at_floor == 0 budgets.work_done.max '<=' 600000 \
     deadline.over_budget == 0
-! grep -q '^work ' hrtc.log || fault 'a budget that stays as it is is told'
+! grep -q '^work ' hrtc.log || fault 'the summary reports a budget that did not run short'
 
 touch_it --virtual-time --frame-budget-us 100
 check report.json budgets.frame_us == 100 budgets.work.max == 100000 \

@@ -35,7 +35,7 @@ Json report_of(const std::string& model)
         "answers": {"exact": 4001, "decided": 1002, "within_tolerance": 0, "bracket": 0, "stale": 0,
                     "longest_inexact_run": 23, "width_max_diag": 1.234567e-5},
         "work": {"splits": 29, "merges": 31},
-        "budgets": {"frame_us": 500, "at_floor": 37, "work": {"min": 41, "max": 41}},
+        "budgets": {"frame_us": 500, "at_floor": 0, "work": {"min": 41, "max": 41}},
         "scene": {"objects": 811, "objects_max": 821, "pairs_awake_max": 823,
                   "invisible_wall_frames": 827, "limited": 0,
                   "models": {"known": 829, "resident": 839}},

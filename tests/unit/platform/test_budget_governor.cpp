@@ -96,6 +96,26 @@ TEST(BudgetGovernor, begins_with_an_instruction_a_nanosecond)
     EXPECT_FALSE(BudgetGovernor(kBudget, kLeast, kMost).is_at_floor());
 }
 
+/// Frames in free air, with delays of a busy machine.
+TEST(BudgetGovernor, takes_no_noise_for_the_pace_while_work_hardly_varies)
+{
+    for (const double pace_ns : {0.3, 1.0})
+    {
+        std::mt19937_64 random(1);
+        std::uniform_real_distribution<double> any(0.0, 1.0);
+        BudgetGovernor sut(microseconds(500), 80'000, kMost);
+        for (int frame = 0; frame < 3'000; ++frame)
+        {
+            const double work = 3'000.0 + 2'600.0 * any(random);
+            const double delay_ns = any(random) < 0.02 ? 600'000.0 * any(random) : 0.0;
+            const double frame_ns = 12'000.0 + pace_ns * work + 6'000.0 * any(random) + delay_ns;
+            sut.observe({nanoseconds(static_cast<std::int64_t>(frame_ns)),
+                         static_cast<std::uint32_t>(work)});
+            ASSERT_FALSE(sut.is_at_floor()) << frame;
+        }
+    }
+}
+
 TEST(BudgetGovernor, converges_to_the_work_that_fills_the_time)
 {
     for (const double pace_ns : {0.15, 0.3, 0.6})
