@@ -25,6 +25,8 @@ namespace
 
 /// Repetitions of a pose, one a beat.
 constexpr int kRepeats = 3;
+/// Interval of samples without an object: a controller that joins waits for one.
+constexpr std::chrono::milliseconds kEmptyBeat{100};
 /// Rest after which an object's record is sent again, for late joiners.
 constexpr auto kRest = std::chrono::milliseconds(500);
 /// Least interval between new writers of motion, and the time until a new one takes over.
@@ -207,7 +209,7 @@ void ObjectPublisher::change_motion_writer(Clock::time_point now)
 
 ObjectPublisher::Clock::time_point ObjectPublisher::next_beat() const noexcept
 {
-    return slots_.empty() ? Clock::time_point::max() : last_sample_ + kMotionBeat;
+    return last_sample_ + (slots_.empty() ? kEmptyBeat : kMotionBeat);
 }
 
 const ShownObject* ObjectPublisher::find(std::uint32_t object) const noexcept

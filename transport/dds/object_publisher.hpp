@@ -53,7 +53,7 @@ public:
     /// most; false if it is not due.
     bool try_renew_motion(std::chrono::steady_clock::time_point now);
 
-    /// Time when step() has work though nothing moves; far in the future if nothing was ever shown.
+    /// Time when step() has work though nothing moves.
     [[nodiscard]] std::chrono::steady_clock::time_point next_beat() const noexcept;
 
     [[nodiscard]] std::size_t objects() const noexcept { return count_; }
