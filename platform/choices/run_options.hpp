@@ -19,6 +19,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tactus::hrtc
@@ -37,6 +38,22 @@ struct HandChoice
     std::string object; ///< Its name, or its model's; empty: each hand has another object.
 };
 
+/// What is asked for of one tool.
+struct ToolOptions
+{
+    std::optional<ToolChoice> shape; ///< None: default_tool().
+    ToolLoad load;                   ///< What hangs on the device.
+    std::optional<GuideChoice> guide;
+    DeviceChoice device;
+    HandChoice hand; ///< On a simulated device.
+
+    /// ToolChoice's; empty: it is no mesh.
+    [[nodiscard]] std::string mesh_model() const
+    {
+        return shape ? shape->mesh_model : std::string();
+    }
+};
+
 /// Everything that a run is asked for; checked, in SI.
 struct Options
 {
@@ -49,13 +66,8 @@ struct Options
     std::string scene;
     SceneMaterials scene_materials; ///< Where --material says otherwise than the scene.
     std::uint32_t objects_max{0};   ///< Room for so many; 0: as many as there are.
-    std::size_t tools{1};
-    std::vector<ToolChoice> tool_choices; ///< One a tool; none: all are default_tool().
-    std::vector<ToolLoad> tool_loads;     ///< One a tool; fewer: the others weigh nothing.
-    std::vector<std::optional<GuideChoice>> guides; ///< One a tool; fewer: the others have none.
-    std::vector<DeviceChoice> devices;      ///< One a tool; fewer: the others are simulated.
+    std::vector<ToolOptions> tools{1};
     std::vector<DeviceFault> device_faults; ///< Of every simulated device.
-    std::vector<HandChoice> hands;          ///< One a tool; fewer: the others as the last.
     TransportKind transport{TransportKind::dds};
     std::uint32_t domain{0};
     bool is_watched{false};   ///< On that domain viewers see it, with models from files, too.
@@ -98,6 +110,11 @@ struct Options
     std::string as_file;      ///< All options, as a file for --config.
     RtThreadOptions thread;
 
+    /// How a refusal names an option of a tool: with the tool's number when there are several.
+    [[nodiscard]] std::string of_tool(std::string_view option, std::size_t tool) const
+    {
+        return std::string(option) + (tools.size() > 1 ? " of tool " + std::to_string(tool) : "");
+    }
     [[nodiscard]] std::size_t pool_bytes() const noexcept
     {
         return static_cast<std::size_t>(pool_mib * 0x1p20);
@@ -114,8 +131,8 @@ struct Options
     {
         const auto any = [this](std::string ToolChoice::*file)
         {
-            return std::ranges::any_of(tool_choices, [file](const ToolChoice& tool)
-                                       { return !(tool.*file).empty(); });
+            return std::ranges::any_of(tools, [file](const ToolOptions& tool)
+                                       { return tool.shape && !((*tool.shape).*file).empty(); });
         };
         return any(&ToolChoice::mesh_model)  ? Budgets::kMeshWork
                : any(&ToolChoice::hull_file) ? Budgets::kHullWork

@@ -83,12 +83,14 @@ Refusal no_tool(std::string_view text)
                               printable(meant))};
 }
 
-std::optional<Refusal> read_hull(ToolChoice& tool, const FileReaders& readers)
+/// `option` names it in a refusal.
+std::optional<Refusal> read_hull(ToolChoice& tool, const FileReaders& readers,
+                                 const std::string& option)
 {
     const auto corners = readers.read_corners(tool.hull_file);
     if (!corners)
     {
-        return failure("--tool: " + corners.error().text);
+        return failure(fmt::format("{}: {}", option, corners.error().text));
     }
     std::set<std::tuple<double, double, double>> points; // Files repeat corners.
     for (const Vec3& p : corners.value())
@@ -97,7 +99,7 @@ std::optional<Refusal> read_hull(ToolChoice& tool, const FileReaders& readers)
     }
     if (points.size() > kMaxHullVertices)
     {
-        return failure(fmt::format("--tool: {}: {} corners; the hull of a tool has at most {}",
+        return failure(fmt::format("{}: {}: {} corners; the hull of a tool has at most {}", option,
                                    tool.hull_file, points.size(), kMaxHullVertices));
     }
     std::vector<Vec3> vertices;
@@ -106,9 +108,9 @@ std::optional<Refusal> read_hull(ToolChoice& tool, const FileReaders& readers)
         vertices.emplace_back(x, y, z);
         if (vertices.back().norm() > kLengthMax_m)
         {
-            return failure(fmt::format("--tool: {}: corner ({:g}, {:g}, {:g}) is {:g} m from the "
+            return failure(fmt::format("{}: {}: corner ({:g}, {:g}, {:g}) is {:g} m from the "
                                        "tool's origin; at most {} m",
-                                       tool.hull_file, x, y, z, vertices.back().norm(),
+                                       option, tool.hull_file, x, y, z, vertices.back().norm(),
                                        kLengthMax_m));
         }
     }
@@ -117,16 +119,15 @@ std::optional<Refusal> read_hull(ToolChoice& tool, const FileReaders& readers)
     return std::nullopt;
 }
 
-std::optional<Refusal> add_model(ToolChoice& tool, Options& options)
+std::optional<Refusal> add_model(ToolChoice& tool, Options& options, const std::string& option)
 {
     const auto known = std::ranges::find(options.models, tool.mesh_model);
     const auto model = static_cast<std::size_t>(known - options.models.begin());
     if (std::ranges::any_of(options.objects,
                             [model](const PlacedObject& object) { return object.model == model; }))
     {
-        return failure(fmt::format("--tool: '{}' is touched as well; a tool needs a model of its "
-                                   "own",
-                                   tool.mesh_model));
+        return failure(fmt::format("{}: '{}' is touched as well; a tool needs a model of its own",
+                                   option, tool.mesh_model));
     }
     if (known == options.models.end())
     {
@@ -214,13 +215,18 @@ ToolChoice default_tool(double diagonal_m)
 
 std::optional<Refusal> take_tool_files(Options& options)
 {
-    for (ToolChoice& tool : options.tool_choices)
+    for (std::size_t i = 0; i < options.tools.size(); ++i)
     {
-        if (auto error = tool.hull_file.empty() ? std::nullopt : read_hull(tool, options.readers))
+        std::optional<ToolChoice>& tool = options.tools[i].shape;
+        const std::string option = options.of_tool("--tool", i);
+        if (auto error = tool && !tool->hull_file.empty()
+                             ? read_hull(*tool, options.readers, option)
+                             : std::nullopt)
         {
             return error;
         }
-        if (auto error = tool.mesh_model.empty() ? std::nullopt : add_model(tool, options))
+        if (auto error = tool && !tool->mesh_model.empty() ? add_model(*tool, options, option)
+                                                           : std::nullopt)
         {
             return error;
         }

@@ -19,7 +19,7 @@ namespace tactus::hrtc
 
 struct Options;
 
-/// What --tool says.
+/// The shape of a tool, as --tool says it.
 struct ToolChoice
 {
     std::string words;      ///< As they were given.

@@ -46,19 +46,6 @@ double up_to_cents(double value)
     return std::ceil(100.0 * value) / 100.0;
 }
 
-/// Without one it is simulated.
-DeviceChoice choice_of(const Options& options, std::size_t tool)
-{
-    return tool < options.devices.size() ? options.devices[tool] : DeviceChoice{};
-}
-
-/// Without one it is the last one's.
-HandChoice hand_choice_of(const Options& options, std::size_t tool)
-{
-    return options.hands.empty() ? HandChoice{}
-                                 : options.hands[std::min(tool, options.hands.size() - 1)];
-}
-
 } // namespace
 
 Result<std::unique_ptr<Controller>, Refusal>
@@ -133,19 +120,20 @@ void Controller::make_poses(const Options& options)
 /// Those that aren't simulated; before the tools, which need to know what the devices can do.
 std::optional<Refusal> Controller::open_devices(const Options& options)
 {
-    tools_.resize(options.tools);
+    tools_.resize(options.tools.size());
     const DeviceWait wait{milliseconds(static_cast<std::int64_t>(options.wait_s * 1e3)), goes_on_,
                           options.rate_hz};
-    for (std::size_t i = 0; i < options.devices.size(); ++i)
+    for (std::size_t i = 0; i < options.tools.size(); ++i)
     {
-        if (options.devices[i].kind == DeviceKind::simulated)
+        const DeviceChoice& choice = options.tools[i].device;
+        if (choice.kind == DeviceKind::simulated)
         {
             continue;
         }
-        auto device = open_device(options.devices[i], i, wait, clock_);
+        auto device = open_device(choice, i, wait, clock_);
         if (!device)
         {
-            return Refusal{"--device: " + device.error().text};
+            return Refusal{options.of_tool("--device", i) + ": " + device.error().text};
         }
         const DeviceInfo& info = device.value()->info();
         if (options.rate_hz < info.rate_min_hz || options.rate_hz > info.rate_max_hz)
@@ -161,26 +149,25 @@ std::optional<Refusal> Controller::open_devices(const Options& options)
 
 void Controller::make_tools(const Options& options)
 {
-    std::vector<ToolChoice> choices = options.tool_choices;
-    choices.resize(tools_.size(), default_tool(diagonal_world_m()));
     for (std::size_t i = 0; i < tools_.size(); ++i)
     {
         ToolSetup& tool = tools_[i];
+        const ToolOptions& asked = options.tools[i];
+        const ToolChoice shape = asked.shape.value_or(default_tool(diagonal_world_m()));
         const DeviceLimits limits =
-            tool.device != nullptr ? tool.device->info().limits : choice_of(options, i).limits;
-        tool.shape = choices[i].words;
-        tool.spec = {choices[i].radius_m, options.stiffness_n_per_m, limits.force_max_n,
+            tool.device != nullptr ? tool.device->info().limits : asked.device.limits;
+        tool.shape = shape.words;
+        tool.spec = {shape.radius_m, options.stiffness_n_per_m, limits.force_max_n,
                      options.follow_speed_m_per_s.value_or(kSpeedMax_diag * diagonal_world_m())};
-        tool.spec.core = choices[i].core;
+        tool.spec.core = shape.core;
         const auto* mesh = std::get_if<MeshCore>(&tool.spec.core);
-        tool.hand_radius_m =
-            hand_radius_m(choices[i], mesh != nullptr ? &headers_[mesh->model.value] : nullptr,
-                          diagonal_world_m());
-        if (i < options.guides.size() && options.guides[i])
+        tool.hand_radius_m = hand_radius_m(
+            shape, mesh != nullptr ? &headers_[mesh->model.value] : nullptr, diagonal_world_m());
+        if (asked.guide)
         {
-            guides_.push_back(std::make_unique<Guide>(*options.guides[i]));
+            guides_.push_back(std::make_unique<Guide>(*asked.guide));
             tool.own_force = guides_.back().get();
-            tool.guide = options.guides[i]->words;
+            tool.guide = asked.guide->words;
         }
         tool.spec.torque_max_nm = limits.turn.torque_max_nm;
         tool.spec.angular_stiffness_nm_per_rad = options.angular_stiffness_nm_per_rad;
@@ -342,15 +329,14 @@ std::optional<Refusal> Controller::finish_devices(const Options& options)
 /// A gripper without motors can't be held.
 std::optional<Refusal> Controller::check_grippers(const Options& options) const
 {
-    for (std::size_t i = 0; i < options.guides.size(); ++i)
+    for (std::size_t i = 0; i < options.tools.size(); ++i)
     {
         const DeviceInfo& device = tools_[i].device->info();
-        const bool wants_gripper =
-            options.guides[i] && options.guides[i]->kind == GuideKind::gripper;
-        if (wants_gripper && !(device.gripper_force_max_n > 0.0))
+        const std::optional<GuideChoice>& guide = options.tools[i].guide;
+        if (guide && guide->kind == GuideKind::gripper && !(device.gripper_force_max_n > 0.0))
         {
-            return Refusal{fmt::format("--guide: '{}': the device {} makes no force at a gripper",
-                                       options.guides[i]->words, device.name)};
+            return Refusal{fmt::format("{}: '{}': the device {} makes no force at a gripper",
+                                       options.of_tool("--guide", i), guide->words, device.name)};
         }
     }
     return std::nullopt;
@@ -359,28 +345,29 @@ std::optional<Refusal> Controller::check_grippers(const Options& options) const
 /// No more than half of what the device can make, so that walls are felt beside it.
 std::optional<Refusal> Controller::hang_load(const Options& options, std::size_t tool)
 {
-    if (tool >= options.tool_loads.size())
+    ToolLoad& load = tools_[tool].load;
+    if (options.tools[tool].load.mass_kg == 0.0)
     {
         return std::nullopt;
     }
-    ToolLoad& load = tools_[tool].load;
-    load = options.tool_loads[tool];
-    load.down_world = choice_of(options, tool).frame.rotation * load.down_world;
+    load = options.tools[tool].load;
+    load.down_world = options.tools[tool].device.frame.rotation * load.down_world;
+    const std::string option = options.of_tool("--tool-mass", tool);
     const DeviceInfo& device = tools_[tool].device->info();
     const double torque_max_nm = device.limits.turn.torque_max_nm;
     if (load.weight_n() > 0.5 * device.limits.force_max_n)
     {
-        return Refusal{fmt::format("--tool-mass: {:.4g} kg weigh {:.3g} N; the device {} carries "
-                                   "half of its {:.3g} N, {:.3g} kg, at most",
-                                   load.mass_kg, load.weight_n(), device.name,
+        return Refusal{fmt::format("{}: {:.4g} kg weigh {:.3g} N; the device {} carries half of "
+                                   "its {:.3g} N, {:.3g} kg, at most",
+                                   option, load.mass_kg, load.weight_n(), device.name,
                                    device.limits.force_max_n,
                                    0.5 * device.limits.force_max_n / kGravity_m_per_s2)};
     }
     if (torque_max_nm > 0.0 && load.torque_max_nm() > 0.5 * torque_max_nm)
     {
-        return Refusal{fmt::format("--tool-mass: {:.4g} kg at {:.3g} m turn with {:.3g} N m; the "
-                                   "device {} carries half of its {:.3g} N m at most",
-                                   load.mass_kg, load.centre_m.norm(), load.torque_max_nm(),
+        return Refusal{fmt::format("{}: {:.4g} kg at {:.3g} m turn with {:.3g} N m; the device {} "
+                                   "carries half of its {:.3g} N m at most",
+                                   option, load.mass_kg, load.centre_m.norm(), load.torque_max_nm(),
                                    device.name, torque_max_nm)};
     }
     return std::nullopt;
@@ -428,18 +415,16 @@ std::optional<Refusal> Controller::simulate_device(const Options& options, std::
     scene.frames_total = options.frames();
     scene.hands_before = static_cast<std::size_t>(std::ranges::count(objects_of_hands_, object));
     objects_of_hands_.push_back(object);
-    auto motion = make_motion(hand_choice_of(options, tool).motion, scene, tool + 1);
+    const ToolOptions& asked = options.tools[tool];
+    auto motion = make_motion(asked.hand.motion, scene, tool + 1);
     if (!motion)
     {
-        return Refusal{"--tool: " + motion.error().text};
+        return Refusal{options.of_tool("--tool", tool) + ": " + motion.error().text};
     }
     SimulatedDeviceOptions device_options;
     device_options.rate_hz = options.rate_hz;
-    device_options.device = choice_of(options, tool).limits;
-    if (tool < options.tool_loads.size())
-    {
-        device_options.load = options.tool_loads[tool];
-    }
+    device_options.device = asked.device.limits;
+    device_options.load = asked.load;
     device_options.workspace_centre_world_m = motion.value().centre_world_m;
     device_options.workspace_radius_m = motion.value().reach_m;
     device_options.speed_max_m_per_s =
@@ -455,7 +440,7 @@ std::optional<Refusal> Controller::simulate_device(const Options& options, std::
     auto device = SimulatedDevice::create(device_options, std::move(motion.value().hand));
     if (!device)
     {
-        return Refusal{"--device: " + device.error().text};
+        return Refusal{options.of_tool("--device", tool) + ": " + device.error().text};
     }
     tools_[tool].device = std::move(device).value();
     if (!options.device_faults.empty())
@@ -485,7 +470,7 @@ void Controller::limit_force(const Options& options, ToolSetup& tool) const
 Result<std::size_t, Refusal> Controller::object_of_hand(const Options& options,
                                                         std::size_t tool) const
 {
-    if (const std::string& name = hand_choice_of(options, tool).object; !name.empty())
+    if (const std::string& name = options.tools[tool].hand.object; !name.empty())
     {
         const auto called = std::ranges::find(options.objects, name, &PlacedObject::name);
         if (called != options.objects.end())
@@ -504,7 +489,7 @@ Result<std::size_t, Refusal> Controller::object_of_hand(const Options& options,
         {
             names.insert(object.name.empty() ? models_[object.model].name : object.name);
         }
-        return Refusal{"--motion: " +
+        return Refusal{options.of_tool("--motion", tool) + ": " +
                        no_such_object(name, std::vector<std::string>(names.begin(), names.end()))};
     }
     for (std::size_t i = 0; i < objects_.size(); ++i)

@@ -172,13 +172,13 @@ std::optional<Refusal> check_outputs(const Options& options)
 Result<Guardian::Guards, Refusal> make_guards(const Options& options)
 {
     Guardian::Guards guards;
-    for (const DeviceChoice& choice : options.devices)
+    for (const ToolOptions& tool : options.tools)
     {
-        if (!wants_guard(choice))
+        if (!wants_guard(tool.device))
         {
             continue;
         }
-        auto guard = open_guard(choice, options.rate_hz);
+        auto guard = open_guard(tool.device, options.rate_hz);
         if (!guard)
         {
             return guard.error();
@@ -193,9 +193,9 @@ Result<Guardian::Guards, Refusal> make_guards(const Options& options)
 
 void tell_of_unguarded(const Options& options)
 {
-    for (std::size_t tool = 0; tool < options.devices.size(); ++tool)
+    for (std::size_t tool = 0; tool < options.tools.size(); ++tool)
     {
-        const DeviceChoice& choice = options.devices[tool];
+        const DeviceChoice& choice = options.tools[tool].device;
         if (choice.kind == DeviceKind::plugin && !has_guard(choice.library))
         {
             log_line(fmt::format("tool {}: {} has no guard; when hrtc is killed, its own watchdog "
@@ -208,7 +208,7 @@ void tell_of_unguarded(const Options& options)
 /// None where no device needs one.
 Result<std::unique_ptr<Guardian>, Refusal> start_guardian(const Options& options)
 {
-    if (std::ranges::none_of(options.devices, wants_guard))
+    if (std::ranges::none_of(options.tools, wants_guard, &ToolOptions::device))
     {
         return std::unique_ptr<Guardian>();
     }

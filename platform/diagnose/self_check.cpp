@@ -207,7 +207,10 @@ SelfCheck judge_injections(DeadlineAccount& deadlines, const FaultInjector& inje
 
 Result<SelfCheck, Refusal> run_self_check(Options options)
 {
-    options.devices.clear();
+    for (ToolOptions& tool : options.tools)
+    {
+        tool.device = {}; // Simulated.
+    }
     options.report_paths.clear();
     options.duration_s = static_cast<double>(InjectionPlan::kFrames + InjectionPlan::kSpacing) /
                          static_cast<double>(options.rate_hz);

@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #include "platform/options/file_choice.hpp"
 
-#include "platform/choices/tool_choice.hpp"
 #include "transport/base/files_near.hpp"
 #include "transport/base/printable.hpp"
 
@@ -11,6 +10,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 namespace tactus::hrtc
@@ -37,12 +37,11 @@ std::vector<Named> names_of(const Options& options, const RawOptions& raw)
     {
         all.push_back({"--scene", options.scene});
     }
-    for (const std::string& text : raw.tools)
+    for (std::size_t i = 0; i < options.tools.size(); ++i)
     {
-        const auto tool = parse_tool(text); // What is no tool is refused later.
-        if (tool && !tool.value().mesh_model.empty())
+        if (std::string model = options.tools[i].mesh_model(); !model.empty())
         {
-            all.push_back({"--tool", tool.value().mesh_model});
+            all.push_back({options.of_tool("--tool", i), std::move(model)});
         }
     }
     return all;

@@ -3,6 +3,7 @@
 #include "platform/options/option_table.hpp"
 
 #include "platform/devices/simulated/simulated_device.hpp"
+#include "platform/options/tool_options.hpp"
 #include "platform/program/command_line.hpp"
 #include "rt_core/limits.hpp"
 #include "transport/material_ranges.hpp"
@@ -17,7 +18,7 @@ constexpr double kLargestPool_mib = 4'096.0;
 constexpr double kFrameBudgetMin_us = 1e-3 * WorkBudget::kLeast;
 constexpr double kFrameBudgetMax_us = 10'000.0;
 
-/// The models, the tools that touch them and their devices.
+/// The objects.
 void declare_scene(CommandLine& line, Options& options, RawOptions& raw)
 {
     line.begin_task("What is touched", "hrtc ball.spm --place 0,0,0.1 --material 800,0.6,0.4");
@@ -54,64 +55,33 @@ void declare_scene(CommandLine& line, Options& options, RawOptions& raw)
             "s/m, 0 to 20), texture_height= and texture_length= (bumps, in m, at most 1/32 as high "
             "as long, felt where the middle of a tool is), with commas between")
         .repeatable();
+}
+
+/// The tools, and their devices.
+void declare_tools(CommandLine& line, RawOptions& raw)
+{
     line.begin_task("Hands, tools and devices",
                     "hrtc ball.spm --tool sphere:0.002 --device udp:48500");
-    line.add_option(
-            "--tool", raw.tools,
-            "Tool, in metres: point; sphere:R; capsule:R,L, an axis of length L along z; "
-            "box:X,Y,Z[,R]; hull:FILE[,R], of a mesh file's corners; mesh:NAME[@HASH][,R], a model "
-            "(with --transport file its path); R is a radius all round; repeatable [one sphere of "
-            "1 % of the first model's diagonal]")
-        .repeatable();
-    line.add_option("--tool-mass", raw.tool_masses,
-                    "What hangs on the device and is to weigh nothing in the hand, one for each "
-                    "tool in order: KG, 0 to 5 [,X,Y,Z of its centre in the tool's frame, within "
-                    "1 m]; down is the device's -z; repeatable [0]")
-        .repeatable();
-    line.add_option("--guide", raw.guides,
-                    "A spring of its own that guides the tool, one for each in order; world "
-                    "coordinates in m: point:X,Y,Z pulls it there; line:X,Y,Z,DX,DY,DZ to the line "
-                    "through X,Y,Z along D; plane:X,Y,Z,NX,NY,NZ pushes it back to the side where "
-                    "N points; gripper:X holds the device's gripper X open, 0 to 1; each with "
-                    "[,STIFFNESS in N/m, 1 to 3000 [100] [,FORCE at most, in N, 0.01 to 100 [1]]]; "
-                    "none for a tool without; repeatable [none]")
-        .repeatable();
     line.add_option("--tools", raw.tool_count,
-                    "So many tools of that size, where no --tool says more; 1 to 16 [1]")
+                    "Number of tools, 1 to 16. The n-th --tool, --tool-mass, --guide, --device, "
+                    "--device-limits, --device-frame and --motion are for tool n, or none for its "
+                    "default; in an option file the n-th table [[tool]] has shape, mass, guide, "
+                    "device, device-limits, device-frame and motion [as many as these speak of, "
+                    "or 1]")
         .integer_between(1U, kMaxTools);
-    line.add_option("--device", raw.devices,
-                    "What moves the tool, one for each --tool in order: sim[:CLASS], a simulated "
-                    "hand on a device of the class touch, omega or delta; udp[:[ADDRESS:]PORT], a "
-                    "driver of your own; dhd[:INDEX], a device of Force "
-                    "Dimension's; replay:FILE, the hand of a recording; plugin:FILE[,WORDS], a "
-                    "library of your own; "
-                    "repeatable [sim]")
-        .repeatable();
+    for (std::size_t i = 0; i < kToolOptions; ++i)
+    {
+        const ToolOption& option = tool_options()[i];
+        line.add_option(option.option, raw.of_tools[i], option.help).repeatable();
+    }
     line.add_option("--device-key", raw.device_key,
                     "File with the key that udp devices and their drivers seal their datagrams "
                     "with: 64 hexadecimal digits, readable by its owner or group alone [no seal: "
                     "whoever sends is believed]");
-    line.add_option("--device-limits", raw.device_limits,
-                    "What is true of a device that doesn't tell it, one for each sim or dhd in "
-                    "order: KEY=VALUE with commas between, as mass_kg=0.2,damping_n_s_per_m=1.5; "
-                    "what stability depends on, so measure it; repeatable [as the class; of dhd "
-                    "what is safe for most]")
-        .repeatable();
-    line.add_option("--device-frame", raw.device_frames,
-                    "Where the device's coordinates are in the world, one for each --device in "
-                    "order: as --place, SCALE being that of its motion")
-        .repeatable();
     line.add_option("--device-fault", raw.device_faults,
                     "For tests: what goes wrong with the readings of simulated devices: "
                     "KIND@FRAME+LENGTH with jitter, dropout, stuck, nan, time_jump or disconnect, "
                     "from that frame on for so many; repeatable")
-        .repeatable();
-    line.add_option(
-            "--motion", raw.motions,
-            "What simulated hands do: script, free, approach, slide, tap, teleport, spin, tremor, "
-            "turn, edge or peg; with :OBJECT behind it, on the scene's object of this name, or the "
-            "first that shows the model of this name; one for each tool in order, others as the "
-            "last; repeatable [script, each hand on another object]")
         .repeatable();
 }
 
@@ -279,6 +249,12 @@ void declare_config(CommandLine& line, RawOptions& raw)
                     "hrtc ball.spm --print-config >my.toml; hrtc --config my.toml");
     line.add_option_file("--config",
                          "Read options from this TOML file; the command line goes first");
+    std::vector<std::string> keys;
+    for (const ToolOption& option : tool_options())
+    {
+        keys.emplace_back(option.key);
+    }
+    line.add_option_tables("tool", keys, raw.tool_tables);
     line.add_flag("--print-config", raw.prints_config,
                   "Print what the options come to as such a file, and end")
         .not_in_file();
@@ -312,6 +288,7 @@ void declare_options(CommandLine& line, Options& options, RawOptions& raw, const
 {
     line.add_version(std::string("hrtc ") + TACTUS_VERSION);
     declare_scene(line, options, raw);
+    declare_tools(line, raw);
     declare_run(line, options, form);
     declare_budgets(line, options, raw);
     declare_force(line, options);

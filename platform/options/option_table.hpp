@@ -3,13 +3,20 @@
 #pragma once
 
 #include "platform/options/options.hpp"
+#include "platform/program/command_line.hpp"
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace tactus::hrtc
 {
+
+/// So many options have a value for each tool.
+inline constexpr std::size_t kToolOptions = 7;
 
 /// Texts of the command line that options.cpp reads once the line is parsed.
 struct RawOptions
@@ -18,16 +25,11 @@ struct RawOptions
     std::vector<std::string> models;
     std::vector<std::string> places;
     std::vector<std::string> materials;
-    std::vector<std::string> tools;
-    std::vector<std::string> tool_masses;
-    std::vector<std::string> guides;
     std::optional<std::uint32_t> tool_count;
-    std::vector<std::string> devices;
+    std::array<std::vector<std::string>, kToolOptions> of_tools; ///< For each of tool_options().
+    std::vector<OptionTable> tool_tables;                        ///< [[tool]] in the option file.
     std::optional<std::string> device_key;
-    std::vector<std::string> device_limits;
-    std::vector<std::string> device_frames;
     std::vector<std::string> device_faults;
-    std::vector<std::string> motions;
     std::optional<std::string> transport;
     std::vector<std::string> failover;
     std::string prediction{prediction_name(Prediction::automatic)};

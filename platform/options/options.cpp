@@ -4,10 +4,10 @@
 
 #include "platform/export/frame_export.hpp"
 #include "platform/options/device_key.hpp"
-#include "platform/options/device_limits_text.hpp"
 #include "platform/options/file_choice.hpp"
 #include "platform/options/kernel_choice.hpp"
 #include "platform/options/option_table.hpp"
+#include "platform/options/tool_options.hpp"
 #include "platform/program/command_line.hpp"
 #include "rt_core/limits.hpp"
 #include "transport/base/counted.hpp"
@@ -30,7 +30,7 @@ namespace
 constexpr std::size_t kDeviceFaultsMax = 64; ///< Each reading looks at all of them.
 
 /// As an option file. Options without a value are shown as comments: no file could set them to
-/// nothing. Files that stand alone on the command line are what they came to.
+/// nothing. Files that stand alone on the command line are what they came to; tools are tables.
 std::string option_file(const CommandLine& line, const Options& options, const RawOptions& raw)
 {
     std::istringstream lines(line.option_file_text());
@@ -45,9 +45,14 @@ std::string option_file(const CommandLine& line, const Options& options, const R
         {
             entry = fmt::format("scene=\"{}\"", options.scene);
         }
+        for (const ToolOption& option : tool_options())
+        {
+            const std::string key = std::string(option.option).substr(2) + "=";
+            entry = entry.starts_with(key) ? key + "\"\"" : entry;
+        }
         text += (entry.ends_with("=\"\"") ? "# " : "") + entry + '\n';
     }
-    return text;
+    return text + tool_tables(raw);
 }
 
 /// Everything that a run could be told is in the recording. Empty when all is well.
@@ -247,143 +252,31 @@ std::string check_materials(Options& options, const RawOptions& raw)
     return {};
 }
 
-/// Empty when all is well.
-std::string check_tools(Options& options, const RawOptions& raw)
-{
-    if (raw.tools.size() > kMaxTools)
-    {
-        return fmt::format("--tool: at most {} tools", kMaxTools);
-    }
-    if (raw.tool_count && !raw.tools.empty() && *raw.tool_count != raw.tools.size())
-    {
-        return fmt::format("--tools: {}, but --tool is given {}", *raw.tool_count,
-                           counted(raw.tools.size(), "time"));
-    }
-    options.tools = raw.tools.empty() ? raw.tool_count.value_or(1) : raw.tools.size();
-    for (const std::string& text : raw.tools)
-    {
-        auto tool = parse_tool(text);
-        if (!tool)
-        {
-            return "--tool: " + tool.error().text;
-        }
-        options.tool_choices.push_back(std::move(tool).value());
-    }
-    const auto is_ball = [](const ToolChoice& tool)
-    { return std::holds_alternative<PointCore>(tool.core) && tool.hull_file.empty(); };
-    if (options.smooth_m > 0.0 && !options.tool_choices.empty() &&
-        std::ranges::none_of(options.tool_choices, is_ball))
-    {
-        return "--smooth: no --tool is a point or a sphere, and others feel each facet";
-    }
-    return {};
-}
-
 /// After the tools. Empty when all is well.
-std::string check_tool_masses(Options& options, const RawOptions& raw)
+std::string check_smooth(Options& options, const RawOptions& /*raw*/)
 {
-    if (raw.tool_masses.size() > options.tools)
+    const auto is_ball = [](const ToolOptions& tool)
     {
-        return fmt::format("--tool-mass: {} given for {}", raw.tool_masses.size(),
-                           counted(options.tools, "tool"));
-    }
-    for (const std::string& text : raw.tool_masses)
-    {
-        const auto load = parse_tool_mass(text);
-        if (!load)
-        {
-            return "--tool-mass: " + load.error().text;
-        }
-        options.tool_loads.push_back(load.value());
-    }
-    return {};
+        return !tool.shape || (std::holds_alternative<PointCore>(tool.shape->core) &&
+                               tool.shape->hull_file.empty());
+    };
+    return options.smooth_m > 0.0 && std::ranges::none_of(options.tools, is_ball)
+               ? "--smooth: no --tool is a point or a sphere, and others feel each facet"
+               : "";
 }
 
-/// After the tools. Empty when all is well.
-std::string check_guides(Options& options, const RawOptions& raw)
+bool has_device(const Options& options, DeviceKind kind)
 {
-    if (raw.guides.size() > options.tools)
-    {
-        return fmt::format("--guide: {} given for {}", raw.guides.size(),
-                           counted(options.tools, "tool"));
-    }
-    for (const std::string& text : raw.guides)
-    {
-        if (text == "none")
-        {
-            options.guides.emplace_back();
-            continue;
-        }
-        auto guide = parse_guide(text);
-        if (!guide)
-        {
-            return "--guide: " + guide.error().text;
-        }
-        options.guides.emplace_back(std::move(guide).value());
-    }
-    return {};
-}
-
-/// Where the devices are in the world. Empty when all is well.
-std::string check_device_frames(Options& options, const RawOptions& raw)
-{
-    for (std::size_t i = 0; i < raw.device_frames.size(); ++i)
-    {
-        const auto frame = parse_placement(raw.device_frames[i]);
-        if (!frame)
-        {
-            return "--device-frame: " + frame.error().text;
-        }
-        if (options.devices[i].kind == DeviceKind::simulated ||
-            options.devices[i].kind == DeviceKind::replay)
-        {
-            return "--device-frame: a simulated or recorded hand is in the world already";
-        }
-        options.devices[i].frame = frame.value();
-    }
-    return {};
-}
-
-/// Of those that don't tell them: tools without a --device have a simulated one. Empty when all is
-/// well.
-std::string check_device_limits(Options& options, const RawOptions& raw)
-{
-    std::size_t device = 0;
-    for (const std::string& text : raw.device_limits)
-    {
-        while (device < options.devices.size() &&
-               options.devices[device].kind != DeviceKind::simulated &&
-               options.devices[device].kind != DeviceKind::dhd)
-        {
-            ++device;
-        }
-        if (device == options.devices.size() && device < options.tools)
-        {
-            options.devices.emplace_back();
-        }
-        if (device == options.devices.size())
-        {
-            return fmt::format("--device-limits: '{}': no sim or dhd device is left; others tell "
-                               "their own",
-                               printable(text));
-        }
-        if (const std::string fault = set_device_limits(text, options.devices[device].limits);
-            !fault.empty())
-        {
-            return "--device-limits: " + fault;
-        }
-        ++device;
-    }
-    return {};
+    return std::ranges::any_of(options.tools, [kind](const ToolOptions& tool)
+                               { return tool.device.kind == kind; });
 }
 
 /// Empty when all is well.
 std::string check_device_key(Options& options, const RawOptions& raw)
 {
-    const bool is_of_use =
-        !raw.device_key || std::ranges::any_of(options.devices, [](const DeviceChoice& device)
-                                               { return device.kind == DeviceKind::udp; });
-    return is_of_use ? "" : "--device-key: there is no udp device";
+    return !raw.device_key || has_device(options, DeviceKind::udp)
+               ? ""
+               : "--device-key: there is no udp device";
 }
 
 /// For all devices that are driven over datagrams. Once the options are right: a file that isn't is
@@ -399,47 +292,15 @@ std::string take_device_key(Options& options, const RawOptions& raw)
     {
         return seal.error().text;
     }
-    for (DeviceChoice& device : options.devices)
+    for (ToolOptions& tool : options.tools)
     {
-        device.seal = device.kind == DeviceKind::udp ? seal.value() : nullptr;
+        tool.device.seal = tool.device.kind == DeviceKind::udp ? seal.value() : nullptr;
     }
     return {};
 }
 
-/// After the tools: each device moves one. Empty when all is well.
-std::string check_devices(Options& options, const RawOptions& raw)
-{
-    if (raw.devices.size() > options.tools)
-    {
-        return fmt::format("--device: {} given for {}", raw.devices.size(),
-                           counted(options.tools, "tool"));
-    }
-    if (raw.device_frames.size() > raw.devices.size())
-    {
-        return fmt::format("--device-frame: {} given for {} of --device", raw.device_frames.size(),
-                           raw.devices.size());
-    }
-    for (const std::string& text : raw.devices)
-    {
-        auto device = parse_device(text);
-        if (!device)
-        {
-            return "--device: " + device.error().text;
-        }
-        options.devices.push_back(std::move(device).value());
-    }
-    for (const auto check : {check_device_limits, check_device_key, check_device_frames})
-    {
-        if (std::string fault = check(options, raw); !fault.empty())
-        {
-            return fault;
-        }
-    }
-    return {};
-}
-
-/// What is said of simulated devices only. Empty when all is well.
-std::string check_simulated(Options& options, const RawOptions& raw)
+/// After the tools. Empty when all is well.
+std::string check_faults(Options& options, const RawOptions& raw)
 {
     if (raw.device_faults.size() > kDeviceFaultsMax)
     {
@@ -455,33 +316,9 @@ std::string check_simulated(Options& options, const RawOptions& raw)
         }
         options.device_faults.push_back(*fault);
     }
-    if (raw.motions.size() > options.tools)
-    {
-        return fmt::format("--motion: {} given for {}", raw.motions.size(),
-                           counted(options.tools, "tool"));
-    }
-    for (const std::string& text : raw.motions)
-    {
-        const std::size_t colon = std::min(text.find(':'), text.size());
-        const std::optional<MotionKind> motion = motion_named(text.substr(0, colon));
-        if (!motion || colon + 1 == text.size())
-        {
-            return fmt::format("--motion: '{}' is not {}, perhaps with :OBJECT behind it",
-                               printable(text), kMotionNames);
-        }
-        options.hands.push_back(
-            {*motion, colon < text.size() ? text.substr(colon + 1) : std::string()});
-    }
-    const bool has_others_only =
-        options.devices.size() == options.tools &&
-        std::ranges::none_of(options.devices, [](const DeviceChoice& device)
-                             { return device.kind == DeviceKind::simulated; });
-    if (has_others_only && (!raw.motions.empty() || !raw.device_faults.empty()))
-    {
-        return fmt::format("{}: there is no simulated device",
-                           !raw.motions.empty() ? "--motion" : "--device-fault");
-    }
-    return {};
+    return raw.device_faults.empty() || has_device(options, DeviceKind::simulated)
+               ? ""
+               : "--device-fault: there is no simulated device";
 }
 
 /// Whether our name can be that of a controller, and the models' those of published ones. Empty
@@ -503,12 +340,12 @@ std::string check_names(const CommandLine& line, const Options& options)
             return "--model: " + selector.error().text;
         }
     }
-    for (const ToolChoice& tool : options.tool_choices)
+    for (std::size_t i = 0; i < options.tools.size(); ++i)
     {
-        if (const auto selector = parse_selector(tool.mesh_model);
-            !tool.mesh_model.empty() && !selector)
+        const std::string model = options.tools[i].mesh_model();
+        if (const auto selector = parse_selector(model); !model.empty() && !selector)
         {
-            return "--tool: " + selector.error().text;
+            return options.of_tool("--tool", i) + ": " + selector.error().text;
         }
     }
     return {};
@@ -578,9 +415,8 @@ std::string check_virtual_time(Options& options, const RawOptions& raw)
     {
         return "--virtual-time: takes models from files; hosts keep to the time of day";
     }
-    if (std::ranges::any_of(
-            options.devices, [](const DeviceChoice& device)
-            { return device.kind != DeviceKind::simulated && device.kind != DeviceKind::replay; }))
+    if (has_device(options, DeviceKind::udp) || has_device(options, DeviceKind::dhd) ||
+        has_device(options, DeviceKind::plugin))
     {
         return "--virtual-time: takes devices that are simulated or recorded; others keep to the "
                "time of day";
@@ -639,12 +475,16 @@ std::string check_together(const CommandLine& line, Options& options, RawOptions
     {
         return check_replay(line);
     }
+    if (const std::string fault = take_tools(options, raw); !fault.empty())
+    {
+        return fault;
+    }
     if (const std::string fault = take_files(options, raw, commands); !fault.empty())
     {
         return fault;
     }
-    for (const auto check : {check_models, check_places, check_materials, check_tools,
-                             check_tool_masses, check_guides, check_devices, check_simulated})
+    for (const auto check : {check_models, check_places, check_materials, check_smooth,
+                             check_device_key, check_faults})
     {
         if (const std::string fault = check(options, raw); !fault.empty())
         {

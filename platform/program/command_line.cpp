@@ -64,14 +64,21 @@ struct FilePlace
     bool is_pair{false}; ///< The line is KEY = VALUE.
 };
 
-/// The first line that has this key, or all of whose text ends in it.
-FilePlace place_of(const std::string& key, const std::string& path)
+/// The first line that has this key, or all of whose text ends in it, behind the first `tables`
+/// lines that begin a table of this name.
+FilePlace place_of(const std::string& key, const std::string& path, const std::string& table = "",
+                   std::size_t tables = 0)
 {
     std::ifstream file(path);
     int number = 0;
     for (std::string line; std::getline(file, line);)
     {
         ++number;
+        if (tables > 0)
+        {
+            tables -= line.find("[" + table + "]") != std::string::npos ? 1U : 0U;
+            continue;
+        }
         const std::size_t equals = line.find('=');
         const std::string name = trimmed(line.substr(0, equals));
         if (name == key || name == "[" + key + "]" || name.ends_with(" " + key))
@@ -115,7 +122,8 @@ std::string nearest_name(const CLI::App& app, const std::string& key, bool is_in
 
 /// The library's own words for a key that no option has end in the key, and in "++" behind the name
 /// of a section.
-std::string unknown_key(const CLI::App& app, const CLI::ConfigError& error)
+std::string unknown_key(const CLI::App& app, const CLI::ConfigError& error,
+                        const std::string& table)
 {
     std::string key = error.what();
     key = on_one_line(key.substr(key.rfind(' ') + 1));
@@ -124,8 +132,8 @@ std::string unknown_key(const CLI::App& app, const CLI::ConfigError& error)
     if (section != std::string::npos)
     {
         key.resize(section);
-        return fmt::format("--config: {}: begins a section; there are none",
-                           place_of(key, path).text);
+        return fmt::format("--config: {}: begins a section; {}", place_of(key, path).text,
+                           table.empty() ? "there are none" : "all are [[" + table + "]]");
     }
     const FilePlace place = place_of(key, path);
     if (!place.is_pair || !is_like_a_name(key))
@@ -172,6 +180,46 @@ std::string wrong_form(const CLI::ConversionError& error)
     return fmt::format("{}: a value isn't what it takes; see --help",
                        text.substr(std::min(name, text.size()), text.find(' ', name) - name));
 }
+
+/// Reads an option file, and keeps its tables of one name apart.
+class TableReader : public CLI::ConfigTOML
+{
+public:
+    TableReader(std::string name, std::vector<OptionTable>& tables)
+        : name_(std::move(name)), tables_(&tables)
+    {
+    }
+
+    std::vector<CLI::ConfigItem> from_config(std::istream& input) const override
+    {
+        std::vector<CLI::ConfigItem> all = CLI::ConfigTOML::from_config(input);
+        std::erase_if(all, [this](const CLI::ConfigItem& item) { return try_take(item); });
+        return all;
+    }
+
+private:
+    /// The library marks where a table begins and ends.
+    [[nodiscard]] bool try_take(const CLI::ConfigItem& item) const
+    {
+        const bool begins = item.name == "++";
+        if (item.parents.size() != 1 || item.parents[0] != name_ || (tables_->empty() && !begins))
+        {
+            return false;
+        }
+        if (begins)
+        {
+            tables_->emplace_back();
+        }
+        else if (item.name != "--")
+        {
+            tables_->back().push_back({item.name, CLI::detail::join(item.inputs, ","), {}});
+        }
+        return true;
+    }
+
+    std::string name_;
+    std::vector<OptionTable>* tables_;
+};
 
 /// "a, b or c".
 std::string either(const std::vector<std::string>& names)
@@ -396,6 +444,15 @@ void CommandLine::add_option_file(const std::string& name, const std::string& de
     app_->allow_config_extras(CLI::config_extras_mode::error);
 }
 
+void CommandLine::add_option_tables(const std::string& name, const std::vector<std::string>& keys,
+                                    std::vector<OptionTable>& tables)
+{
+    table_name_ = name;
+    table_keys_ = keys;
+    tables_ = &tables;
+    app_->config_formatter(std::make_shared<TableReader>(name, tables));
+}
+
 void CommandLine::begin_task(const std::string& task, const std::string& example)
 {
     app_->option_defaults()->group(task);
@@ -437,12 +494,14 @@ std::optional<int> CommandLine::parse(int argc, char** argv)
     {
         app_->parse(argc, argv);
         choose_log_style();
-        return std::nullopt;
+        const std::string fault = tables_ == nullptr ? "" : place_tables();
+        return fault.empty() ? std::nullopt : std::optional(fail(fault, kExitUsage));
     }
     catch (const CLI::ConfigError& error)
     {
         const bool is_extra = std::string_view(error.what()).find("parse") != std::string::npos;
-        return fail(is_extra ? unknown_key(*app_, error) : on_one_line(error.what()), kExitUsage);
+        return fail(is_extra ? unknown_key(*app_, error, table_name_) : on_one_line(error.what()),
+                    kExitUsage);
     }
     catch (const CLI::FileError& error)
     {
@@ -523,7 +582,7 @@ int CommandLine::fail(const std::string& text, int code) const
 
 std::string CommandLine::place_in_file(const std::string& text) const
 {
-    const std::string name = text.substr(0, text.find(':'));
+    const std::string name = text.substr(0, text.find_first_of(": "));
     const CLI::Option* file = app_->get_config_ptr();
     const CLI::Option* option = app_->get_option_no_throw(name);
     const bool is_on_the_line =
@@ -537,6 +596,35 @@ std::string CommandLine::place_in_file(const std::string& text) const
     const auto path = file->as<std::string>();
     const std::string place = place_of(name.substr(2), path).text;
     return place == path ? "" : place + ": "; // Else it is no line of the file.
+}
+
+/// Says of each key of a table where it stands. Returns what is wrong with the first wrong one.
+std::string CommandLine::place_tables()
+{
+    const auto path = app_->get_config_ptr()->as<std::string>();
+    for (std::size_t i = 0; i < tables_->size(); ++i)
+    {
+        OptionTable& table = (*tables_)[i];
+        for (TableEntry& entry : table)
+        {
+            entry.place = place_of(entry.key, path, table_name_, i + 1).text;
+            const std::string before =
+                fmt::format("--config: {}: [[{}]]: ", entry.place, table_name_);
+            if (std::ranges::count(table_keys_, entry.key) == 0)
+            {
+                return before + (is_like_a_name(entry.key) ? "'" + entry.key + "'" : "this") +
+                       " is not " + either(table_keys_) +
+                       (app_->get_option_no_throw("--" + entry.key) != nullptr
+                            ? "; other options go above the tables"
+                            : "");
+            }
+            if (std::ranges::count(table, entry.key, &TableEntry::key) > 1)
+            {
+                return before + entry.key + " is given twice";
+            }
+        }
+    }
+    return {};
 }
 
 } // namespace tactus

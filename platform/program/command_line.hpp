@@ -19,6 +19,15 @@ class Option;
 namespace tactus
 {
 
+/// A key of a table in an option file.
+struct TableEntry
+{
+    std::string key;
+    std::string value; ///< A list is one text with commas.
+    std::string place; ///< FILE:LINE.
+};
+using OptionTable = std::vector<TableEntry>;
+
 /// A declared option, to say more about it: each function returns the option again. It lives as
 /// long as its command line.
 class CommandOption
@@ -77,6 +86,10 @@ public:
     /// command line goes first; a key that no option has is wrong usage, a file that can't be read
     /// is not.
     void add_option_file(const std::string& name, const std::string& description);
+    /// The option file may have tables `[[name]]`, each with some of these keys. Parsing appends
+    /// them to `tables`, which must live as long. Any other key is wrong usage.
+    void add_option_tables(const std::string& name, const std::vector<std::string>& keys,
+                           std::vector<OptionTable>& tables);
     /// --log-level and --json-log: how much is told on stderr, and how. parse() puts them into
     /// effect.
     void add_log_options();
@@ -105,12 +118,16 @@ public:
 private:
     [[nodiscard]] std::string option_without_value() const;
     [[nodiscard]] std::string place_in_file(const std::string& text) const;
+    [[nodiscard]] std::string place_tables();
 
     void choose_log_style();
 
     std::string log_level_{"info"};
     bool logs_json_{false};
-    std::vector<std::string> words_; ///< Of the command line, behind the program's name.
+    std::vector<std::string> words_;      ///< Of the command line, behind the program's name.
+    std::string table_name_;              ///< Empty: the option file has no tables.
+    std::vector<std::string> table_keys_; ///< Of such a table.
+    std::vector<OptionTable>* tables_{nullptr};
     std::unique_ptr<CLI::App> app_;
 };
 

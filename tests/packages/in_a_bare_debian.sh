@@ -72,8 +72,8 @@ assert answer.lower_m[0, 0] > 0.0, answer.lower_m
 
 cp torus.spm /var/lib/tactus/
 printf 'OPTIONS="--domain %s torus.spm"\n' "$domain" >>/etc/default/spm_publish
-sed -i -e 's/^model = .*/model = "torus"/' -e 's/^report/#report/' /etc/tactus/hrtc.toml
-printf 'domain = %s\nallow-no-rt = true\n' "$domain" >>/etc/tactus/hrtc.toml
+sed -i -e 's/^model = .*/model = "torus"/' -e 's/^report/#report/' \
+    -e "1i domain = $domain\nallow-no-rt = true" /etc/tactus/hrtc.toml
 systemctl enable spm_publish.service hrtc.service
 systemctl start spm_publish.service
 wait_for_line /run/services/spm_publish.service.log 'ready on DDS domain'

@@ -282,9 +282,8 @@ void run_session(const Plan& plan, const std::string& model, int events)
     options.kernels = plan.bug == Bug::frame ? &failing_kernels() : nullptr;
     if (!plan.recording.empty())
     {
-        options.devices.resize(1);
-        options.devices[0].kind = DeviceKind::replay;
-        options.devices[0].recording = plan.recording;
+        options.tools[0].device.kind = DeviceKind::replay;
+        options.tools[0].device.recording = plan.recording;
     }
     options.transport = TransportKind::file;
     options.models = {model};

@@ -3,6 +3,7 @@
 #include "platform/hrtc/file_readers.hpp"
 #include "platform/hrtc/subcommands.hpp"
 #include "platform/options/file_choice.hpp"
+#include "platform/options/tool_options.hpp"
 
 #include <gtest/gtest.h>
 
@@ -43,8 +44,9 @@ Taken take(const Given& given)
     RawOptions raw;
     raw.files = given.files;
     raw.models = given.models;
-    raw.tools = given.tools;
+    raw.of_tools[0] = given.tools;
     raw.transport = given.transport;
+    EXPECT_EQ(take_tools(options, raw), "");
     const std::string fault = take_files(options, raw, subcommand_names());
     return {fault, raw.models, options.scene, raw.transport.value_or("")};
 }
@@ -84,8 +86,8 @@ TEST(FileChoice, refuses_a_mixture_unless_it_is_told_where_from)
         "--model: 'a.spm' is a file and 'cow' a published name; all come from files ('cow' as "
         "'cow.spm') or by their names");
     EXPECT_EQ(take({.models = {"cow"}, .tools = {"sphere:0.01", "mesh:e.spm"}}).fault,
-              "--tool: 'e.spm' is a file and 'cow' a published name; all come from files ('cow' as "
-              "'cow.spm') or by their names");
+              "--tool of tool 1: 'e.spm' is a file and 'cow' a published name; all come from files "
+              "('cow' as 'cow.spm') or by their names");
     const Taken told = take({.models = {"a.spm", "cow"}, .transport = "dds"});
     EXPECT_EQ(told.fault, "");
     EXPECT_EQ(told.transport, "dds");

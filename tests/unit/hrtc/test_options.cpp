@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <variant>
@@ -47,6 +48,18 @@ protected:
     HrtcOptions(HrtcOptions&&) = delete;
     HrtcOptions& operator=(HrtcOptions&&) = delete;
 
+    static Options options_of(const std::string& line)
+    {
+        std::vector<std::string> words = words_of(line);
+        std::vector<char*> arguments;
+        for (std::string& word : words)
+        {
+            arguments.push_back(word.data());
+        }
+        return std::get<Options>(
+            parse_options(static_cast<int>(arguments.size()), arguments.data(), program_form()));
+    }
+
     const std::filesystem::path before_{std::filesystem::current_path()};
     const tactus::test::TemporaryFolder folder_{"options"};
 };
@@ -75,7 +88,28 @@ TEST_F(HrtcOptions, of_a_file_are_refused_with_their_place_in_it)
         {"buoyancy = 3", "--config: bad.toml:1: no option is called 'buoyancy'; see --help"},
         {"# Mine.\nrate = 1000\n  stifness = 300",
          "--config: bad.toml:3: no option is called 'stifness'; 'stiffness'?"},
-        {"\n[loop]\nrate = 1000", "--config: bad.toml:2: begins a section; there are none"},
+        {"\n[loop]\nrate = 1000", "--config: bad.toml:2: begins a section; all are [[tool]]"},
+        {"[tools]\nmotion = \"tap\"", "--config: bad.toml:1: begins a section; all are [[tool]]"},
+        {"[[tool]]\nmotion = \"tap\"\n[[tool]]\nmotion = \"fly\"",
+         "bad.toml:4: motion of tool 1: 'fly' is not script, free, approach, slide, tap, teleport, "
+         "spin, tremor, turn, edge or peg, perhaps with :OBJECT behind it"},
+        {"[[tool]]\n[[tool]]\n\n mass = [1, 0, 0, 2]",
+         "bad.toml:4: mass of tool 1: '1,0,0,2' is not KG[,X,Y,Z]: Z is 2, not in -1 .. 1 m; "
+         "1,0,0,0.002?"},
+        {"[[tool]]\ndevice-limits = \"mass_kg=0\"",
+         "bad.toml:2: device-limits of tool 0: device: mass_kg must be finite and > 0"},
+        {"[[tool]]\nshpae = \"point\"",
+         "--config: bad.toml:2: [[tool]]: 'shpae' is not shape, mass, guide, device, "
+         "device-limits, device-frame or motion"},
+        {"rate = 1000\n[[tool]]\nrate = 1000",
+         "--config: bad.toml:3: [[tool]]: 'rate' is not shape, mass, guide, device, "
+         "device-limits, device-frame or motion; other options go above the tables"},
+        {"[[tool]]\nmass = 1\nshape = \"point\"\nmass = 2",
+         "--config: bad.toml:2: [[tool]]: mass is given twice"},
+        {"tools = 1\n[[tool]]\n[[tool]]", "[[tool]]: 2 given; at most 1 tool"},
+        {"tool = [\"point\", \"ball\"]",
+         "bad.toml:1: --tool of tool 1: '...' is not point, sphere:R, capsule:R,L, box:X,Y,Z[,R], "
+         "hull:FILE[,R] or mesh:NAME[,R]"},
         {"splits: quickly", "--config: bad.toml:1: a line is KEY = VALUE"},
         {"root:$6$salt$c2VjcmV0:19000:0:99999:7:::", "--config: bad.toml:1: a line is KEY = VALUE"},
         {"c2VjcmV0Cg==", "--config: bad.toml:1: a line is KEY = VALUE"},
@@ -107,18 +141,7 @@ TEST_F(HrtcOptions, of_a_file_are_refused_with_their_place_in_it)
 TEST_F(HrtcOptions, of_a_run_from_files_with_a_domain_show_it_to_viewers_but_not_in_virtual_time)
 {
     folder_.write("ball.spm", "");
-    const auto is_watched = [](const std::string& line)
-    {
-        std::vector<std::string> words = words_of(line);
-        std::vector<char*> arguments;
-        for (std::string& word : words)
-        {
-            arguments.push_back(word.data());
-        }
-        const auto parsed =
-            parse_options(static_cast<int>(arguments.size()), arguments.data(), program_form());
-        return std::get<Options>(parsed).is_watched;
-    };
+    const auto is_watched = [](const std::string& line) { return options_of(line).is_watched; };
     EXPECT_FALSE(is_watched("hrtc ball.spm"));
     EXPECT_TRUE(is_watched("hrtc ball.spm --domain 0"));
     EXPECT_TRUE(is_watched("hrtc --model ball"));
@@ -128,11 +151,72 @@ TEST_F(HrtcOptions, of_a_run_from_files_with_a_domain_show_it_to_viewers_but_not
               "note: --domain has no use in virtual time\n");
 }
 
+/// What tells one tool from another.
+std::string told(const Options& options)
+{
+    constexpr const char* kDevices[] = {"sim", "udp", "dhd", "replay", "plugin"};
+    constexpr const char* kHands[] = {"script", "free", "approach", "slide", "tap"};
+    std::ostringstream text;
+    for (const ToolOptions& tool : options.tools)
+    {
+        text << (tool.shape ? tool.shape->words : "-") << ' ' << tool.load.mass_kg << ' '
+             << (tool.guide ? tool.guide->words : "-") << ' '
+             << kDevices[static_cast<std::size_t>(tool.device.kind)] << ' '
+             << tool.device.limits.mass_kg << ' ' << tool.device.frame.translation_m[0] << ' '
+             << kHands[static_cast<std::size_t>(tool.hand.motion)] << tool.hand.object << "; ";
+    }
+    return text.str();
+}
+
+TEST_F(HrtcOptions, of_tools_are_in_their_order_and_others_have_the_default)
+{
+    folder_.write("ball.spm", "");
+    const std::string usual = "- 0 - sim 0.1 0 script; ";
+    const std::pair<std::string, std::string> lines[] = {
+        {"", usual},
+        {"--tools 2", usual + usual},
+        {"--tool point --tool sphere:0.1", "point 0 - sim 0.1 0 script; "
+                                           "sphere:0.1 0 - sim 0.1 0 script; "},
+        {"--tools 3 --motion free --motion tap:cup",
+         "- 0 - sim 0.1 0 free; - 0 - sim 0.1 0 tapcup; " + usual},
+        {"--motion none --motion tap", usual + "- 0 - sim 0.1 0 tap; "},
+        {"--device sim --device dhd --device-limits mass_kg=3 --device-limits mass_kg=2",
+         "- 0 - sim 3 0 script; - 0 - dhd 2 0 script; "},
+        {"--device none --device udp --device-frame none --device-frame 7,0,0",
+         usual + "- 0 - udp 0.1 7 script; "},
+        {"--tool point --tool-mass none --tool-mass 2,1,0,0 --guide none --guide point:1,0,0",
+         "point 0 - sim 0.1 0 script; - 2 point:1,0,0 sim 0.1 0 script; "},
+    };
+    for (const auto& [line, tools] : lines)
+    {
+        EXPECT_EQ(told(options_of("hrtc ball.spm " + line)), tools) << line;
+        folder_.write("shown.toml", shown_by(parse, "hrtc ball.spm --print-config " + line));
+        EXPECT_EQ(told(options_of("hrtc ball.spm --config shown.toml")), tools) << line;
+    }
+}
+
+TEST_F(HrtcOptions, of_a_tool_in_a_file_yield_to_the_command_line_one_by_one)
+{
+    folder_.write("ball.spm", "");
+    folder_.write("tools.toml",
+                  "tools = 3\n[[tool]]\nshape = \"point\"\nmotion = \"tap\"\n\n[[tool]]\n"
+                  "mass = [2, 1, 0, 0] # kg\nmotion = \"free\"\n");
+    EXPECT_EQ(told(options_of("hrtc ball.spm --config tools.toml")),
+              "point 0 - sim 0.1 0 tap; - 2 - sim 0.1 0 free; - 0 - sim 0.1 0 script; ");
+    EXPECT_EQ(told(options_of("hrtc ball.spm --config tools.toml --motion none --tool none "
+                              "--tool sphere:0.1 --tool-mass 3")),
+              "- 3 - sim 0.1 0 script; sphere:0.1 2 - sim 0.1 0 free; - 0 - sim 0.1 0 script; ");
+}
+
 TEST_F(HrtcOptions, come_to_a_file_that_reads_as_they_do)
 {
     folder_.write("good.toml",
-                  "model = [\"ball\", \"torus\"]\nplace = [\"0,0,0\", \"1,0,0\"]\nrate = 2000\n");
+                  "model = [\"ball\", \"torus\"]\nplace = [\"0,0,0\", \"1,0,0\"]\nrate = 2000\n"
+                  "[[tool]]\n[[tool]]\ndevice = \"plugin:a.so,'b' 3\"\n");
     const std::string all = shown_by(parse, "hrtc --config good.toml --rate 4000 --print-config");
+    EXPECT_NE(all.find("\n\n[[tool]]\n\n[[tool]]\ndevice=\"plugin:a.so,'b' 3\"\n"),
+              std::string::npos)
+        << all;
     EXPECT_NE(all.find("\nrate=4000\n"), std::string::npos) << "the command line goes first";
     EXPECT_NE(all.find("\nplace=[\"0,0,0\", \"1,0,0\"]\n"), std::string::npos) << all;
     folder_.write("all.toml", all);

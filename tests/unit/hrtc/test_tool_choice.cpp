@@ -96,7 +96,7 @@ protected:
         options.readers = file_readers();
         options.models = {"cow"};
         options.objects = {{}};
-        options.tool_choices = {parse_tool(tool).value()};
+        options.tools[0].shape = parse_tool(tool).value();
         return options;
     }
     static std::string refusal_of(Options options)
@@ -113,7 +113,7 @@ TEST_F(ToolFiles, are_the_corners_of_a_hull_each_once)
     // Corner 3 equals corner 0.
     Options options = of_hull("OFF\n4 2 0\n0 0 0\n0.3 0 0\n0 0.4 0\n0 0 0\n3 0 1 2\n3 3 1 2\n");
     ASSERT_FALSE(take_tool_files(options));
-    const ToolChoice& tool = options.tool_choices.front();
+    const ToolChoice& tool = *options.tools[0].shape;
     EXPECT_EQ(std::get<Hull>(tool.core).vertices().size(), 3U);
     EXPECT_EQ(reach_m(tool, nullptr), 0.4);
 }
@@ -143,10 +143,10 @@ TEST_F(ToolFiles, are_refused_by_name_when_they_hold_no_hull)
 TEST_F(ToolFiles, add_what_is_a_mesh_to_the_models_once)
 {
     Options options = of("mesh:probe");
-    options.tool_choices.push_back(options.tool_choices.front());
+    options.tools.push_back(options.tools.front());
     ASSERT_FALSE(take_tool_files(options));
     EXPECT_EQ(options.models, (std::vector<std::string>{"cow", "probe"}));
-    EXPECT_EQ(std::get<MeshCore>(options.tool_choices[1].core).model, ModelId{1});
+    EXPECT_EQ(std::get<MeshCore>(options.tools[1].shape->core).model, ModelId{1});
     EXPECT_EQ(options.objects.size(), 1U);
 }
 
