@@ -9,7 +9,7 @@
 namespace tactus
 {
 
-/// The next float below / above a finite value, without libm.
+/// The next float above a finite value, without libm.
 [[nodiscard]] constexpr float next_up(float value) noexcept
 {
     const auto bits = std::bit_cast<std::uint32_t>(value);
@@ -18,11 +18,6 @@ namespace tactus
         return std::bit_cast<float>(std::uint32_t{1});
     }
     return std::bit_cast<float>(value > 0.0F ? bits + 1 : bits - 1);
-}
-
-[[nodiscard]] constexpr float next_down(float value) noexcept
-{
-    return -next_up(-value);
 }
 
 /// The least float not below / largest float not above a double within float's range: boxes and

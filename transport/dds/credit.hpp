@@ -20,9 +20,6 @@ class CreditWindow
 public:
     explicit CreditWindow(std::uint64_t window) noexcept : window_(window) {}
 
-    /// Restarts the counts for a new epoch.
-    void restart() noexcept { seen_ = received_ = 0; }
-
     /// Records a sample with this count and `pieces` pieces.
     void on_sample(std::uint64_t sent, std::uint64_t pieces) noexcept
     {

@@ -64,8 +64,6 @@ public:
     [[nodiscard]] Vec3 next_world_m(const HandSense& sense) noexcept override;
 
     [[nodiscard]] HandPhase phase() const noexcept { return phase_; }
-    /// Number of complete lift-offs: the surface was left and the full height reached.
-    [[nodiscard]] std::uint32_t lift_offs() const noexcept { return lift_offs_; }
     /// Centre of a workspace that contains the whole script, with radius reach_m().
     [[nodiscard]] const Vec3& centre_world_m() const noexcept { return centre_world_m_; }
     [[nodiscard]] double reach_m() const noexcept;
@@ -127,7 +125,7 @@ private:
     bool is_landing_sure_{false};
     Vec3 released_world_m_{Vec3::Zero()};
     bool released_{false};
-    std::uint32_t lift_offs_{0};
+    std::uint32_t lift_offs_{0}; ///< Those that reached the full height.
     std::uint32_t losses_{0};
     bool landed_{false};
 };
