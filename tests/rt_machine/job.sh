@@ -55,7 +55,7 @@ case "$job" in
     power_cut | minute_twice) "$job" ;;
     # An instruction a nanosecond is about three times slower than a real processor, so the model is
     # smaller.
-    fast) scenario fast "deadline,$seconds,none,2000,--rate,4000,--frame-budget-us,60" ;;
+    fast) scenario fast "deadline,$seconds,none,2000,--rate,4000,--frame-budget-us,80" ;;
     mesh)
         ring=mesh:/usr/share/tactus_models/ring.spm
         scenario mesh "deadline,$((seconds * 2)),none,200000,--tool,$ring"
