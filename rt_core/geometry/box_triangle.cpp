@@ -136,7 +136,8 @@ public:
 
     ClosestPoints find() noexcept
     {
-        if (const std::optional<std::size_t> nearest = find_nearest_corner())
+        const std::optional<std::size_t> over_side = find_corner_over_a_side();
+        if (const auto nearest = over_side ? over_side : find_nearest_corner())
         {
             decide_triangle_corner(*nearest);
             return found();
@@ -184,6 +185,32 @@ private:
         TACTUS_ASSERT(best_.distance < kInfinity);
         best_.distance_error = kernel_error(0.0, length_);
         return best_;
+    }
+
+    /// First corner of the triangle over a side of the box, if both others are no nearer to that
+    /// side: no point of the triangle is nearer. Decided exactly.
+    [[nodiscard]] std::optional<std::size_t> find_corner_over_a_side() const noexcept
+    {
+        for (Eigen::Index axis = 0; axis < 3; ++axis)
+        {
+            const Vec3 along(triangle_[0][axis], triangle_[1][axis], triangle_[2][axis]);
+            const bool is_above = along[0] > box_.half[axis];
+            const double nearest = is_above ? along.minCoeff() : along.maxCoeff();
+            if (!(std::abs(nearest) > box_.half[axis]) || (nearest > 0.0) != is_above)
+            {
+                continue;
+            }
+            for (std::size_t i = 0; i < 3; ++i)
+            {
+                Vec3 beside = triangle_[i];
+                beside[axis] = 0.0;
+                if (triangle_[i][axis] == nearest && is_inside(box_, beside))
+                {
+                    return i;
+                }
+            }
+        }
+        return std::nullopt;
     }
 
     /// The triangle's corner nearest to the box, if proven: both others are farther along the

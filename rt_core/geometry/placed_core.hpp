@@ -71,6 +71,10 @@ public:
         return std::holds_alternative<PointCore>(core_);
     }
     [[nodiscard]] bool is_mesh() const noexcept { return is_mesh_; }
+    [[nodiscard]] bool is_box() const noexcept
+    {
+        return std::holds_alternative<Box>(core_) && !is_mesh_;
+    }
     [[nodiscard]] bool is_convex_body() const noexcept
     {
         return std::holds_alternative<Hull>(core_) || std::holds_alternative<ConvexBody>(core_);

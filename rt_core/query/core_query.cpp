@@ -20,6 +20,11 @@ namespace
 
 static_assert(kBlockVertices == CornersAtCore::kCorners);
 
+/// A part of the tolerance by which an answer may be less than what measuring every face tells.
+constexpr double kLittle = 0x1p-4;
+/// Of heights of placed corners, relative to their coordinates.
+constexpr double kPlaceRounding = 1e-14;
+
 /// More quanta than any model has, and far from what overflows.
 constexpr double kMostQuanta = 0x1p100;
 
@@ -64,6 +69,7 @@ public:
         , share_(static_cast<double>(share_of(share)))
         , enough_(enough)
         , tolerance_(tolerance)
+        , little_m_(kLittle * static_cast<double>(error_in_quanta(tolerance)) * quantum_)
         , looked_(reach_m + static_cast<double>(error_in_quanta(tolerance)) * quantum_)
         , budget_(budget)
         , box_(make_kernel_box(core, tree.quantum_m()))
@@ -189,9 +195,9 @@ private:
     void test_face(const Face& face) noexcept
     {
         const double worth = worth_m();
-        const Measure known = measure_within(face, worth + face.error_m);
-        double lower = known.bounds.lower - face.error_m;
         const bool is_left = is_coarse(face);
+        const Measure known = measure_within(face, worth + face.error_m, !is_left);
+        double lower = known.bounds.lower - face.error_m;
         if (is_left && lower <= worth && lower < open_)
         {
             // As refinement measures it: what that holds for far enough is not open here.
@@ -213,16 +219,21 @@ private:
         }
     }
 
-    [[nodiscard]] Measure measure_within(const Face& face, double limit_m) noexcept
+    [[nodiscard]] Measure measure_within(const Face& face, double limit_m, bool is_surface) noexcept
     {
         const BlockGeometry& block = tree_.block(face.block);
         const std::array<std::uint8_t, 3> corners{
             block.corners[0][face.lane], block.corners[1][face.lane], block.corners[2][face.lane]};
         Measure found{core_.bounds(corners_, corners, limit_m), std::nullopt};
+        if (tolerance_ != 0 && !separations_ && found.bounds.lower <= limit_m) // Those have ways.
+        {
+            found.bounds.lower = std::max(found.bounds.lower, bound_along_way(corners));
+        }
         if (separations_ && found.bounds.lower <= limit_m)
         {
             found.bounds.lower = std::max(found.bounds.lower, separations_->bound(corners));
-            if (found.bounds.lower <= limit_m)
+            if (found.bounds.lower <= limit_m &&
+                !(is_surface && tells_nothing(face, found.bounds.lower)))
             {
                 measure_body(face, limit_m, found);
             }
@@ -262,8 +273,17 @@ private:
     }
     [[nodiscard]] ClosestPoints measure(const Triangle& triangle) const noexcept
     {
-        budget_.spend(separations_ ? WorkCost::gjk : WorkCost::measured);
-        return core_.closest(triangle);
+        const ClosestPoints closest = core_.closest(triangle);
+        budget_.spend(separations_             ? WorkCost::gjk
+                      : is_found_soon(closest) ? WorkCost::at_corner
+                                               : WorkCost::measured);
+        return closest;
+    }
+
+    /// Corners before a side of a box are, which most faces have that it lies flat on.
+    [[nodiscard]] bool is_found_soon(const ClosestPoints& closest) const noexcept
+    {
+        return core_.is_box() && closest.feature <= TriangleFeature::corner_2;
     }
 
     /// A face that is exact or within the tolerance.
@@ -276,13 +296,15 @@ private:
         bool meets = bounds.meet;
         take_upper(face, bounds.upper);
         const double stands_for = lower - face.error_m;
-        if (may_be_nearest(id, stands_for) || (stands_for <= reach_ && bounds.upper > reach_))
+        if (!tells_nothing(face, bounds.lower) &&
+            (may_be_nearest(id, stands_for) || (stands_for <= reach_ && bounds.upper > reach_)))
         {
             const ClosestPoints closest = measure(face, known);
             lower = std::max(0.0, closest.distance - closest.distance_error);
             meets = closest.meet;
             take_upper(face, closest.distance + closest.distance_error);
             keep_if_nearest(closest, id, face.block);
+            measured_lower_ = std::min(measured_lower_, lower - face.error_m);
         }
         lower -= face.error_m; // What it stands for.
         largest_tolerated_ = std::max(largest_tolerated_, face.error);
@@ -309,6 +331,30 @@ private:
         upper_ = face.error == 0 ? std::min(upper_, upper_m) : upper_;
     }
 
+    /// A body that lies flat is about as far from all faces below it. With a tolerance those that
+    /// are measured tell of the others, but for a little of it; without one all are measured, so
+    /// that the answer is the same whatever their order.
+    [[nodiscard]] bool tells_nothing(const Face& face, double lower_m) const noexcept
+    {
+        return tolerance_ != 0 && lower_m >= nearest_.distance - little_m_ &&
+               lower_m - face.error_m >= measured_lower_ - little_m_ &&
+               (face.error != 0 || lower_m >= upper_ - little_m_);
+    }
+
+    /// How far a face is beyond the core, along the way from there to the nearest face that was
+    /// measured.
+    [[nodiscard]] double bound_along_way(const std::array<std::uint8_t, 3>& corners) const noexcept
+    {
+        double least = kInfinity;
+        for (const std::uint8_t i : corners)
+        {
+            const Vec3 place(corners_.place[0][i], corners_.place[1][i], corners_.place[2][i]);
+            least = std::min(least, way_.dot(place) - kPlaceRounding * place.cwiseAbs().sum());
+        }
+        const Vec3& half = core_.half();
+        return least - way_.cwiseAbs().dot(half) - kPlaceRounding * half.sum();
+    }
+
     /// The lowest of equally near faces is taken.
     [[nodiscard]] bool may_be_nearest(FaceId face, double lower_m) const noexcept
     {
@@ -323,6 +369,9 @@ private:
             nearest_ = closest;
             nearest_face_ = face;
             nearest_block_ = block;
+            way_ = closest.distance > 0.0
+                       ? Vec3(core_.axes().transpose() * closest.gap / closest.distance)
+                       : Vec3(0.0, 0.0, 0.0);
         }
     }
 
@@ -337,7 +386,7 @@ private:
         for (const Vec3& corner : triangle_of(face))
         {
             const Triangle point{corner, corner, corner};
-            if (core_.bounds(point).lower < upper_)
+            if (std::max(bounds.lower, core_.bounds(point).lower) < upper_ - little_m_)
             {
                 const ClosestPoints closest = measure(point);
                 take_upper(closest.distance + closest.distance_error);
@@ -352,6 +401,7 @@ private:
     double share_; ///< Of the best distance: what is farther is not looked at.
     std::uint32_t enough_;
     ErrorCode tolerance_; ///< Faces with no larger error count as the surface.
+    double little_m_;     ///< A small part of them.
     double looked_;       ///< So far: what is in reach may be stood for by a face beyond.
     WalkBudget& budget_;
     KernelBox box_;
@@ -363,9 +413,11 @@ private:
     double tolerated_lower_{kInfinity}; ///< what faces within the tolerance stand for is;
     double upper_{kInfinity};           ///< something of the source is at most,
     double limit_{kInfinity};           ///< and of the surface or the source.
+    double measured_lower_{kInfinity};  ///< Of the faces of the surface that were measured.
     ErrorCode largest_tolerated_{0};
     std::uint32_t met_{0}; ///< Faces of the surface that meet the core.
     ClosestPoints nearest_{.distance = kInfinity};
+    Vec3 way_{0.0, 0.0, 0.0}; ///< To it, in the core's axes; of length 1, or 0.
     FaceId nearest_face_{};
     std::uint32_t nearest_block_{kNoNode};
 };

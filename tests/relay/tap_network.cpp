@@ -112,7 +112,7 @@ void turn_ipv6_off()
     {
         const std::string path = fmt::format("/proc/sys/net/ipv6/conf/{}/disable_ipv6", whose);
         const Descriptor file(open(path.c_str(), O_WRONLY | O_CLOEXEC));
-        static_cast<void>(::write(file.get(), "1", 1));
+        [[maybe_unused]] const auto written = ::write(file.get(), "1", 1);
     }
 }
 
