@@ -276,7 +276,8 @@ void Pair::ask(RefineRequests& requests) noexcept
 void Pair::fit_tolerance() noexcept
 {
     room_ = surface_room();
-    tolerance_.fit(tolerance_range(), room_);
+    const bool is_served = of_object_.closure.late_for == FrameFault::none;
+    tolerance_.fit(tolerance_range(), room_, is_served);
 }
 
 bool Pair::needs_coarser_model() const noexcept
@@ -593,7 +594,7 @@ void Pair::query_core(const Budgets& budgets, WorkCounters& work, FrameFault& fa
         }
         work.skipped.add(Skip::starts, query_memory_.block != kNoNode ? 1 : 0);
         gather_surface(parts_.model.model->tree, outlook_.core(), outlook_.reach_m(), query_memory_,
-                       budget, surface, proof_share(), enough_meeting(), tolerance_.code());
+                       budget, surface, proof_share(), enough_meeting(), tolerance_.felt());
         had_work_left_ = (SurfaceTolerance::kFinerGrowth - 1.0) * work.budget.used() <=
                          static_cast<double>(work.budget.left());
         work.nodes_visited += budget.nodes_visited;
@@ -716,7 +717,7 @@ void Pair::rehearse(const SurfaceRoom& room, const Budgets& budgets,
         QueryMemory memory = query_memory_;
         LocalSurface surface = room.surface();
         gather_surface(parts_.model.model->tree, outlook_.core(), outlook_.reach_m(), memory,
-                       budget, surface, proof_share(), enough_meeting(), tolerance_.code());
+                       budget, surface, proof_share(), enough_meeting(), tolerance_.felt());
     }
 }
 

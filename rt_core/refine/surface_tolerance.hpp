@@ -34,10 +34,12 @@ public:
         short_,  ///< Some of it did not fit.
     };
 
-    /// Updates the tolerance, once per frame; least <= most.
-    void fit(Range range, Room room) noexcept
+    /// Updates the tolerance, once per frame; least <= most. `is_served` is true if the last frame
+    /// had nothing left to split.
+    void fit(Range range, Room room, bool is_served) noexcept
     {
         TACTUS_ASSERT(range.least <= range.most);
+        felt_ = is_served ? code_ : felt_;
         const bool is_wanting = room == Room::short_ || room == Room::late;
         wanting_ = is_wanting ? wanting_ + (room == Room::short_ ? kShortWeight : 1) : 0;
         calm_frames_ = room == Room::enough ? calm_frames_ + 1 : 0;
@@ -50,17 +52,28 @@ public:
         else if (calm_frames_ == kCalm)
         {
             calm_frames_ = 0;
+            felt_ = code > range.least ? coarser(code, range) : felt_;
             code -= std::min(code, 1U);
         }
         code_ = static_cast<ErrorCode>(std::clamp<std::uint32_t>(code, range.least, range.most));
+        felt_ = std::clamp(felt_, code_, range.most);
     }
 
+    /// Tolerance of refinement.
     [[nodiscard]] ErrorCode code() const noexcept { return code_; }
+    /// Tolerance of queries: the same, or, until a finer surface is complete, twice the last one,
+    /// since faces that are split on the way may be coarser than that.
+    [[nodiscard]] ErrorCode felt() const noexcept { return felt_; }
 
-    /// A finer surface is at most this much larger, and has to fit as well.
+    /// Largest growth of the surface by one finer step, which must fit as well.
     static constexpr double kFinerGrowth = 1.5;
 
 private:
+    [[nodiscard]] static ErrorCode coarser(std::uint32_t code, Range range) noexcept
+    {
+        return static_cast<ErrorCode>(std::min<std::uint32_t>(code + kGrowth, range.most));
+    }
+
     /// Late frames until the tolerance doubles: a front that only lags has caught up by then. A
     /// short_ frame counts as the number below: merges caused by the previous step are done after
     /// six.
@@ -71,6 +84,7 @@ private:
     static constexpr std::uint32_t kCalm = 30;
 
     ErrorCode code_{0};
+    ErrorCode felt_{0};
     std::uint32_t wanting_{0};
     std::uint32_t calm_frames_{0};
 };

@@ -18,7 +18,7 @@ ErrorCode after(SurfaceTolerance& sut, Room room, int frames)
 {
     for (int frame = 0; frame < frames; ++frame)
     {
-        sut.fit(kRange, room);
+        sut.fit(kRange, room, true);
     }
     return sut.code();
 }
@@ -83,10 +83,43 @@ TEST(SurfaceTolerance, follows_a_range_that_changes_and_needs_nothing_where_all_
 {
     SurfaceTolerance sut;
     (void)after(sut, Room::short_, 12);
-    sut.fit({10, 12}, Room::fitting);
+    sut.fit({10, 12}, Room::fitting, true);
     EXPECT_EQ(sut.code(), 12);
-    sut.fit({}, Room::short_);
+    sut.fit({}, Room::short_, true);
     EXPECT_EQ(sut.code(), 0);
+}
+
+TEST(SurfaceTolerance, queries_go_by_a_coarser_surface_until_a_finer_one_is_there)
+{
+    SurfaceTolerance sut;
+    EXPECT_EQ(after(sut, Room::short_, 6), 24);
+    EXPECT_EQ(after(sut, Room::enough, 29), 24);
+    EXPECT_EQ(sut.felt(), 24);
+
+    EXPECT_EQ(after(sut, Room::enough, 1), 23);
+    EXPECT_EQ(sut.felt(), 28);
+    sut.fit(kRange, Room::late, false);
+    EXPECT_EQ(sut.felt(), 28);
+    sut.fit(kRange, Room::fitting, false); // What is late is not loaded yet.
+    EXPECT_EQ(sut.felt(), 28);
+    sut.fit(kRange, Room::fitting, true);
+    EXPECT_EQ(sut.code(), 23);
+    EXPECT_EQ(sut.felt(), 23);
+}
+
+TEST(SurfaceTolerance, queries_go_by_a_coarser_surface_at_once)
+{
+    SurfaceTolerance sut;
+    (void)after(sut, Room::fitting, 1);
+
+    for (int frame = 0; frame < 6; ++frame)
+    {
+        sut.fit(kRange, Room::short_, false);
+    }
+    EXPECT_EQ(sut.code(), 24);
+    EXPECT_EQ(sut.felt(), 24);
+    sut.fit({10, 12}, Room::fitting, false);
+    EXPECT_EQ(sut.felt(), 12);
 }
 
 } // namespace tactus::test
