@@ -63,7 +63,7 @@ void stop_on_signals(sigset_t& while_waiting)
 
 void declare_options(CommandLine& line, Options& options)
 {
-    line.add_version(std::string("network_relay ") + TACTUS_VERSION);
+    line.add_version("network_relay " TACTUS_VERSION);
     line.add_option("--delay-ms", options.condition.delay_ms, "Delay of every frame, one way")
         .number_between(0.0, kDelayMax_ms)
         .show_default();
