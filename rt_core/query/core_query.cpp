@@ -20,9 +20,9 @@ namespace
 
 static_assert(kBlockVertices == CornersAtCore::kCorners);
 
-/// A part of the tolerance by which an answer may be less than what measuring every face tells.
+/// Part of the tolerance by which an answer may differ from that with every face measured.
 constexpr double kLittle = 0x1p-4;
-/// Of heights of placed corners, relative to their coordinates.
+/// Rounding of heights of placed corners, relative to their coordinates.
 constexpr double kPlaceRounding = 1e-14;
 
 /// More quanta than any model has, and far from what overflows.
@@ -280,7 +280,7 @@ private:
         return closest;
     }
 
-    /// Corners before a side of a box are, which most faces have that it lies flat on.
+    /// True for a corner over a side of a box: most faces under a flat box have one.
     [[nodiscard]] bool is_found_soon(const ClosestPoints& closest) const noexcept
     {
         return core_.is_box() && closest.feature <= TriangleFeature::corner_2;
@@ -296,7 +296,8 @@ private:
         bool meets = bounds.meet;
         take_upper(face, bounds.upper);
         const double stands_for = lower - face.error_m;
-        if (!tells_nothing(face, bounds.lower) &&
+        const bool is_left_out = tells_nothing(face, bounds.lower);
+        if (!is_left_out &&
             (may_be_nearest(id, stands_for) || (stands_for <= reach_ && bounds.upper > reach_)))
         {
             const ClosestPoints closest = measure(face, known);
@@ -313,7 +314,9 @@ private:
             triangles_.add({prim, block_triangle(tree_.block(face.block), face.lane)},
                            std::max(0.0, lower));
         }
-        double& least = face.error == 0 ? exact_lower_ : tolerated_lower_;
+        // An exact face that was left out may be the nearest: then the answer is within the
+        // tolerance.
+        double& least = face.error == 0 && !is_left_out ? exact_lower_ : tolerated_lower_;
         least = std::min(least, lower);
         met_ += meets ? 1U : 0U;
     }
@@ -331,9 +334,9 @@ private:
         upper_ = face.error == 0 ? std::min(upper_, upper_m) : upper_;
     }
 
-    /// A body that lies flat is about as far from all faces below it. With a tolerance those that
-    /// are measured tell of the others, but for a little of it; without one all are measured, so
-    /// that the answer is the same whatever their order.
+    /// True if measuring a face would change the answer by less than a small part of the tolerance:
+    /// a flat tool is about as far from all faces below it. Without a tolerance all are measured,
+    /// so that the answer does not depend on their order.
     [[nodiscard]] bool tells_nothing(const Face& face, double lower_m) const noexcept
     {
         return tolerance_ != 0 && lower_m >= nearest_.distance - little_m_ &&
@@ -341,8 +344,7 @@ private:
                (face.error != 0 || lower_m >= upper_ - little_m_);
     }
 
-    /// How far a face is beyond the core, along the way from there to the nearest face that was
-    /// measured.
+    /// Gap between core and face along the direction to the nearest measured face.
     [[nodiscard]] double bound_along_way(const std::array<std::uint8_t, 3>& corners) const noexcept
     {
         double least = kInfinity;
@@ -401,7 +403,7 @@ private:
     double share_; ///< Of the best distance: what is farther is not looked at.
     std::uint32_t enough_;
     ErrorCode tolerance_; ///< Faces with no larger error count as the surface.
-    double little_m_;     ///< A small part of them.
+    double little_m_;     ///< Small part of the tolerance.
     double looked_;       ///< So far: what is in reach may be stood for by a face beyond.
     WalkBudget& budget_;
     KernelBox box_;
@@ -413,11 +415,11 @@ private:
     double tolerated_lower_{kInfinity}; ///< what faces within the tolerance stand for is;
     double upper_{kInfinity};           ///< something of the source is at most,
     double limit_{kInfinity};           ///< and of the surface or the source.
-    double measured_lower_{kInfinity};  ///< Of the faces of the surface that were measured.
+    double measured_lower_{kInfinity};  ///< Lower bound from the measured faces of the surface.
     ErrorCode largest_tolerated_{0};
     std::uint32_t met_{0}; ///< Faces of the surface that meet the core.
     ClosestPoints nearest_{.distance = kInfinity};
-    Vec3 way_{0.0, 0.0, 0.0}; ///< To it, in the core's axes; of length 1, or 0.
+    Vec3 way_{0.0, 0.0, 0.0}; ///< Direction to nearest_, in the core's axes; of length 1, or 0.
     FaceId nearest_face_{};
     std::uint32_t nearest_block_{kNoNode};
 };
