@@ -22,6 +22,8 @@ static_assert(kBlockVertices == CornersAtCore::kCorners);
 
 /// Part of the tolerance by which an answer may differ from that with every face measured.
 constexpr double kLittle = 0x1p-4;
+/// Distances that differ by fewer quanta may be equal.
+constexpr double kTied = 0x1p-20;
 /// Rounding of heights of placed corners, relative to their coordinates.
 constexpr double kPlaceRounding = 1e-14;
 
@@ -314,9 +316,9 @@ private:
             triangles_.add({prim, block_triangle(tree_.block(face.block), face.lane)},
                            std::max(0.0, lower));
         }
-        // An exact face that was left out may be the nearest: then the answer is within the
-        // tolerance.
-        double& least = face.error == 0 && !is_left_out ? exact_lower_ : tolerated_lower_;
+        // If a nearer exact face was left out, the answer is within the tolerance.
+        const bool is_exact = !is_left_out || lower >= nearest_.distance - kTied * quantum_;
+        double& least = face.error == 0 && is_exact ? exact_lower_ : tolerated_lower_;
         least = std::min(least, lower);
         met_ += meets ? 1U : 0U;
     }

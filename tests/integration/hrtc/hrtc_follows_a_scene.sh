@@ -84,6 +84,6 @@ expect 3 "--scene: name 'a/b.gltf' is not 1 to 63 bytes" "$hrtc" \
 stop_publisher
 expect 3 "--scene: 'a b' is not" "$publish" --domain "$domain" --scene 'a b' ball.spm
 start_publisher ball.spm --scene nothing
-expect_found 2 "--scene: 'nothing' is there on domain $domain, but not all its objects have come" \
+expect_found 2 "--scene: 'nothing' shows no object of a model that its host serves on domain" \
     --scene nothing
 finish

@@ -110,7 +110,7 @@ TEST_P(HapticDeviceConformance, counts_its_readings_and_never_goes_back_in_time)
         EXPECT_TRUE(sample.connected);
         EXPECT_TRUE(sample.deadman_held);
         EXPECT_EQ(sample.frame, frame);
-        EXPECT_GT(sample.time, last);
+        EXPECT_GE(sample.time, last); // A late I/O thread leaves the last reading.
         last = sample.time;
     }
     EXPECT_EQ(rig->device().status().frames, 100U);

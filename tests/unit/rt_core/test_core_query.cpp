@@ -335,7 +335,7 @@ ToolCore flat_core(int turn)
 }
 
 /// The exact measurements must not grow with the faces below a flat tool: it was frozen for that.
-class FlatCoreQuery : public testing::TestWithParam<bool>
+class FlatCoreQuery : public testing::TestWithParam<std::pair<ErrorCode, ErrorCode>>
 {
 };
 
@@ -343,10 +343,11 @@ TEST_P(FlatCoreQuery, a_body_that_lies_flat_measures_few_of_the_faces_below)
 {
     constexpr std::uint32_t kCells = 20;
     constexpr float kCell = 0x1p-4F;
-    const bool is_tolerant = GetParam();
+    const auto [error, tolerance] = GetParam();
+    const bool is_tolerant = tolerance != 0;
     Random random(66);
     TreeRig rig({2 * kCells * kCells, 800, 800});
-    fill_flat(rig, kCells, kCell, is_tolerant ? ErrorCode{8} : ErrorCode{0});
+    fill_flat(rig, kCells, kCell, error);
     const auto faces = rig.present();
     QueryMemory memory;
     std::size_t faces_in_reach = 0;
@@ -361,7 +362,6 @@ TEST_P(FlatCoreQuery, a_body_that_lies_flat_measures_few_of_the_faces_below)
                 : Eigen::AngleAxisd(random.between(-4.0, 4.0), Vec3::UnitZ()).toRotationMatrix();
         const PlacedCore core(flat_core(is_tolerant ? query % 3 : 0), {turn, middle, 1.0});
         const double reach = 1.05 * height;
-        const ErrorCode tolerance = is_tolerant ? ErrorCode{12} : ErrorCode{0};
         const CoreTruth truth(faces, core, reach, tolerance);
         WorkBudget work;
         CoreAnswer asked;
@@ -373,7 +373,7 @@ TEST_P(FlatCoreQuery, a_body_that_lies_flat_measures_few_of_the_faces_below)
                        ProofShare::most, kEnoughMeetingFaces, tolerance);
 
         const DistanceAnswer& answer = asked.answer();
-        ASSERT_EQ(answer.kind, is_tolerant ? AnswerKind::within_tolerance : AnswerKind::exact);
+        ASSERT_EQ(answer.kind, error != 0 ? AnswerKind::within_tolerance : AnswerKind::exact);
         ASSERT_NEAR(answer.lower_m, truth.lower, 1e-12 + little_of(tolerance));
         ASSERT_LE(answer.lower_m, truth.lower + 1e-14);
         ASSERT_NEAR(answer.upper_m, truth.upper, 1e-12 + little_of(tolerance));
@@ -391,8 +391,11 @@ TEST_P(FlatCoreQuery, a_body_that_lies_flat_measures_few_of_the_faces_below)
     EXPECT_GT(faces_in_reach, 200U * 100U); // The mean of a query; each of them was measured once.
 }
 
-INSTANTIATE_TEST_SUITE_P(Exactly, FlatCoreQuery, testing::Values(false));
-INSTANTIATE_TEST_SUITE_P(WithinATolerance, FlatCoreQuery, testing::Values(true));
+/// Error of the faces, and tolerance.
+INSTANTIATE_TEST_SUITE_P(Tolerances, FlatCoreQuery,
+                         testing::Values(std::pair<ErrorCode, ErrorCode>{0, 0},
+                                         std::pair<ErrorCode, ErrorCode>{0, 12},
+                                         std::pair<ErrorCode, ErrorCode>{8, 12}));
 
 TEST(CoreQuery, a_point_gets_the_answer_of_a_point)
 {
