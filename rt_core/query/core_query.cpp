@@ -21,7 +21,7 @@ namespace
 static_assert(kBlockVertices == CornersAtCore::kCorners);
 
 /// Part of the tolerance by which an answer may differ from that with every face measured.
-constexpr double kLittle = 0x1p-4;
+constexpr double kUnmeasuredShare = 0x1p-4;
 /// Distances that differ by fewer quanta may be equal.
 constexpr double kTied = 0x1p-20;
 /// Rounding of heights of placed corners, relative to their coordinates.
@@ -71,7 +71,7 @@ public:
         , share_(static_cast<double>(share_of(share)))
         , enough_(enough)
         , tolerance_(tolerance)
-        , little_m_(kLittle * static_cast<double>(error_in_quanta(tolerance)) * quantum_)
+        , little_m_(kUnmeasuredShare * static_cast<double>(error_in_quanta(tolerance)) * quantum_)
         , looked_(reach_m + static_cast<double>(error_in_quanta(tolerance)) * quantum_)
         , budget_(budget)
         , box_(make_kernel_box(core, tree.quantum_m()))
