@@ -124,9 +124,9 @@ private:
 
     std::string log_level_{"info"};
     bool logs_json_{false};
-    std::vector<std::string> words_;      ///< Of the command line, behind the program's name.
+    std::vector<std::string> words_;      ///< Words of the command line after the program's name.
     std::string table_name_;              ///< Empty: the option file has no tables.
-    std::vector<std::string> table_keys_; ///< Of such a table.
+    std::vector<std::string> table_keys_; ///< Allowed keys of a table.
     std::vector<OptionTable>* tables_{nullptr};
     std::unique_ptr<CLI::App> app_;
 };
