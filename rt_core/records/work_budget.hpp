@@ -17,7 +17,7 @@ struct WorkCost
     static constexpr std::uint32_t node = 200;        ///< Visit of a node or block by a walk.
     static constexpr std::uint32_t triangle = 90;     ///< Triangle against a tool's core.
     static constexpr std::uint32_t measured = 2'500;  ///< Exact measurement of a triangle.
-    static constexpr std::uint32_t at_corner = 600;   ///< The same at a corner over a box's side.
+    static constexpr std::uint32_t at_corner = 1'100; ///< The same at a corner over a box's side.
     static constexpr std::uint32_t gjk = 4'200;       ///< The same from a hull.
     static constexpr std::uint32_t contact = 100;     ///< Triangle in reach, for contacts.
     static constexpr std::uint32_t pair_node = 450;   ///< Two boxes of two meshes, one opened.

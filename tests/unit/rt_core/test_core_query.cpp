@@ -389,7 +389,8 @@ TEST_P(FlatCoreQuery, a_body_that_lies_flat_measures_few_of_the_faces_below)
                                      asked.budget.triangles_tested * WorkCost::triangle;
         most = std::max(most, work.used() - walked);
     }
-    EXPECT_LT(most, (is_tolerant ? 60U : 120U) * WorkCost::measured);
+    // Without a tolerance all of some 350 faces are measured, but most of them at a corner.
+    EXPECT_LT(most, is_tolerant ? 60U * WorkCost::measured : 400U * WorkCost::at_corner);
     EXPECT_GT(faces_in_reach, 200U * 100U); // The mean of a query; each of them was measured once.
 }
 
