@@ -81,6 +81,7 @@ protected:
     };
 
     static constexpr int kPressed = 400;
+    static constexpr int kSwing = 1'500; ///< Frames of one period of the hand.
 
     /// Sets a longer interval for fronts of 60,000 faces.
     void SetUp() override { FrameRig::validate_every(20); }
@@ -110,7 +111,7 @@ protected:
     {
         const double diagonal_m = model_of(GetParam()).diagonal_m;
         const double press = std::min(1.0, frame / 300.0);
-        const double swing = 2.0 * std::numbers::pi * std::max(0, frame - kPressed) / 1'500.0;
+        const double swing = 2.0 * std::numbers::pi * std::max(0, frame - kPressed) / kSwing;
         const double height = GetParam().height + 0.005 - 0.015 * press;
         return top_m + diagonal_m * Vec3(0.02 * std::sin(swing), 0.0, height);
     }
@@ -152,7 +153,8 @@ protected:
         }
         sut.settle(hand_at(0, top_m), budgets, 3'000);
         const double slack = 1e-12 * model.diagonal_m;
-        const int frames = kPressed + static_cast<int>(trial_length(3'200));
+        // At least a whole period: some places leave more faces near the tool than others.
+        const int frames = kPressed + std::max(kSwing, static_cast<int>(trial_length(3'200)));
         double before_m = kInfinity;
         for (int frame = 0; frame < frames; ++frame)
         {
@@ -218,7 +220,7 @@ INSTANTIATE_TEST_SUITE_P(
         ToleranceCase{"ball", PointCore{}, 0.05, 0.05, 500, false, true},
         ToleranceCase{"capsule", Segment{{-0.1, 0, 0}, {0.1, 0, 0}}, 0.01, 0.01, 500, false, false},
         ToleranceCase{"box", Box{{0.08, 0.08, 0.02}}, 0.002, 0.022, 1'000, false, true},
-        ToleranceCase{"ball_on_a_whole_model", PointCore{}, 0.7, 0.7, 64 << 10, true, true},
+        ToleranceCase{"ball_on_a_whole_model", PointCore{}, 0.7, 0.7, 64 << 10, true, false},
         ToleranceCase{"box_on_a_whole_model", Box{{0.1, 0.1, 0.02}}, 0.002, 0.022, 64 << 10, true,
                       false}),
     name_of);

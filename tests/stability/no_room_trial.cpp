@@ -517,6 +517,8 @@ std::span<const CrampedTool> cramped_tools()
     static const Segment axis{Vec3(0, 0, -0.004), Vec3(0, 0, 0.004)};
     static const Box box{Vec3(0.003, 0.002, 0.0015)};
     static const ToolCore spike = spike_core(0.0).core;
+    static const std::array point{Vec3(0.001, 0, 0)};
+    static const std::array line{Vec3(0, 0, 0), Vec3(0, 0, 0.003)};
     static const std::vector<CrampedTool> tools{
         {"point", PointCore{}},
         {"sphere", PointCore{}, kCrampedSize_m},
@@ -535,8 +537,8 @@ std::span<const CrampedTool> cramped_tools()
         {"capsule without any size", Segment{}},
         {"box without any size", Box{}},
         {"plane", Box{Vec3(0.003, 0.002, 0.0)}},
-        {"hull of a point", Hull::create(std::array{Vec3(0.001, 0, 0)}).value()},
-        {"hull of a line", Hull::create(std::array{Vec3(0, 0, 0), Vec3(0, 0, 0.003)}).value()},
+        {"hull of a point", Hull::create(point).value()},
+        {"hull of a line", Hull::create(line).value()},
         {"box that hardly turns", box, 0.0005, 0.0, false, 1e6},
         {"box that turns at nothing", box, 0.0005, 0.0, false, 1e-200},
     };
