@@ -10,6 +10,7 @@
 #include "rt_core/math/orientation.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -193,9 +194,10 @@ private:
     {
         for (Eigen::Index axis = 0; axis < 3; ++axis)
         {
-            const Vec3 along(triangle_[0][axis], triangle_[1][axis], triangle_[2][axis]);
-            const bool is_above = along[0] > box_.half[axis];
-            const double nearest = is_above ? along.minCoeff() : along.maxCoeff();
+            const auto [a, b, c] =
+                std::array{triangle_[0][axis], triangle_[1][axis], triangle_[2][axis]};
+            const bool is_above = a > box_.half[axis];
+            const double nearest = is_above ? std::min({a, b, c}) : std::max({a, b, c});
             if (!(std::abs(nearest) > box_.half[axis]) || (nearest > 0.0) != is_above)
             {
                 continue;
