@@ -127,11 +127,11 @@ tactus_component(core
         rt_core/base/realtime.hpp
         rt_core/base/result.hpp
         rt_core/force/force_pipeline.hpp
-        rt_core/force/own_force.hpp
+        rt_core/force/external_force.hpp
         rt_core/frame/frame.hpp
         rt_core/frame/frame_setup.hpp
         rt_core/frame/model.hpp
-        rt_core/geometry/believed_motion.hpp
+        rt_core/geometry/object_speed_limit.hpp
         rt_core/geometry/convex.hpp
         rt_core/geometry/shapes.hpp
         rt_core/geometry/tool_core.hpp
@@ -175,7 +175,7 @@ tactus_component(transport
     PUBLIC
         transport/chunk_link.hpp
         transport/content_hash.hpp
-        transport/courier.hpp
+        transport/chunk_loader.hpp
         transport/dds/dds_client.hpp
         transport/dds/dds_host.hpp
         transport/dds/object_publisher.hpp
@@ -205,8 +205,8 @@ tactus_component(platform
         platform/devices/dhd/dhd_device.hpp
         platform/devices/haptic_device.hpp
         platform/devices/plugin/device_plugin.hpp
-        platform/devices/simulated/hand_motion.hpp
-        platform/devices/simulated/scripted_hand.hpp
+        platform/devices/simulated/operator_motion.hpp
+        platform/devices/simulated/scripted_operator.hpp
         platform/devices/simulated/simulated_device.hpp
         platform/devices/udp/udp_device.hpp
         platform/devices/wrapped_device.hpp

@@ -48,7 +48,7 @@ tactus_module(rt_core/predict ${stage_layer})
 tactus_module(rt_core/force ${stage_layer} rt_core/kernels rt_core/query/probe.hpp)
 # The objects' table, where they are, and which are near a tool.
 tactus_module(rt_core/scene ${stage_layer})
-# Distances and contacts of a tool and the active faces, exactly or as a bracket.
+# Distances and contacts of a tool and the active faces, exactly or as bounds.
 tactus_module(rt_core/query ${stage_layer} rt_core/abtree rt_core/kernels rt_core/query/probe.hpp)
 # How kernels see a place: what asks a tree and what moves among its faces both do.
 tactus_module(rt_core/query/probe.hpp rt_core/kernels rt_core/limits.hpp rt_core/math)
@@ -64,10 +64,10 @@ tactus_module(rt_core/frame rt_core)
 # What every module above rt_core may use: refusals, texts and their numbers, files that appear
 # whole, the program's log, exit codes. It knows rt_core/base alone.
 tactus_module(transport/base rt_core/base)
-# The courier between cache and link, and what hosts and controllers say of models, objects,
+# The chunk loader between cache and link, and what hosts and controllers say of models, objects,
 # materials and runs.
 tactus_module(transport ${stage_layer} rt_core/cache transport/base)
-# What a frame and the courier beside it take together.
+# What a frame and the chunk loader beside it take together.
 tactus_module(transport/pool_plan.hpp rt_core)
 # The plan's search; it asks both for their sizes.
 tactus_module(transport/pool_plan.cpp rt_core transport)
@@ -105,17 +105,17 @@ tactus_module(platform/export transport/base platform/recording rt_core)
 # Pages with charts; they know nothing of what was measured.
 tactus_module(platform/plot)
 # The haptic loop: tool ports between devices and frame, the supervisor and the brake beside it, the
-# doors and taps to other threads, and the accounts of deadlines and safety.
+# mailboxes and taps to other threads, and the accounts of deadlines and safety.
 tactus_module(platform/loop platform/machine platform/devices platform/recording transport rt_core)
-# What a run is asked for, as plain data, the texts that say it, and the devices and guides that are
-# made of it.
+# What a run is asked for, as plain data, the texts that say it, and the devices and virtual
+# fixtures that are made of it.
 tactus_module(platform/choices platform/loop platform/machine platform/devices platform/recording
     transport rt_core)
 # The objects of a run: a scene of a file or a host, who moves them, and how they feel.
 tactus_module(platform/scene platform/choices platform/loop platform/machine platform/devices
     transport rt_core)
-# One run: pools, frame, courier, devices, threads, recorder and topics, from the choices to what is
-# known at the end. It needs neither a command line nor a report.
+# One run: pools, frame, chunk loader, devices, threads, recorder and topics, from the choices to
+# what is known at the end. It needs neither a command line nor a report.
 tactus_module(platform/controller platform/scene platform/choices platform/loop platform/machine
     platform/devices platform/recording transport rt_core)
 # The command line of hrtc: its options, the checks of each, and what a signal or a terminal has to
@@ -185,7 +185,7 @@ tactus_external(fmt platform/choices platform/controller platform/diagnose platf
     transport host_tools tests)
 tactus_external(assimp host_tools/mesh tests)
 tactus_external(tbb host_tools tests)
-# The only doors that speak HTTP.
+# The only modules that speak HTTP.
 tactus_external(httplib.h host_tools/spm_view host_tools/web)
 tactus_external(oneapi host_tools tests)
 tactus_external(pybind11 host_tools/python)

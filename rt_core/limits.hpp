@@ -72,7 +72,7 @@ inline constexpr std::uint32_t kMaxObjects = 4'096;
 inline constexpr std::uint32_t kMaxModels = 256;
 /// Pairs of a tool and a near object that are tracked at once: 5.3 KiB each, 3 KiB more with
 /// contacts and 10 KiB more if a tool is a mesh. The nearest are tracked, and a tool goes no
-/// farther than its clearance from the others: FrameFault::scene_crowded.
+/// farther than its clearance from the others: FrameFault::scene_over_capacity.
 inline constexpr std::uint32_t kMaxPairs = 64;
 /// Objects on the list of those near one tool, 4 B each. The nearest are listed, with the same
 /// consequence.
@@ -92,10 +92,10 @@ inline constexpr std::uint32_t kMaxPoolFaces = (1U << 24) - 1;
 /// sixteen radii, refinement extends no farther than 2.5 radii from its axis. 370 B each for a
 /// pair. A longer core has larger spheres, and a mesh's last spheres grow: more is refined than
 /// needed.
-inline constexpr std::uint32_t kMaxCoverBalls = 8;
+inline constexpr std::uint32_t kMaxCoverSpheres = 8;
 
-/// Sets of exact triangles in a frame, for pairs with up to kMaxLocalTriangles: the most urgent
-/// pairs are served first. 48 KiB each.
+/// Sets of exact triangles in a frame, for pairs with up to kMaxLocalTriangles: the
+/// highest-priority pairs are served first. 48 KiB each.
 inline constexpr std::uint32_t kLocalSurfaces = 4;
 /// Exact triangles of one pair for the force stage; 76 are usual at 1.1 M faces and a tool of 1 %
 /// of the diagonal, 750 for a sphere of eight edges that moves four edges a frame. 48 B each. The
@@ -104,8 +104,8 @@ inline constexpr std::uint32_t kLocalSurfaces = 4;
 inline constexpr std::uint32_t kMaxLocalTriangles = 1'024;
 
 /// Contacts of one pair, the nearest ones; 96 B each. With more the report is marked incomplete. A
-/// tool with a torque then feels the nearest (FrameFault::tool_crowded); it can't cross the others,
-/// since its step ends at the proven distance.
+/// tool with a torque then feels the nearest (FrameFault::tool_over_capacity); it can't cross
+/// the others, since its step ends at the proven distance.
 inline constexpr std::uint32_t kMaxContacts = 32;
 /// Pairs of meeting faces that are kept, for a tool that is a mesh and an object; 8 B each. With
 /// more the report is marked truncated.
@@ -141,9 +141,9 @@ inline constexpr std::uint32_t kTreeLevels = 22;
 /// needs no more; beyond it an assertion fails.
 inline constexpr std::uint32_t kTreeStack = kTreeLevels * 7 + 8;
 /// Traversals with full `nodes` and `triangles` that a frame does to refine, and as many to answer,
-/// the most urgent pairs first; a slide over 60,000 faces visits about 25 nodes a frame. Later ones
-/// are cut short, with the bounds proven so far: FrameFault::node_budget_spent. Bounds the frame
-/// for any scene.
+/// the highest-priority pairs first; a slide over 60,000 faces visits about 25 nodes a frame. Later
+/// ones are cut short, with the bounds proven so far: FrameFault::node_budget_spent. Bounds the
+/// frame for any scene.
 inline constexpr std::uint32_t kFrameWalks = 8;
 /// Factor on Budgets for one pair of a tool that is a mesh, which has thousands of faces near an
 /// object where other tools are one shape. Beyond it: FrameFault::node_budget_spent.
@@ -163,7 +163,7 @@ inline constexpr std::uint32_t kMaxRankedRegions = 6 * kMaxPairs;
 inline constexpr std::uint32_t kLeastResidentIndexPages = 192;
 /// Requests under way while a whole model is loaded; further ones wait for answers. Requests of a
 /// tool must not wait behind more of them, nor be dropped from the transport side's list.
-inline constexpr std::uint32_t kMaxFillingWishes = 128;
+inline constexpr std::uint32_t kMaxFillingRequests = 128;
 /// Error of converting a point into a model's frame and back, as a share of its distance from the
 /// object's origin and of its own coordinates. Each conversion rounds about seven times by 1.1e-16,
 /// and R^T R of a rotation may be 2e-15 from the identity. Bounds are widened by it.
@@ -176,11 +176,11 @@ inline constexpr double kOriginRounding = 1e-15;
 /// per side.
 inline constexpr double kFarQuanta = 0x1p36;
 /// Frames after which an unanswered request is repeated.
-inline constexpr std::uint32_t kWishTimeoutFrames = 250;
+inline constexpr std::uint32_t kRequestTimeoutFrames = 250;
 /// The same as a time, for loops of any rate: longer than arrivals over a bad link take.
-inline constexpr std::int64_t kWishTimeout_ns = 250'000'000;
+inline constexpr std::int64_t kRequestTimeout_ns = 250'000'000;
 
-/// Arrivals taken from a model's door in one frame, even if Budgets::pages is larger, and updates
+/// Arrivals taken from a model's queues in one frame, even if Budgets::pages is larger, and updates
 /// of linked records; recordings keep them, 32 B each. An arrival brings few updates, each one word
 /// to write; more wait for the next frame.
 inline constexpr std::uint32_t kMaxArrivalsPerFrame = 64;
@@ -222,16 +222,16 @@ inline constexpr std::uint32_t kStepRounds = 16;
 inline constexpr double kContactTolerance = 1e-6;
 /// Planes that hold back one motion; 5 us in six dimensions with all of them. Beyond it those that
 /// hold a tool back least are left out, or a sphere's later ones, from its force only:
-/// FrameFault::tool_crowded.
+/// FrameFault::tool_over_capacity.
 inline constexpr std::uint32_t kMaxHalfSpaces = 64;
 /// Faces checked in double where the proxy stops, to find its contacts, and, if Budgets::planes are
 /// used up, as many to find how far a step is free; 300 instructions each. With more near a sphere,
-/// it feels those that were checked (FrameFault::tool_crowded), and a step keeps the length that
-/// single precision proves.
+/// it feels those that were checked (FrameFault::tool_over_capacity), and a step keeps the
+/// length that single precision proves.
 inline constexpr std::uint32_t kMaxTouchLooks = 4 * kMaxHalfSpaces;
 /// Steps of a search for the nearest motion, each of which adds or removes a plane. Awkward planes
 /// took 72 in the worst of a million searches; after half of the steps kSqueezeTolerance is enough.
-/// After all of them no motion counts as allowed: the tool is `squeezed`.
+/// After all of them no motion counts as allowed: the tool is `over_constrained`.
 inline constexpr std::uint32_t kConstraintRounds = 128;
 /// Distance by which a motion may exceed a plane, relative to the lengths of the problem.
 inline constexpr double kPlaneTolerance = 1e-12;
@@ -241,20 +241,20 @@ inline constexpr double kParallelPlanes = 1e-7;
 /// Share of the lengths by which a gap between planes must be too narrow to count as
 /// over-constrained.
 inline constexpr double kSqueezeTolerance = 1e-6;
-/// Faces round a sphere that its smooth normals average, 300 instructions each at a stop. With more
+/// Faces round a sphere that its force shading averages, 300 instructions each at a stop. With more
 /// within the width, the width is reduced; beside such faces it stays.
-inline constexpr std::uint32_t kMaxSmoothFaces = 64;
-/// Range of the width over which a tool's smooth normals average.
-inline constexpr double kSmoothWidthMin_m = 1e-4;
-inline constexpr double kSmoothWidthMax_m = 0.1;
+inline constexpr std::uint32_t kMaxShadedFaces = 64;
+/// Range of the width over which a tool's force shading averages.
+inline constexpr double kShadingWidthMin_m = 1e-4;
+inline constexpr double kShadingWidthMax_m = 0.1;
 /// Radius, in quanta, of a tool without a radius, so that it has an outside.
 inline constexpr double kPointSkin = 0.25;
 /// Past contact points kept while a tool rests, 88 B each. Six planes suffice to hold a rigid tool;
-/// the others are candidates. Beyond it the oldest is dropped: FrameFault::tool_crowded.
+/// the others are candidates. Beyond it the oldest is dropped: FrameFault::tool_over_capacity.
 inline constexpr std::uint32_t kMaxHolds = 16;
 /// Share of its core's radius that a tool without a radius keeps as a skin, so that it can slide.
 inline constexpr double kLeastSkin = 0.002;
-/// Time in which SafeState fades a force to zero, in seconds.
+/// Time in which ForceFader fades a force to zero, in seconds.
 inline constexpr double kFadeTime_s = 0.05;
 /// Rate at which the force of a proxy that waited for data catches up: this share of the device's
 /// largest force or torque per second, but no more than the newtons below. At 1 kHz 0.8 % and 0.04
@@ -268,7 +268,7 @@ inline constexpr double kRiseTime_s = 0.1;
 inline constexpr double kCalmSpeedShare = 0.5;
 /// Rotation speed, in rad/s, above which the device gets no torque and no force, and its motion
 /// counts for no energy: a wrist reaches 30.
-inline constexpr double kTurningMax_rad_per_s = 60.0;
+inline constexpr double kRotationMax_rad_per_s = 60.0;
 /// Largest damping while a force fades or returns, as a share of the device's largest force.
 inline constexpr double kDampingForceShare = 0.25;
 /// Largest change of a force by coarser faces while the pools have room for finer ones, in newtons:
@@ -342,7 +342,7 @@ inline constexpr double kTextureLengthMax_m = 1.0;
 inline constexpr double kTextureSteepest = 0x1p-5;
 /// Time in which a changed material becomes the new one during contact: fifty steps at 1 kHz, each
 /// of which changes a wall's force by a fiftieth of the new stiffness's effect.
-inline constexpr double kMaterialGlide_s = 0.05;
+inline constexpr double kMaterialBlend_s = 0.05;
 /// Deviation of R^T R from the identity, per entry, up to which a tool's or a device frame's
 /// rotation is made orthonormal. Beyond it a sample is FrameFault::tool_invalid, a device frame
 /// refused.
@@ -365,7 +365,7 @@ inline constexpr double kSampleHold_s = 0.02;
 /// (FrameFault::tool_jumped): a hand reaches 10 m/s at most.
 inline constexpr double kJumpSpeeds = 100.0;
 /// Rotation speed of a goal, in rad/s, above which it has jumped: at 1 kHz 57 degrees in one frame.
-inline constexpr double kJumpTurning_rad_per_s = 1'000.0;
+inline constexpr double kJumpRotation_rad_per_s = 1'000.0;
 
 // --- Names ---------------------------------------------------------------------------------------
 

@@ -33,8 +33,8 @@ enum class LinkState : std::uint8_t
 /// or a stand-in for one. Used by one thread, the transport thread; no call waits, except for a
 /// file's disk.
 ///
-/// A link may lose, repeat, reorder and damage pieces: the Courier verifies them and requests them
-/// again.
+/// A link may lose, repeat, reorder and damage pieces: the ChunkLoader verifies them and requests
+/// them again.
 class ChunkLink
 {
 public:
@@ -45,7 +45,7 @@ public:
     ChunkLink(ChunkLink&&) = delete;
     ChunkLink& operator=(ChunkLink&&) = delete;
 
-    /// Requests pieces that the model has, most urgent first. A newer generation goes before
+    /// Requests pieces that the model has, highest priority first. A newer generation goes before
     /// requests that still wait.
     virtual void request(std::span<const ContentKey> keys, std::uint32_t generation) = 0;
 

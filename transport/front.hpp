@@ -21,67 +21,68 @@ namespace tactus
 {
 
 /// Maximum number of page slots in one refinement state: 256 Ki records, 33 MB of pages.
-inline constexpr std::size_t kMaxFrontPages = 4'096;
+inline constexpr std::size_t kMaxStatePages = 4'096;
 /// Object numbers listed by one refinement state, in addition to the objects of awake pairs.
 inline constexpr std::uint32_t kFrontSweep = 16;
 /// Maximum number of objects in one refinement state.
-inline constexpr std::size_t kMaxFrontObjects = 2 * kFrontSweep;
-/// Maximum number of requests in one refinement state, over all models: a Courier has no more open.
-inline constexpr std::size_t kMaxFrontWishes = 256;
-/// Maximum number of regions in one refinement state; a moving ball has five.
-inline constexpr std::size_t kMaxFrontRegions = 64;
-/// Maximum number of bytes of FrontTool::shape.
+inline constexpr std::size_t kMaxStateObjects = 2 * kFrontSweep;
+/// Maximum number of requests in one refinement state, over all models: a ChunkLoader has no more
+/// open.
+inline constexpr std::size_t kMaxStateRequests = 256;
+/// Maximum number of regions in one refinement state; a moving sphere has five.
+inline constexpr std::size_t kMaxStateRegions = 64;
+/// Maximum number of bytes of RefinementStateTool::shape.
 inline constexpr std::size_t kMaxShapeBytes = 63;
 
 /// A resident page of records. A record is split if its bit is set. Base mesh and split records
 /// together determine the controller's faces exactly.
-struct FrontPage
+struct RefinementStatePage
 {
     ChunkId chunk{};
     std::uint64_t refined{0}; ///< Bit n is the chunk's record n.
 
-    bool operator==(const FrontPage&) const = default;
+    bool operator==(const RefinementStatePage&) const = default;
 };
 
 /// A model with pages or open requests on the controller.
-struct FrontModel
+struct RefinementStateModel
 {
     ContentHash hash{};
-    std::vector<FrontPage> pages; ///< Resident pages, ascending by chunk.
-    std::vector<ChunkId> wished;  ///< Requested chunks that are not resident yet, ascending.
+    std::vector<RefinementStatePage> pages; ///< Resident pages, ascending by chunk.
+    std::vector<ChunkId> requested; ///< Requested chunks that are not resident yet, ascending.
 
-    bool operator==(const FrontModel&) const = default;
+    bool operator==(const RefinementStateModel&) const = default;
 };
 
-/// A ball that a tool may touch, in which its chunks are searched. Model frame, metres.
-struct FrontRegion
+/// A sphere that a tool may touch, in which its chunks are searched. Model frame, metres.
+struct RefinementStateRegion
 {
-    std::uint32_t model{0};  ///< Index into Front::models.
-    bool is_foretold{false}; ///< True for a predicted place, false for the tool's present one.
+    std::uint32_t model{0};   ///< Index into RefinementState::models.
+    bool is_predicted{false}; ///< True for a predicted place, false for the tool's present one.
     std::array<float, 3> center_m{};
     float radius_m{0.0F};
 
-    bool operator==(const FrontRegion&) const = default;
+    bool operator==(const RefinementStateRegion&) const = default;
 };
 
 /// Pose of an object at the end of the frame.
-struct FrontObject
+struct RefinementStateObject
 {
     /// Epoch of the server that shows the object; 0: placed by the controller.
     std::uint64_t host_epoch{0};
     std::uint32_t object{0}; ///< Number of the object on that server, or on the controller.
     std::uint32_t number{0}; ///< Number of the object on the controller.
-    std::uint32_t model{0};  ///< Index into Front::models.
+    std::uint32_t model{0};  ///< Index into RefinementState::models.
     Pose pose;               ///< Pose of the model's frame (ModelHeader::origin_m) in the world.
 
-    bool operator==(const FrontObject&) const = default;
+    bool operator==(const RefinementStateObject&) const = default;
 };
 
 /// Wire form of a region; `model` is still the controller's own number.
-[[nodiscard]] inline FrontRegion front_region_of(const RankedRegion& region) noexcept
+[[nodiscard]] inline RefinementStateRegion front_region_of(const RankedRegion& region) noexcept
 {
-    FrontRegion shown{
-        region.model.value, region.lead_ns > 0, {}, static_cast<float>(region.radius_m)};
+    RefinementStateRegion shown{
+        region.model.value, region.horizon_ns > 0, {}, static_cast<float>(region.radius_m)};
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
         shown.center_m[axis] = static_cast<float>(region.center_m[static_cast<int>(axis)]);
@@ -89,7 +90,7 @@ struct FrontObject
     return shown;
 }
 
-struct FrontTool
+struct RefinementStateTool
 {
     SafetyState state{SafetyState::reset};
     ForceOff causes{ForceOff::none}; ///< Reasons why the output is below the frame's force.
@@ -97,7 +98,7 @@ struct FrontTool
     double radius_m{0.0};
     bool begins_inside{false}; ///< True if the tool began inside a closed object.
 
-    bool operator==(const FrontTool&) const = default;
+    bool operator==(const RefinementStateTool&) const = default;
 };
 
 /// Times of frames, in nanoseconds.
@@ -114,7 +115,7 @@ inline constexpr std::size_t kFrontTimes = kStages + 2;
 
 /// A controller's refinement state, published at most ten times a second. With Telemetry, a viewer
 /// can draw the controller's own faces from a copy of the model.
-struct Front
+struct RefinementState
 {
     std::uint64_t frame{0}; ///< Number of frames run.
     std::int64_t time_ns{0};
@@ -123,15 +124,15 @@ struct Front
     /// First of the controller's object numbers, up to `sweep_end`, whose objects are all listed.
     std::uint32_t sweep_begin{0};
     std::uint32_t sweep_end{0};
-    std::uint32_t slots_left_out{0};   ///< Page slots beyond kMaxFrontPages.
-    std::uint32_t regions_left_out{0}; ///< Least urgent regions beyond kMaxFrontRegions.
-    std::vector<FrontTool> tools;
+    std::uint32_t slots_left_out{0};   ///< Page slots beyond kMaxStatePages.
+    std::uint32_t regions_left_out{0}; ///< Lowest-priority regions beyond kMaxStateRegions.
+    std::vector<RefinementStateTool> tools;
     /// Models with pages or requests, and those of `objects` or `regions`.
-    std::vector<FrontModel> models;
-    std::vector<FrontObject> objects;
-    std::vector<FrontRegion> regions; ///< Regions, most urgent first.
+    std::vector<RefinementStateModel> models;
+    std::vector<RefinementStateObject> objects;
+    std::vector<RefinementStateRegion> regions; ///< Regions, highest priority first.
 
-    bool operator==(const Front&) const = default;
+    bool operator==(const RefinementState&) const = default;
 };
 
 } // namespace tactus

@@ -36,15 +36,15 @@ public:
         {
             second_start_ = now;
             lines_ = 0;
-            if (held_back_ > 0 && log_)
+            if (suppressed_ > 0 && log_)
             {
-                log_(std::to_string(held_back_) + " more lines like the last ones");
+                log_(std::to_string(suppressed_) + " more lines like the last ones");
             }
-            held_back_ = 0;
+            suppressed_ = 0;
         }
         if (lines_ >= lines_per_second_)
         {
-            ++held_back_;
+            ++suppressed_;
             return false;
         }
         ++lines_;
@@ -73,7 +73,7 @@ private:
     std::uint32_t lines_per_second_;
     std::chrono::steady_clock::time_point second_start_{};
     std::uint32_t lines_{0};
-    std::uint64_t held_back_{0};
+    std::uint64_t suppressed_{0};
 };
 
 } // namespace tactus

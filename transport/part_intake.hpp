@@ -21,21 +21,24 @@ class PartIntake
 public:
     PartIntake() = default;
     PartIntake(ContentKind kind, std::size_t bytes)
-        : kind_(kind), bytes_(bytes), is_here_(parts_of(bytes), false), missing_(is_here_.size())
+        : kind_(kind)
+        , bytes_(bytes)
+        , is_resident_(parts_of(bytes), false)
+        , missing_(is_resident_.size())
     {
     }
 
     /// Stores a part. False if it has arrived before, or is of another kind or size.
     bool receive(ContentKey key, std::span<const std::byte> bytes)
     {
-        if (key.kind != kind_ || key.number >= is_here_.size() || is_here_[key.number] ||
+        if (key.kind != kind_ || key.number >= is_resident_.size() || is_resident_[key.number] ||
             bytes.size() != part_of(bytes_, key.number).size())
         {
             return false;
         }
         std::ranges::copy(bytes,
                           bytes_.begin() + static_cast<std::ptrdiff_t>(key.number * kPartBytes));
-        is_here_[key.number] = true;
+        is_resident_[key.number] = true;
         --missing_;
         return true;
     }
@@ -43,9 +46,9 @@ public:
     /// Appends the missing parts to `keys` until it holds `most`.
     void list_missing(std::vector<ContentKey>& keys, std::size_t most) const
     {
-        for (std::uint32_t i = 0; i < is_here_.size() && keys.size() < most; ++i)
+        for (std::uint32_t i = 0; i < is_resident_.size() && keys.size() < most; ++i)
         {
-            if (!is_here_[i])
+            if (!is_resident_[i])
             {
                 keys.push_back({kind_, i});
             }
@@ -56,7 +59,7 @@ public:
 private:
     ContentKind kind_{ContentKind::base};
     std::vector<std::byte> bytes_;
-    std::vector<bool> is_here_; ///< Received parts, by number.
+    std::vector<bool> is_resident_; ///< Received parts, by number.
     std::size_t missing_{0};
 };
 

@@ -4,7 +4,7 @@
 
 #include "rt_core/base/arena.hpp"
 #include "rt_core/frame/frame.hpp"
-#include "transport/courier.hpp"
+#include "transport/chunk_loader.hpp"
 
 #include <algorithm>
 #include <vector>
@@ -17,7 +17,7 @@ namespace
 
 constexpr std::size_t kStep = std::size_t{64} << 10U;
 /// Share of pages in the optional memory of streamed models, in percent.
-constexpr std::size_t kPagesOfGuests = 60;
+constexpr std::size_t kPagesOfStreamedModels = 60;
 /// Divisor of the share of index pages in the memory, as for resident models.
 constexpr std::size_t kIndexShare = 64;
 constexpr std::size_t kMostSteps = (std::size_t{1} << 40U) / kStep;
@@ -37,41 +37,41 @@ bool try_plan_pools(const FrameSetup& setup, std::span<const ModelHeader> header
     {
         return false;
     }
-    // The Courier's need follows from the number of pages, and that from the memory left beside it.
-    // Usually the first guess fits; otherwise halving finds the least value that does.
+    // The ChunkLoader's need follows from the number of pages, and that from the memory left beside
+    // it. Usually the first guess fits; otherwise halving finds the least value that does.
     std::size_t too_little = 0;
     std::size_t too_much = bytes - common;
-    std::size_t courier = 0;
+    std::size_t chunk_loader = 0;
     for (;;)
     {
-        if (try_plan(headers, bytes - common - courier, cache_bytes, capacities))
+        if (try_plan(headers, bytes - common - chunk_loader, cache_bytes, capacities))
         {
             const ModelCapacities sum = sum_of(capacities);
-            const std::size_t needed = Courier::required_bytes(sum.pages, sum.index_pages);
-            if (needed <= courier)
+            const std::size_t needed = ChunkLoader::required_bytes(sum.pages, sum.index_pages);
+            if (needed <= chunk_loader)
             {
                 return true;
             }
-            too_little = courier;
-            courier = std::min(needed, too_much);
+            too_little = chunk_loader;
+            chunk_loader = std::min(needed, too_much);
         }
         else
         {
-            too_much = courier;
+            too_much = chunk_loader;
         }
         if (too_much - too_little <= 1)
         {
             return false;
         }
-        if (courier == too_much)
+        if (chunk_loader == too_much)
         {
-            courier = too_little + (too_much - too_little) / 2;
+            chunk_loader = too_little + (too_much - too_little) / 2;
         }
     }
 }
 
-bool try_plan_guests(const FrameSetup& setup, std::span<const ModelHeader> headers,
-                     std::size_t bytes, std::size_t cache_bytes, ModelCapacities& room)
+bool try_plan_streamed_models(const FrameSetup& setup, std::span<const ModelHeader> headers,
+                              std::size_t bytes, std::size_t cache_bytes, ModelCapacities& room)
 {
     std::uint32_t largest = 0;
     std::uint64_t sum = 0;
@@ -88,10 +88,10 @@ bool try_plan_guests(const FrameSetup& setup, std::span<const ModelHeader> heade
         static_cast<std::uint32_t>(bytes / kIndexShare / sizeof(IndexPage)));
     const auto needed_for = [&](std::uint32_t meshes, std::uint32_t pages)
     {
-        room = guest_room(meshes, std::max(largest, meshes * mean), pages, index_pages);
+        room = streamed_model_room(meshes, std::max(largest, meshes * mean), pages, index_pages);
         FrameSetup with_room = setup;
-        with_room.for_guests = room;
-        return Frame::required_bytes(with_room) + Courier::required_bytes(pages, index_pages);
+        with_room.for_streamed_models = room;
+        return Frame::required_bytes(with_room) + ChunkLoader::required_bytes(pages, index_pages);
     };
     const std::size_t least = needed_for(1, 1);
     if (least > bytes)
@@ -100,7 +100,7 @@ bool try_plan_guests(const FrameSetup& setup, std::span<const ModelHeader> heade
     }
     const std::size_t a_page = needed_for(1, 2) - std::min(needed_for(1, 1), needed_for(1, 2));
     const std::size_t for_pages = cache_bytes > 0 ? cache_bytes / sizeof(Page) * a_page
-                                                  : (bytes - least) / 100 * kPagesOfGuests;
+                                                  : (bytes - least) / 100 * kPagesOfStreamedModels;
     const auto pages = static_cast<std::uint32_t>(1 + std::min(for_pages, bytes - least) /
                                                           std::max<std::size_t>(a_page, 1));
     std::uint32_t fits = 0;

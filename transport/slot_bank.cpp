@@ -17,8 +17,8 @@ SlotBank::Slots SlotBank::Slots::all_free(Arena& arena, std::size_t count) noexc
     return slots;
 }
 
-SlotBank::SlotBank(Arena& arena, const PageSlots& slots, SlotDoor& door)
-    : door_(door)
+SlotBank::SlotBank(Arena& arena, const PageSlots& slots, SlotQueues& queues)
+    : queues_(queues)
     , pages_(Slots::all_free(arena, slots.pages.size()))
     , index_pages_(Slots::all_free(arena, slots.index_pages.size()))
     , linkers_(arena.take<Linker*>(slots.pages.size()))
@@ -41,7 +41,7 @@ std::size_t SlotBank::required_bytes(std::size_t pages, std::size_t index_pages)
 void SlotBank::take_back_freed()
 {
     FreedSlot freed;
-    while (door_.freed.try_pop(freed))
+    while (queues_.freed.try_pop(freed))
     {
         ++freed_taken_;
         if (freed.kind == ContentKind::base)

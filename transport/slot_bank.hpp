@@ -4,7 +4,7 @@
 
 #include "rt_core/base/arena.hpp"
 #include "rt_core/base/id_table.hpp"
-#include "rt_core/cache/slot_door.hpp"
+#include "rt_core/cache/slot_queues.hpp"
 #include "rt_core/spm/linker.hpp"
 #include "rt_core/spm/page_pool.hpp"
 #include "rt_core/spm/page_slots.hpp"
@@ -23,8 +23,8 @@ namespace tactus
 class SlotBank
 {
 public:
-    /// All slots are free at first. `door` must outlive the bank.
-    SlotBank(Arena& arena, const PageSlots& slots, SlotDoor& door);
+    /// All slots are free at first. `queues` must outlive the bank.
+    SlotBank(Arena& arena, const PageSlots& slots, SlotQueues& queues);
 
     /// Bytes that the constructor takes from the arena.
     [[nodiscard]] static std::size_t required_bytes(std::size_t pages,
@@ -36,7 +36,7 @@ public:
     /// Takes back the slots that the haptic thread freed, in its order, and reports each to the
     /// linker that filled it. A model whose base mesh was freed has no base mesh any more.
     void take_back_freed();
-    /// Number of freed slots taken back, modulo 2^32, as in DoorEvent.
+    /// Number of freed slots taken back, modulo 2^32, as in QueueEvent.
     [[nodiscard]] std::uint32_t freed_taken() const noexcept { return freed_taken_; }
 
     [[nodiscard]] std::size_t free_pages() const noexcept { return pages_.count; }
@@ -95,7 +95,7 @@ private:
         bool is_news_due{false};
     };
 
-    SlotDoor& door_;
+    SlotQueues& queues_;
     std::vector<KnownModel> models_; ///< Models by owner number.
     Slots pages_;
     Slots index_pages_;

@@ -29,9 +29,9 @@ struct ToolTelemetry
     std::uint32_t buttons{0};          ///< Bit n: button n is pressed.
     bool has_gripper{false};
     bool in_contact{false};
-    bool frozen{false};
-    bool squeezed{false};
-    bool held_back{false};
+    bool halted{false};
+    bool over_constrained{false};
+    bool data_limited{false};
 
     bool operator==(const ToolTelemetry&) const = default;
 };
@@ -43,7 +43,7 @@ struct PairTelemetry
     std::uint64_t host_epoch{0};
     std::uint32_t object{0}; ///< Number of the object on that server, or on the controller.
     std::uint8_t tool{0};
-    AnswerKind kind{AnswerKind::bracket};
+    AnswerKind kind{AnswerKind::bounded};
     double lower_m{0.0};             ///< Proven lower bound of the distance from the tool's core.
     double upper_m{0.0};             ///< Proven upper bound; infinite while nothing is known.
     std::array<double, 3> point_m{}; ///< Nearest point on the object, in the world.
@@ -93,13 +93,13 @@ struct Telemetry
     std::int64_t period_ns{0};
     std::int64_t time_ns{0}; ///< Start of the frame on the controller's clock.
     std::uint64_t exact{0};  ///< Frames whose worst answer was exact; the next ones likewise.
-    std::uint64_t decided{0};
-    std::uint64_t bracket{0};
+    std::uint64_t separated{0};
+    std::uint64_t bounded{0};
     std::uint64_t stale{0};
     std::uint64_t within_tolerance{0};
     std::uint64_t missed{0};
-    std::uint64_t own_faults{0};
-    std::uint64_t machine_late{0};
+    std::uint64_t overruns{0};
+    std::uint64_t latency_misses{0};
     std::uint32_t faults_now{0};  ///< FrameFault bits of this frame.
     std::uint32_t faults_seen{0}; ///< FrameFault bits of all frames since the start.
     std::uint32_t tool_count{0};

@@ -269,6 +269,21 @@ def plain_comments(tree):
         yield path, line, f'{match[1]} in a comment: name what is meant'
 
 
+def old_names(tree):
+    """No name of docs/internals/renamed.tsv is used, where it can't be a word of English."""
+    table = 'docs/internals/renamed.tsv'
+    if not tree.exists(table):
+        return
+    names = {row.split('\t')[1] for row in tree.text(table).splitlines()[1:]
+             if row.split('\t')[0] in ('option', 'class', 'metric', 'C, Python')}
+    names = [name for name in names if re.fullmatch(r'--[a-z-]+|\w+_\w+|[A-Z][a-z]+[A-Z]\w*', name)]
+    paths = [path for path in tree.paths if path not in (table, 'cmake/checks/guards.py') and
+             not path.startswith(('docs/internals/decisions/', 'docs/benchmarks/'))]
+    pattern = r'(?<![\w-])(' + '|'.join(sorted(names)) + r')(?![\w-])'
+    for path, line, match in tree.matches(pattern, paths):
+        yield path, line, f'{match[1]} has another name: see {table}'
+
+
 def no_leftovers(tree):
     """No mark of unfinished work. They are spelt in two parts, so that this file has none."""
     marks = r'\b(TO' r'DO|FIX' r'ME|X' r'XX|HA' r'CK)\b'
@@ -433,7 +448,8 @@ def named_tests(tree):
 
 
 GUARDS = {guard.__name__: guard for guard in (
-    layers, modules_told, module_map, line_length, plain_comments, no_leftovers, machine_paths, licence,
+    layers, modules_told, module_map, line_length, plain_comments, old_names, no_leftovers,
+    machine_paths, licence,
     files_listed, limits_tested, own_header_first, threads_told, links, named_tests)}
 
 

@@ -140,7 +140,7 @@ configure() { # configure ROLE: ROLE.xml, the settings with the role's security.
         "${text#*</Domain>}" >"$1.xml"
 }
 
-role host catalogue chunks objects motion -- wanted telemetry front catalogue
-role controller wanted telemetry front -- catalogue chunks objects motion
+role host catalogue chunks objects motion -- wanted telemetry refinement_state catalogue
+role controller wanted telemetry refinement_state -- catalogue chunks objects motion
 rm -f -- *.csr openssl.log
 echo "$PWD/host.xml and $PWD/controller.xml are for CYCLONEDDS_URI"

@@ -18,8 +18,8 @@ namespace
 class Rail final : public HapticDevice
 {
 public:
-    Rail(const DeviceWish& wish, double height_m)
-        : frame_(wish.frame), height_m_(height_m), period_ns_(1'000'000'000 / wish.rate_hz)
+    Rail(const DeviceRequest& request, double height_m)
+        : frame_(request.frame), height_m_(height_m), period_ns_(1'000'000'000 / request.rate_hz)
     {
         DeviceInfo info;
         info.name = "rail";
@@ -67,14 +67,14 @@ private:
     double force_z_n_{0.0};
 };
 
-Result<std::unique_ptr<HapticDevice>, Refusal> make_rail(const DeviceWish& wish)
+Result<std::unique_ptr<HapticDevice>, Refusal> make_rail(const DeviceRequest& request)
 {
-    const double height_m = std::atof(wish.words);
+    const double height_m = std::atof(request.words);
     if (!(height_m > 0.0 && height_m <= 1.0))
     {
         return Refusal{"give its height, 0 to 1 m, behind a comma"};
     }
-    return std::unique_ptr<HapticDevice>(std::make_unique<Rail>(wish, height_m));
+    return std::unique_ptr<HapticDevice>(std::make_unique<Rail>(request, height_m));
 }
 
 // A real one talks to its hardware. This rail ends with its program.
@@ -89,7 +89,7 @@ public:
     bool brake() noexcept override { return stop_motors(); }
 };
 
-Result<std::unique_ptr<DeviceGuard>, Refusal> make_rail_guard(const DeviceWish& /*wish*/)
+Result<std::unique_ptr<DeviceGuard>, Refusal> make_rail_guard(const DeviceRequest& /*request*/)
 {
     return std::unique_ptr<DeviceGuard>(std::make_unique<RailGuard>());
 }

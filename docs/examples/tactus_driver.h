@@ -69,12 +69,12 @@ typedef struct tactus_describe
     int64_t rate_max_hz;
     double torque_max_nm; /* 0: it makes none, and what else is of turning may be 0. */
     double inertia_kg_m2;
-    double turning_damping_nm_s_per_rad;
-    double turning_friction_nm;
+    double rotational_damping_nm_s_per_rad;
+    double rotational_friction_nm;
     double rotation_step_rad;
     double torque_growth_max_nm_per_s;
-    double turning_stiffness_max_nm_per_rad;
-    double added_turning_damping_max_nm_s_per_rad;
+    double rotational_stiffness_max_nm_per_rad;
+    double added_rotational_damping_max_nm_s_per_rad;
     double gripper_force_max_n; /* 0: it makes none. */
     uint8_t tag[16];
     uint32_t flags;
@@ -121,7 +121,7 @@ typedef struct tactus_driver
     tactus_describe describe; /* Yours up to gripper_force_max_n, and its flags. */
     tactus_force force;       /* For the hardware; zero while the controller is silent. */
     /* With a key: the BLAKE2b of 16 bytes of `size` bytes, keyed by it; null without. */
-    void (*seal)(const void* bytes, size_t size, uint8_t tag[16]);
+    void (*authenticate)(const void* bytes, size_t size, uint8_t tag[16]);
     uint64_t sequence;
     int64_t heard_ns;
     int64_t described_ns;
@@ -169,12 +169,12 @@ static inline int tactus_driver_take(tactus_driver* driver, const void* bytes, s
     {
         return 0;
     }
-    if (driver->seal != NULL)
+    if (driver->authenticate != NULL)
     {
         uint8_t tag[16];
         const tactus_force sent = force;
         memset(force.tag, 0, sizeof(force.tag));
-        driver->seal(&force, offsetof(tactus_force, checksum), tag);
+        driver->authenticate(&force, offsetof(tactus_force, checksum), tag);
         if (memcmp(tag, sent.tag, sizeof(tag)) != 0)
         {
             return 0;
@@ -219,11 +219,11 @@ static inline const void* tactus_driver_next(tactus_driver* driver, tactus_sampl
     head->sequence = ++driver->sequence;
     memset(tag, 0, 16);
     *size = is_attached ? sizeof(*sample) : sizeof(driver->describe);
-    if (driver->seal != NULL)
+    if (driver->authenticate != NULL)
     {
-        uint8_t sealed[16];
-        driver->seal(head, *size - 4, sealed);
-        memcpy(tag, sealed, 16);
+        uint8_t expected[16];
+        driver->authenticate(head, *size - 4, expected);
+        memcpy(tag, expected, 16);
     }
     *checksum = tactus_crc32c(head, *size - 4);
     return head;

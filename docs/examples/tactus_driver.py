@@ -36,9 +36,9 @@ class Describe(ctypes.LittleEndianStructure):
         "force_growth_max_n_per_s", "stiffness_max_n_per_m", "added_damping_max_n_s_per_m")] + [
         ("workspace_centre_m", _f64 * 3), ("workspace_radius_m", _f64), ("speed_max_m_per_s", _f64),
         ("rate_min_hz", _i64), ("rate_max_hz", _i64)] + [(name, _f64) for name in (
-            "torque_max_nm", "inertia_kg_m2", "turning_damping_nm_s_per_rad", "turning_friction_nm",
-            "rotation_step_rad", "torque_growth_max_nm_per_s", "turning_stiffness_max_nm_per_rad",
-            "added_turning_damping_max_nm_s_per_rad", "gripper_force_max_n")] + [
+            "torque_max_nm", "inertia_kg_m2", "rotational_damping_nm_s_per_rad", "rotational_friction_nm",
+            "rotation_step_rad", "torque_growth_max_nm_per_s", "rotational_stiffness_max_nm_per_rad",
+            "added_rotational_damping_max_nm_s_per_rad", "gripper_force_max_n")] + [
         _tag, ("flags", _u32), ("checksum", _u32)]
 
 
@@ -108,14 +108,14 @@ class Driver:
         if silent_ns > 20e6:
             self.force = Force(head=self.force.head)
         if silent_ns <= 100e6:
-            return self._sealed(sample, _SAMPLE, self.force.head.session)
+            return self._tagged(sample, _SAMPLE, self.force.head.session)
         self.force = Force()
         if self._described_ns is not None and now_ns - self._described_ns < 100e6:
             return None
         self._described_ns = now_ns
-        return self._sealed(self.describe, _DESCRIBE, 0)
+        return self._tagged(self.describe, _DESCRIBE, 0)
 
-    def _sealed(self, datagram, kind, session):
+    def _tagged(self, datagram, kind, session):
         self._sequence += 1
         datagram.head = Head(b"TCTD", 2, kind, self._instance, session, self._sequence)
         return self._closed(datagram)

@@ -17,9 +17,9 @@ driver = Driver(Describe(
     name=b"python", mass_kg=0.1, damping_n_s_per_m=1, delay_s=0.002, force_max_n=8,
     force_growth_max_n_per_s=20000, stiffness_max_n_per_m=3000, added_damping_max_n_s_per_m=5,
     workspace_radius_m=0.2, speed_max_m_per_s=10, rate_min_hz=100, rate_max_hz=4000,
-    torque_max_nm=0.2, inertia_kg_m2=1e-4, turning_damping_nm_s_per_rad=1e-3,
-    torque_growth_max_nm_per_s=1000, turning_stiffness_max_nm_per_rad=1,
-    added_turning_damping_max_nm_s_per_rad=5e-3, flags=MEASURES_ROTATION), key)
+    torque_max_nm=0.2, inertia_kg_m2=1e-4, rotational_damping_nm_s_per_rad=1e-3,
+    torque_growth_max_nm_per_s=1000, rotational_stiffness_max_nm_per_rad=1,
+    added_rotational_damping_max_nm_s_per_rad=5e-3, flags=MEASURES_ROTATION), key)
 controller = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
 controller.connect(("127.0.0.1", int(sys.argv[1])))
 controller.setblocking(False)

@@ -4,11 +4,11 @@
 
 #include "rt_core/frame/frame.hpp"
 #include "rt_core/frame/list_touches.hpp"
-#include "rt_core/geometry/believed_motion.hpp"
+#include "rt_core/geometry/object_speed_limit.hpp"
 #include "rt_core/math/rotation.hpp"
 #include "rt_core/records/object_touch.hpp"
 #include "transport/base/refusal.hpp"
-#include "transport/courier.hpp"
+#include "transport/chunk_loader.hpp"
 #include "transport/dds/dds_client.hpp"
 #include "transport/inside_test.hpp"
 #include "transport/material_ranges.hpp"
@@ -60,16 +60,16 @@ struct tactus_frame
     Arena arena;
     std::vector<tactus_model*> models;
     std::optional<Frame> frame;
-    std::optional<Courier> courier;
+    std::optional<ChunkLoader> chunk_loader;
     std::vector<ToolState> states;
     /// Changes for the next frame. The change of a moving object has the target pose and stays
     /// until the object has reached it.
     StaticVector<SceneChange, kMaxSceneChanges> changes;
     std::uint32_t objects{0};
-    std::vector<Similarity> places;          ///< Present places of the objects in the frame.
-    ObjectTouches touches;                   ///< Touches after the last frame.
-    std::array<bool, kMaxTools> is_outrun{}; ///< Flags by tool, from the last frame.
-    BelievedSpeed belief;
+    std::vector<Similarity> places;                ///< Present places of the objects in the frame.
+    ObjectTouches touches;                         ///< Touches after the last frame.
+    std::array<bool, kMaxTools> is_rate_limited{}; ///< Flags by tool, from the last frame.
+    ObjectSpeedLimit belief;
     std::int64_t period_ns{0};
     /// Time of the frames, written by tactus_frame_run() and read by tactus_frame_load().
     std::atomic<std::int64_t> now_ns{0};
@@ -259,18 +259,18 @@ ToolSpec tool_of(const tactus_tool& tool, std::size_t index)
     const std::string name = fmt::format("tools[{}].", index);
     check_size(tool, name.c_str());
     check_range(tool.shape, TACTUS_SPHERE, TACTUS_BOX, name + "shape");
-    const double largest_m = tool.passes_through != 0 ? 1e3 : 1.0; // No tool of a hand is larger.
+    const double largest_m = tool.query_only != 0 ? 1e3 : 1.0; // No tool of a hand is larger.
     check_range(tool.radius_m, 1e-6, largest_m, name + "radius_m");
     check_range(tool.stiffness_n_per_m, 1e-3, 1e6, name + "stiffness_n_per_m");
     check_range(tool.force_max_n, 1e-3, 1e6, name + "force_max_n");
     check_range(tool.torque_max_nm, 0.0, 1e6, name + "torque_max_nm");
     check_range(tool.speed_max_m_per_s, 1e-6, 1e6, name + "speed_max_m_per_s");
-    check_range(tool.smooth_m, tool.smooth_m == 0.0 ? 0.0 : kSmoothWidthMin_m, kSmoothWidthMax_m,
-                name + "smooth_m");
-    if (tool.smooth_m != 0.0 && tool.shape != TACTUS_SPHERE)
+    check_range(tool.shading_m, tool.shading_m == 0.0 ? 0.0 : kShadingWidthMin_m,
+                kShadingWidthMax_m, name + "shading_m");
+    if (tool.shading_m != 0.0 && tool.shape != TACTUS_SPHERE)
     {
-        refuse(TACTUS_BAD_ARGUMENT, "{}smooth_m: {:g}; only a sphere feels it", name,
-               tool.smooth_m);
+        refuse(TACTUS_BAD_ARGUMENT, "{}shading_m: {:g}; only a sphere feels it", name,
+               tool.shading_m);
     }
     for (const double half_m : tool.half_m)
     {
@@ -283,8 +283,8 @@ ToolSpec tool_of(const tactus_tool& tool, std::size_t index)
     spec.force_max_n = tool.force_max_n;
     spec.speed_max_m_per_s = tool.speed_max_m_per_s;
     spec.torque_max_nm = tool.torque_max_nm;
-    spec.passes_through = tool.passes_through != 0;
-    spec.smooth_m = tool.smooth_m;
+    spec.query_only = tool.query_only != 0;
+    spec.shading_m = tool.shading_m;
     spec.wants_distance = tool.wants_distance != 0;
     const Vec3 half_m = to_vec(tool.half_m);
     if (tool.shape == TACTUS_CAPSULE)
@@ -480,12 +480,12 @@ void start(tactus_frame& frame, const FrameSetup& setup)
         refuse(TACTUS_REFUSED, "{}", refusal_text(started.error()));
     }
     ModelPools& pools = frame.frame->pools();
-    frame.courier.emplace(frame.arena, pools.slots, pools.cache.door, Log{});
+    frame.chunk_loader.emplace(frame.arena, pools.slots, pools.cache.queues, Log{});
     for (std::uint32_t i = 0; i < frame.models.size(); ++i)
     {
         Model& model = frame.frame->model({i});
         ServedModel& served = frame.models[i]->served;
-        frame.courier->add(model.header, model.linker, *served.link, served.name);
+        frame.chunk_loader->add(model.header, model.linker, *served.link, served.name);
     }
     frame.states.resize(setup.tools.size());
     frame.objects = static_cast<std::uint32_t>(setup.objects.size());
@@ -497,7 +497,7 @@ void start(tactus_frame& frame, const FrameSetup& setup)
 
 void load(tactus_frame& frame)
 {
-    frame.courier->step(frame.now_ns.load(std::memory_order_relaxed));
+    frame.chunk_loader->step(frame.now_ns.load(std::memory_order_relaxed));
 }
 
 /// Greatest distance that the move of an object causes at a place that some tool may touch.
@@ -509,7 +509,7 @@ double way_near_m(const tactus_frame& frame, std::uint32_t object, const Similar
         if (touch.object == object)
         {
             way_m = std::max(
-                way_m, way_in_ball_m(frame.places[object], to, touch.place_m, touch.radius_m));
+                way_m, way_in_sphere_m(frame.places[object], to, touch.place_m, touch.radius_m));
         }
     }
     return way_m;
@@ -525,8 +525,8 @@ bool carry(tactus_frame& frame, SceneChange& move)
     const double way_m = way_to_m(move.pose);
     for (const ObjectTouch& touch : frame.touches)
     {
-        frame.is_outrun[touch.tool] |= touch.object == move.number && touch.is_in_reach &&
-                                       frame.belief.outruns(way_m, since_s);
+        frame.is_rate_limited[touch.tool] |= touch.object == move.number && touch.is_in_reach &&
+                                             frame.belief.exceeds_limit(way_m, since_s);
     }
     const bool is_held = frame.belief.is_too_fast(way_m, since_s);
     if (is_held)
@@ -543,7 +543,7 @@ StaticVector<SceneChange, kMaxSceneChanges> take_changes(tactus_frame& frame)
 {
     StaticVector<SceneChange, kMaxSceneChanges> changes = frame.changes;
     frame.changes.clear();
-    frame.is_outrun.fill(false);
+    frame.is_rate_limited.fill(false);
     for (SceneChange& change : changes)
     {
         const SceneChange whole = change;
@@ -578,11 +578,11 @@ bool is_settled(const tactus_frame& frame)
                                [&frame](const PairOutput& pair)
                                {
                                    return is_known(pair.kind) ||
-                                          (pair.kind == AnswerKind::decided &&
+                                          (pair.kind == AnswerKind::separated &&
                                            !frame.frame->tool(pair.tool).spec().wants_distance);
                                }) &&
            std::ranges::none_of(output.tools, [](const ToolOutput& tool)
-                                { return tool.frozen || tool.held_back || tool.under_way; });
+                                { return tool.halted || tool.data_limited || tool.under_way; });
 }
 
 void find_insides(const tactus_frame& frame, const double* positions_m, std::uint8_t* inside)
@@ -598,8 +598,9 @@ void find_insides(const tactus_frame& frame, const double* positions_m, std::uin
         const InsideTest test(header, served.base);
         for (std::uint32_t tool = 0; tool < tools; ++tool)
         {
-            const Vec3 source_m = frame.places[object].to_here(to_vec(positions_m + 3 * tool));
-            const bool is_held = !frame.frame->tool(tool).spec().passes_through &&
+            const Vec3 source_m =
+                frame.places[object].world_to_local(to_vec(positions_m + 3 * tool));
+            const bool is_held = !frame.frame->tool(tool).spec().query_only &&
                                  test.holds(source_m - header.origin_m());
             inside[tool] = is_held ? 1 : inside[tool];
         }
@@ -618,11 +619,13 @@ void place_tools(tactus_frame& frame, const tactus_poses& poses, std::size_t pos
     }
 }
 
-std::uint32_t flags_of(const ToolOutput& tool, bool is_outrun)
+std::uint32_t flags_of(const ToolOutput& tool, bool is_rate_limited)
 {
-    return (is_outrun ? TACTUS_OUTRUN : 0U) | (tool.in_contact ? TACTUS_IN_CONTACT : 0U) |
-           (tool.frozen ? TACTUS_FROZEN : 0U) | (tool.squeezed ? TACTUS_SQUEEZED : 0U) |
-           (tool.crowded ? TACTUS_CROWDED : 0U) | (tool.held_back ? TACTUS_HELD_BACK : 0U);
+    return (is_rate_limited ? TACTUS_RATE_LIMITED : 0U) |
+           (tool.in_contact ? TACTUS_IN_CONTACT : 0U) | (tool.halted ? TACTUS_HALTED : 0U) |
+           (tool.over_constrained ? TACTUS_OVER_CONSTRAINED : 0U) |
+           (tool.capacity_exceeded ? TACTUS_CAPACITY_EXCEEDED : 0U) |
+           (tool.data_limited ? TACTUS_DATA_LIMITED : 0U);
 }
 
 void write_answers(const tactus_frame& frame, const tactus_poses& poses, std::size_t pose)
@@ -636,14 +639,14 @@ void write_answers(const tactus_frame& frame, const tactus_poses& poses, std::si
         write(poses.force_n, first + t, tool.force_n);
         write(poses.torque_nm, first + t, tool.torque_nm);
         write(poses.proxy_m, first + t, tool.proxy_m);
-        write(poses.flags, first + t, flags_of(tool, frame.is_outrun[t]));
+        write(poses.flags, first + t, flags_of(tool, frame.is_rate_limited[t]));
         // An object without a pair is proven clear of the tool.
         for (std::size_t k = 0; k < frame.objects; ++k)
         {
             const std::size_t index = (first + t) * frame.objects + k;
             write(poses.lower_m, index, tool.clear_m);
             write(poses.upper_m, index, kInfinity);
-            write(poses.kind, index, static_cast<std::uint8_t>(TACTUS_DECIDED));
+            write(poses.kind, index, static_cast<std::uint8_t>(TACTUS_SEPARATED));
             write(poses.nearest_m, index, Vec3(kUnknown, kUnknown, kUnknown));
         }
     }
@@ -660,8 +663,8 @@ void write_answers(const tactus_frame& frame, const tactus_poses& poses, std::si
     }
 }
 static_assert(static_cast<int>(AnswerKind::exact) == TACTUS_EXACT);
-static_assert(static_cast<int>(AnswerKind::decided) == TACTUS_DECIDED);
-static_assert(static_cast<int>(AnswerKind::bracket) == TACTUS_BRACKET);
+static_assert(static_cast<int>(AnswerKind::separated) == TACTUS_SEPARATED);
+static_assert(static_cast<int>(AnswerKind::bounded) == TACTUS_BOUNDED);
 static_assert(static_cast<int>(AnswerKind::stale) == TACTUS_STALE);
 static_assert(static_cast<int>(AnswerKind::within_tolerance) == TACTUS_WITHIN_TOLERANCE);
 static_assert(static_cast<int>(Side::unsigned_distance) == TACTUS_UNSIGNED);

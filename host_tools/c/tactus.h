@@ -122,7 +122,7 @@ typedef struct tactus_tool
 {
     size_t size;
     int32_t shape;            /* tactus_shape */
-    int32_t passes_through;   /* Not 0: query-only, it measures at its position without forces. 0:
+    int32_t query_only;       /* Not 0: query-only, it measures at its position without forces. 0:
                                * surfaces stop it and cause forces. */
     double radius_m;          /* Radius, 1e-6 to 1, up to 1e3 if query-only. Distances within it are
                                * exact. */
@@ -133,11 +133,11 @@ typedef struct tactus_tool
     double torque_max_nm;     /* Limit of the torque's norm, 0 to 1e6. A sphere has no torque. */
     double speed_max_m_per_s; /* Proxy speed limit in contact, 1e-6 to 1e6: a faster device pose is
                                * followed at this speed. */
-    double smooth_m;          /* Width of force shading, 0 or 1e-4 to 0.1, for spheres only: facets
+    double shading_m;         /* Width of force shading, 0 or 1e-4 to 0.1, for spheres only: facets
                                * within it are felt as one smooth surface, which is within an
                                * eighth of it of the mesh. */
     int32_t wants_distance;   /* Not 0: distances become exact at any range too, over several frames
-                               * and after the needs of forces; BRACKET or DECIDED until then, or
+                               * and after the needs of forces; BOUNDED or SEPARATED until then, or
                                * if the memory does not suffice. */
 } tactus_tool;
 
@@ -208,18 +208,18 @@ TACTUS_CALL tactus_result tactus_frame_load(tactus_frame* frame, tactus_error* e
 
 /* Flags of a tool, for tactus_poses. */
 #define TACTUS_IN_CONTACT 1U
-#define TACTUS_FROZEN 2U     /* Proxy halted: nearby surface not loaded; force must fade. */
-#define TACTUS_SQUEEZED 4U   /* Over-constrained by objects; force must fade. */
-#define TACTUS_CROWDED 8U    /* Contact capacity exceeded. */
-#define TACTUS_HELD_BACK 16U /* Data-limited: proxy moved as far as the loaded surface. */
-#define TACTUS_OUTRUN 32U    /* An object within reach lags its pose; force must fade. */
+#define TACTUS_HALTED 2U            /* Proxy halted: nearby surface not loaded; force must fade. */
+#define TACTUS_OVER_CONSTRAINED 4U  /* Over-constrained by objects; force must fade. */
+#define TACTUS_CAPACITY_EXCEEDED 8U /* Contact capacity exceeded. */
+#define TACTUS_DATA_LIMITED 16U     /* Data-limited: proxy moved as far as the loaded surface. */
+#define TACTUS_RATE_LIMITED 32U     /* An object within reach lags its pose; force must fade. */
 
 typedef enum tactus_kind
 {
-    TACTUS_EXACT = 0,   /* lower_m and upper_m differ by rounding only. */
-    TACTUS_DECIDED = 1, /* Separated: proven to be out of contact. */
-    TACTUS_BRACKET = 2, /* Bounded below and above; contact undecided. */
-    TACTUS_STALE = 3,   /* Answer for an outdated pose. */
+    TACTUS_EXACT = 0,     /* lower_m and upper_m differ by rounding only. */
+    TACTUS_SEPARATED = 1, /* Separated: proven to be out of contact. */
+    TACTUS_BOUNDED = 2,   /* Bounded below and above; contact undecided. */
+    TACTUS_STALE = 3,     /* Answer for an outdated pose. */
     /* Exact for coarser faces, whose error is subtracted from lower_m. */
     TACTUS_WITHIN_TOLERANCE = 4
 } tactus_kind;
@@ -244,7 +244,7 @@ typedef struct tactus_poses
     double* nearest_m; /* N x T x J x 3: nearest points of the surface; NaN unless kind is
                         * TACTUS_EXACT or TACTUS_WITHIN_TOLERANCE. */
     uint32_t rounds;   /* Maximum number of frames for each pose, 1 to 10000, with loading between
-                        * them. They end early when the answers are exact (or DECIDED for a tool
+                        * them. They end early when the answers are exact (or SEPARATED for a tool
                         * without wants_distance), no tool waits for data, and all motion has
                         * ended. 0: one frame, no loading. */
 } tactus_poses;
@@ -259,8 +259,8 @@ TACTUS_CALL tactus_result tactus_frame_run(tactus_frame* frame, const tactus_pos
  * object, or may within 20 ms, the motion is rate-limited over several frames: no point of the
  * object in the tool's reach moves faster than object_speed_max_m_per_s, so a step of the pose
  * changes the force at most at the rate stiffness x speed. If the object is more than 20 ms of that
- * speed behind, a tool that may touch it in this frame has TACTUS_OUTRUN. Calls of this function
- * and of tactus_frame_feel(), and objects in motion, occupy up to 64 places for a frame;
+ * speed behind, a tool that may touch it in this frame has TACTUS_RATE_LIMITED. Calls of this
+ * function and of tactus_frame_feel(), and objects in motion, occupy up to 64 places for a frame;
  * TACTUS_BUSY beyond. Thread of tactus_frame_run(), also for tactus_frame_state_of(). */
 TACTUS_CALL tactus_result tactus_frame_place(tactus_frame* frame, uint32_t object,
                                              const tactus_pose* pose, tactus_error* error);

@@ -13,7 +13,7 @@
 namespace tactus
 {
 
-DecodedModel::DecodedModel(const ModelHeader& header, std::span<const FrontPage> pages)
+DecodedModel::DecodedModel(const ModelHeader& header, std::span<const RefinementStatePage> pages)
     : header_(header)
     , pages_(pages.size())
     , linked_(pages.size())
@@ -32,7 +32,7 @@ DecodedModel::DecodedModel(const ModelHeader& header, std::span<const FrontPage>
 DecodedModel DecodedModel::decode(const ModelStore& store, std::vector<std::string>& damage)
 {
     const ModelCounts counts = store.header().counts();
-    std::vector<FrontPage> pages;
+    std::vector<RefinementStatePage> pages;
     for (std::uint32_t chunk = 0; chunk < counts.chunks(); ++chunk)
     {
         const std::uint32_t records = records_in_chunk(counts, {chunk});
@@ -44,7 +44,8 @@ DecodedModel DecodedModel::decode(const ModelStore& store, std::vector<std::stri
         store.path().string(), damage);
 }
 
-DecodedModel DecodedModel::decode_pages(const ModelHeader& header, std::span<const FrontPage> pages,
+DecodedModel DecodedModel::decode_pages(const ModelHeader& header,
+                                        std::span<const RefinementStatePage> pages,
                                         const ReadPiece& read, const std::string& name,
                                         std::vector<std::string>& damage)
 {
@@ -57,7 +58,7 @@ DecodedModel DecodedModel::decode_pages(const ModelHeader& header, std::span<con
     return model;
 }
 
-void DecodedModel::parse_pieces(std::span<const FrontPage> pages, const ReadPiece& read,
+void DecodedModel::parse_pieces(std::span<const RefinementStatePage> pages, const ReadPiece& read,
                                 const std::string& name, std::vector<std::string>& damage)
 {
     std::vector<std::byte> coded;
@@ -87,7 +88,7 @@ void DecodedModel::parse_pieces(std::span<const FrontPage> pages, const ReadPiec
 
 /// Links all pages and reports the records that should be linked and cannot be. There is memory for
 /// all pages, so no record waits for others.
-void DecodedModel::link_all(std::span<const FrontPage> pages, const std::string& name,
+void DecodedModel::link_all(std::span<const RefinementStatePage> pages, const std::string& name,
                             std::vector<std::string>& damage)
 {
     struct alignas(Arena::kAlignment) Line

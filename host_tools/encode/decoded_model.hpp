@@ -32,7 +32,7 @@ public:
     /// Records that are not linked must not be accessed. `name` precedes lines of `damage`, as in
     /// decode().
     [[nodiscard]] static DecodedModel decode_pages(const ModelHeader& header,
-                                                   std::span<const FrontPage> pages,
+                                                   std::span<const RefinementStatePage> pages,
                                                    const ReadPiece& read, const std::string& name,
                                                    std::vector<std::string>& damage);
     /// Reads and parses every piece and checks its hash. Each damaged piece adds a line to `damage`
@@ -70,11 +70,11 @@ public:
     [[nodiscard]] std::uint64_t chunk_bytes() const noexcept { return chunk_bytes_; }
 
 private:
-    DecodedModel(const ModelHeader& header, std::span<const FrontPage> pages);
+    DecodedModel(const ModelHeader& header, std::span<const RefinementStatePage> pages);
 
-    void parse_pieces(std::span<const FrontPage> pages, const ReadPiece& read,
+    void parse_pieces(std::span<const RefinementStatePage> pages, const ReadPiece& read,
                       const std::string& name, std::vector<std::string>& damage);
-    void link_all(std::span<const FrontPage> pages, const std::string& name,
+    void link_all(std::span<const RefinementStatePage> pages, const std::string& name,
                   std::vector<std::string>& damage);
 
     ModelHeader header_;

@@ -16,8 +16,8 @@ namespace
 using GridPoint = std::array<std::int32_t, 3>;
 using Corners = std::array<std::uint32_t, 3>;
 
-/// Bound in whole quanta, plus one for the rounding of the test of a ball against the box. No bound
-/// of a real mesh approaches the maximum; it only keeps boxes inside 32 bits.
+/// Bound in whole quanta, plus one for the rounding of the test of a sphere against the box. No
+/// bound of a real mesh approaches the maximum; it only keeps boxes inside 32 bits.
 std::int32_t margin_of(ErrorCode error)
 {
     const double quanta = std::ceil(static_cast<double>(error_in_quanta(error))) + 1.0;

@@ -20,18 +20,18 @@ namespace tactus
 /// Regions of influence of records, and the vertices around each.
 struct Influence
 {
-    /// Boxes by ChunkId: a ball outside a chunk's box needs none of its records.
+    /// Boxes by ChunkId: a sphere outside a chunk's box needs none of its records.
     std::vector<QuantumBox> chunks;
     std::vector<StarRing> rings; ///< Rings by RecordId.
 };
 
 /// Computes the boxes in one sweep over the collapses in their order, finest first.
 ///
-/// A controller splits a record if a face of its fan, inflated by the face's bound, meets the ball,
-/// or if a dependent record is split. A record's box therefore covers its inflated fan, its star
-/// after the split, and the boxes of all its dependents. These were collapsed earlier, so their
-/// boxes are complete when the sweep reaches the record. Linear; 52 B a record and a copy of the
-/// mesh's faces.
+/// A controller splits a record if a face of its fan, inflated by the face's bound, meets the
+/// sphere, or if a dependent record is split. A record's box therefore covers its inflated fan, its
+/// star after the split, and the boxes of all its dependents. These were collapsed earlier, so
+/// their boxes are complete when the sweep reaches the record. Linear; 52 B a record and a copy of
+/// the mesh's faces.
 [[nodiscard]] Influence find_influence(const QuantisedMesh& mesh,
                                        const Simplification& simplification,
                                        const Numbering& numbering, const FaceHistory& history);

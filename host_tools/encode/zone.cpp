@@ -22,10 +22,10 @@ bool is_separated(const Triangle& triangle, const Vec3& half, const Vec3& direct
     return std::min({a, b, c}) > reach || std::max({a, b, c}) < -reach;
 }
 
-bool touches_zone(const BallZone& ball, const Triangle& triangle)
+bool touches_zone(const SphereZone& sphere, const Triangle& triangle)
 {
-    return closest_point_on_triangle(ball.center_m, triangle).distance_sq <=
-           ball.radius_m * ball.radius_m;
+    return closest_point_on_triangle(sphere.center_m, triangle).distance_sq <=
+           sphere.radius_m * sphere.radius_m;
 }
 
 /// Two convex bodies are apart if and only if a normal of a face of either, or a direction across
@@ -54,9 +54,9 @@ bool touches_zone(const BoxZone& box, const Triangle& triangle)
     return true;
 }
 
-Zone moved_zone(const BallZone& ball, const Vec3& origin_m, double margin_m)
+Zone moved_zone(const SphereZone& sphere, const Vec3& origin_m, double margin_m)
 {
-    return BallZone{ball.center_m - origin_m, ball.radius_m + margin_m};
+    return SphereZone{sphere.center_m - origin_m, sphere.radius_m + margin_m};
 }
 
 Zone moved_zone(const BoxZone& box, const Vec3& origin_m, double margin_m)

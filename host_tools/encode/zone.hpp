@@ -11,7 +11,7 @@
 namespace tactus
 {
 
-struct BallZone
+struct SphereZone
 {
     Vec3 center_m{0.0, 0.0, 0.0};
     double radius_m{0.0}; ///< Radius; 0 or more.
@@ -25,7 +25,7 @@ struct BoxZone
 
 /// A part of space that needs full resolution, boundary included; independent of the header's
 /// regions. The frame is the user's; values must be finite (unchecked).
-using Zone = std::variant<BallZone, BoxZone>;
+using Zone = std::variant<SphereZone, BoxZone>;
 
 /// The zone relative to `origin_m`, extended by `margin_m` >= 0 on every side.
 [[nodiscard]] Zone moved_and_grown(const Zone& zone, const Vec3& origin_m, double margin_m);

@@ -137,11 +137,11 @@ void read_pose(tactus_pose& pose, const py::object& rotation, const py::object& 
 // --- Set-up --------------------------------------------------------------------------------------
 
 tactus_tool make_tool(double radius_m, const std::string& shape, const py::object& half_m,
-                      bool passes_through, bool wants_distance,
+                      bool query_only, bool wants_distance,
                       const std::optional<double>& stiffness_n_per_m,
                       const std::optional<double>& force_max_n,
                       const std::optional<double>& torque_max_nm,
-                      const std::optional<double>& speed_max_m_per_s, double smooth_m)
+                      const std::optional<double>& speed_max_m_per_s, double shading_m)
 {
     tactus_tool tool;
     tactus_tool_default(&tool);
@@ -159,13 +159,13 @@ tactus_tool make_tool(double radius_m, const std::string& shape, const py::objec
         check_shape(half, {3}, "half_m");
         std::copy_n(half.data(), 3, tool.half_m);
     }
-    tool.passes_through = passes_through ? 1 : 0;
+    tool.query_only = query_only ? 1 : 0;
     tool.wants_distance = wants_distance ? 1 : 0;
     tool.stiffness_n_per_m = stiffness_n_per_m.value_or(tool.stiffness_n_per_m);
     tool.force_max_n = force_max_n.value_or(tool.force_max_n);
     tool.torque_max_nm = torque_max_nm.value_or(tool.torque_max_nm);
     tool.speed_max_m_per_s = speed_max_m_per_s.value_or(tool.speed_max_m_per_s);
-    tool.smooth_m = smooth_m;
+    tool.shading_m = shading_m;
     return tool;
 }
 
@@ -449,10 +449,10 @@ Units are SI; see docs/python.md.
 
 >>> import tactus
 >>> model = tactus.Model("torus.spm")
->>> probe = tactus.Tool(0.02, passes_through=True)
+>>> probe = tactus.Tool(0.02, query_only=True)
 >>> frame = tactus.Frame([model], [probe], [tactus.Object()])
 >>> answers = frame.run([[0.05, 0, 0.03], [0, 0, 0.2]], rounds=1000)
->>> [int(kind) for kind in answers.kind[:, 0]] == [tactus.EXACT, tactus.DECIDED]
+>>> [int(kind) for kind in answers.kind[:, 0]] == [tactus.EXACT, tactus.SEPARATED]
 True
 >>> round(float(answers.lower_m[0, 0]), 3)
 0.01
@@ -465,16 +465,16 @@ True
     py::register_exception<TactusError>(module, "Error", PyExc_RuntimeError);
 
     module.attr("EXACT") = static_cast<int>(TACTUS_EXACT);
-    module.attr("DECIDED") = static_cast<int>(TACTUS_DECIDED);
-    module.attr("BRACKET") = static_cast<int>(TACTUS_BRACKET);
+    module.attr("SEPARATED") = static_cast<int>(TACTUS_SEPARATED);
+    module.attr("BOUNDED") = static_cast<int>(TACTUS_BOUNDED);
     module.attr("STALE") = static_cast<int>(TACTUS_STALE);
     module.attr("WITHIN_TOLERANCE") = static_cast<int>(TACTUS_WITHIN_TOLERANCE);
     module.attr("IN_CONTACT") = TACTUS_IN_CONTACT;
-    module.attr("FROZEN") = TACTUS_FROZEN;
-    module.attr("SQUEEZED") = TACTUS_SQUEEZED;
-    module.attr("CROWDED") = TACTUS_CROWDED;
-    module.attr("OUTRUN") = TACTUS_OUTRUN;
-    module.attr("HELD_BACK") = TACTUS_HELD_BACK;
+    module.attr("HALTED") = TACTUS_HALTED;
+    module.attr("OVER_CONSTRAINED") = TACTUS_OVER_CONSTRAINED;
+    module.attr("CAPACITY_EXCEEDED") = TACTUS_CAPACITY_EXCEEDED;
+    module.attr("RATE_LIMITED") = TACTUS_RATE_LIMITED;
+    module.attr("DATA_LIMITED") = TACTUS_DATA_LIMITED;
 
     py::class_<Model, std::shared_ptr<Model>>(module, "Model",
                                               R"(An .spm model, for one Frame at a time.
@@ -519,16 +519,16 @@ True
              "Distances from N x 3 points, in the source's frame, to the surface.");
 
     py::class_<tactus_tool>(module, "Tool", R"(A tool: all points within radius_m of its core.
-The radius is 1e-6 to 1 m, up to 1000 m for a query-only tool (passes_through).
+The radius is 1e-6 to 1 m, up to 1000 m for a query-only tool (query_only).
 
->>> ball = tactus.Tool(0.002, stiffness_n_per_m=800)
+>>> sphere = tactus.Tool(0.002, stiffness_n_per_m=800)
 >>> pen = tactus.Tool(0.001, shape="capsule", half_m=[0, 0, 0.04])
 )")
         .def(py::init(&make_tool), "radius_m"_a, py::kw_only(), "shape"_a = "sphere",
-             "half_m"_a = py::none(), "passes_through"_a = false, "wants_distance"_a = false,
+             "half_m"_a = py::none(), "query_only"_a = false, "wants_distance"_a = false,
              "stiffness_n_per_m"_a = py::none(), "force_max_n"_a = py::none(),
              "torque_max_nm"_a = py::none(), "speed_max_m_per_s"_a = py::none(),
-             "smooth_m"_a = 0.0);
+             "shading_m"_a = 0.0);
 
     py::class_<tactus_object>(module, "Object", R"(A model with a pose in the world.
 Scale 0.001 to 1000, within 10,000 m; friction 0 to 3, the dynamic one at most the static one.
@@ -567,7 +567,7 @@ Scale 0.001 to 1000, within 10,000 m; friction 0 to 3, the dynamic one at most t
              "period_s"_a = 1e-3, "loads_whole"_a = false, "object_speed_max_m_per_s"_a = 0.5)
         .def("run", &Frame::run, "positions_m"_a, "rotations"_a = py::none(), "rounds"_a = 0,
              "Moves the tools through N poses, one frame each; with `rounds` up to that many, with "
-             "loading between, until the answers are exact, within tolerance or decided.")
+             "loading between, until the answers are exact, within tolerance or separated.")
         .def("load", &Frame::load, "Runs one round of loading.")
         .def("place", &Frame::place, "object"_a, py::kw_only(), "rotation"_a = py::none(),
              "translation_m"_a = py::none(), "scale"_a = 1.0,

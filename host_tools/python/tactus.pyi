@@ -9,16 +9,16 @@ from numpy.typing import ArrayLike, NDArray
 __version__: str
 
 EXACT: int
-DECIDED: int
-BRACKET: int
+SEPARATED: int
+BOUNDED: int
 STALE: int
 WITHIN_TOLERANCE: int
 IN_CONTACT: int
-FROZEN: int
-SQUEEZED: int
-CROWDED: int
-OUTRUN: int
-HELD_BACK: int
+HALTED: int
+OVER_CONSTRAINED: int
+CAPACITY_EXCEEDED: int
+RATE_LIMITED: int
+DATA_LIMITED: int
 UNSIGNED: int
 OUTSIDE: int
 INSIDE: int
@@ -60,10 +60,10 @@ class StaticModel:
 
 class Tool:
     def __init__(self, radius_m: float, *, shape: str = "sphere",
-                 half_m: Optional[ArrayLike] = None, passes_through: bool = False,
+                 half_m: Optional[ArrayLike] = None, query_only: bool = False,
                  wants_distance: bool = False, stiffness_n_per_m: Optional[float] = None,
                  force_max_n: Optional[float] = None, torque_max_nm: Optional[float] = None,
-                 speed_max_m_per_s: Optional[float] = None, smooth_m: float = 0.0) -> None: ...
+                 speed_max_m_per_s: Optional[float] = None, shading_m: float = 0.0) -> None: ...
 
 class Object:
     def __init__(self, model: int = 0, *, rotation: Optional[ArrayLike] = None,

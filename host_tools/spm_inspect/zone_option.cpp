@@ -16,21 +16,21 @@ namespace
 {
 
 constexpr NumberRange kAlong{-kMaxZoneCoordinate_m, kMaxZoneCoordinate_m, "m"};
-constexpr NumberRange kOfBall[] = {
+constexpr NumberRange kOfSphere[] = {
     kAlong, kAlong, kAlong, {kMinZoneRadius_m, kMaxZoneCoordinate_m, "m"}};
 constexpr NumberRange kOfBox[] = {kAlong, kAlong, kAlong, kAlong, kAlong, kAlong};
-constexpr NumberForm kBall{"sphere:x,y,z,r", kOfBall};
+constexpr NumberForm kSphere{"sphere:x,y,z,r", kOfSphere};
 constexpr NumberForm kBox{"box:x0,y0,z0,x1,y1,z1", kOfBox};
 
-Result<Zone, Refusal> parse_ball(std::string_view text)
+Result<Zone, Refusal> parse_sphere(std::string_view text)
 {
-    const auto numbers = read_numbers(text, kBall);
+    const auto numbers = read_numbers(text, kSphere);
     if (!numbers)
     {
         return numbers.error();
     }
     const std::vector<double>& n = numbers.value();
-    return Zone{BallZone{{n[0], n[1], n[2]}, n[3]}};
+    return Zone{SphereZone{{n[0], n[1], n[2]}, n[3]}};
 }
 
 Result<Zone, Refusal> parse_box(std::string_view text)
@@ -59,14 +59,14 @@ Result<Zone, Refusal> parse_zone(std::string_view text)
 {
     if (text.starts_with("sphere:"))
     {
-        return parse_ball(text);
+        return parse_sphere(text);
     }
     if (text.starts_with("box:"))
     {
         return parse_box(text);
     }
     return Refusal{
-        fmt::format("'{}' is neither {} nor {}", printable(text), kBall.text, kBox.text)};
+        fmt::format("'{}' is neither {} nor {}", printable(text), kSphere.text, kBox.text)};
 }
 
 } // namespace tactus

@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "host_tools/spm_publish/watch.hpp"
 
+#include "transport/base/counted.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,10 +23,10 @@ constexpr auto kWatchPeriod = std::chrono::seconds(1);
 std::string tool_text(const ToolTelemetry& tool)
 {
     const auto& n = tool.force_n;
-    const char* state = tool.frozen       ? " frozen"
-                        : tool.squeezed   ? " squeezed"
-                        : tool.in_contact ? " in contact"
-                                          : "";
+    const char* state = tool.halted             ? " halted"
+                        : tool.over_constrained ? " over-constrained"
+                        : tool.in_contact       ? " in contact"
+                                                : "";
     const auto& nm = tool.torque_nm;
     std::string text = fmt::format("; {:.2f} N", std::hypot(n[0], n[1], n[2]));
     if (const double torque_nm = std::hypot(nm[0], nm[1], nm[2]); torque_nm > 0.0)
@@ -91,11 +93,11 @@ std::string watch_line(const dds::WatchedController& controller)
     const Telemetry& telemetry = controller.telemetry;
     const double frames = static_cast<double>(std::max<std::uint64_t>(telemetry.frame, 1));
     const auto sure =
-        static_cast<double>(telemetry.exact + telemetry.decided + telemetry.within_tolerance);
+        static_cast<double>(telemetry.exact + telemetry.separated + telemetry.within_tolerance);
     std::string text =
-        fmt::format("watch {}: {} frames, {:.1f} % sure, {} stale, {} missed, {} own faults",
-                    controller.name, telemetry.frame, 100.0 * sure / frames, telemetry.stale,
-                    telemetry.missed, telemetry.own_faults);
+        fmt::format("watch {}: {} frames, {:.1f} % sure, {} stale, {} missed, {}", controller.name,
+                    telemetry.frame, 100.0 * sure / frames, telemetry.stale, telemetry.missed,
+                    counted(telemetry.overruns, "overrun"));
     for (std::size_t i = 0; i < telemetry.tool_count; ++i)
     {
         text += tool_text(telemetry.tools[i]);

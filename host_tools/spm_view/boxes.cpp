@@ -80,7 +80,8 @@ void add_boxes(const AbTree& tree, TreeRef ref, const Aabb& box, std::uint32_t l
 } // namespace
 
 Result<std::string, Refusal> tree_box_bytes(const DecodedModel& model,
-                                            std::span<const FrontPage> pages, std::uint32_t level)
+                                            std::span<const RefinementStatePage> pages,
+                                            std::uint32_t level)
 {
     Replay replay(model);
     if (auto refusal = split_all(replay, model, pages))
@@ -121,7 +122,7 @@ Result<std::string, Refusal> chunk_box_bytes(KnownModel& model, std::span<const 
     {
         if (chunk.value >= counts.chunks())
         {
-            return Refusal{"the front has a chunk that the model has not"};
+            return Refusal{"the refinement state has a chunk that the model has not"};
         }
         const ContentKey key{ContentKind::index_page, chunk.value >> kChunksPerIndexPageLog2};
         if (keys.empty() || keys.back() != key) // Keys ascend.
@@ -163,10 +164,10 @@ Result<std::string, Refusal> chunk_box_bytes(KnownModel& model, std::span<const 
     return bytes_of(boxes);
 }
 
-std::vector<ChunkId> chunks_of(std::span<const FrontPage> pages)
+std::vector<ChunkId> chunks_of(std::span<const RefinementStatePage> pages)
 {
     std::vector<ChunkId> chunks;
-    std::ranges::transform(pages, std::back_inserter(chunks), &FrontPage::chunk);
+    std::ranges::transform(pages, std::back_inserter(chunks), &RefinementStatePage::chunk);
     return chunks;
 }
 

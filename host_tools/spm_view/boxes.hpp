@@ -24,7 +24,8 @@ inline constexpr std::uint32_t kTreeLevelsMax = 24;
 /// The tree depends only on the faces, so it is built here from the same pages. Refused like
 /// cut_bytes().
 [[nodiscard]] Result<std::string, Refusal>
-tree_box_bytes(const DecodedModel& model, std::span<const FrontPage> pages, std::uint32_t level);
+tree_box_bytes(const DecodedModel& model, std::span<const RefinementStatePage> pages,
+               std::uint32_t level);
 
 /// Influence boxes of chunks, which must ascend: the regions in which a controller's resident or
 /// requested chunks are of use. Waits for index pages (KnownModel::bring). Refused if the chunks
@@ -32,6 +33,6 @@ tree_box_bytes(const DecodedModel& model, std::span<const FrontPage> pages, std:
 [[nodiscard]] Result<std::string, Refusal> chunk_box_bytes(KnownModel& model,
                                                            std::span<const ChunkId> chunks);
 /// Chunks of the pages.
-[[nodiscard]] std::vector<ChunkId> chunks_of(std::span<const FrontPage> pages);
+[[nodiscard]] std::vector<ChunkId> chunks_of(std::span<const RefinementStatePage> pages);
 
 } // namespace tactus::view

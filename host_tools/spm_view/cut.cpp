@@ -27,9 +27,10 @@ void append(std::string& bytes, const T& value)
 }
 
 /// Refuses pages with records that the model lacks.
-std::optional<Refusal> look_at(const ModelCounts& counts, std::span<const FrontPage> pages)
+std::optional<Refusal> look_at(const ModelCounts& counts,
+                               std::span<const RefinementStatePage> pages)
 {
-    for (const FrontPage& page : pages)
+    for (const RefinementStatePage& page : pages)
     {
         if (page.refined == 0)
         {
@@ -39,18 +40,20 @@ std::optional<Refusal> look_at(const ModelCounts& counts, std::span<const FrontP
         if (page.chunk.value >= counts.chunks() ||
             page.chunk.value * kRecordsPerChunk + last >= counts.records)
         {
-            return Refusal{fmt::format("the front has record {} of chunk {}, the model has not",
-                                       last, page.chunk.value)};
+            return Refusal{
+                fmt::format("the refinement state has record {} of chunk {}, the model has not",
+                            last, page.chunk.value)};
         }
     }
     return std::nullopt;
 }
 
 /// Split records in an order in which they can be split: by depth, then by number.
-std::vector<RecordId> split_records(const DecodedModel& model, std::span<const FrontPage> pages)
+std::vector<RecordId> split_records(const DecodedModel& model,
+                                    std::span<const RefinementStatePage> pages)
 {
     std::vector<RecordId> records;
-    for (const FrontPage& page : pages)
+    for (const RefinementStatePage& page : pages)
     {
         for (std::uint64_t bits = page.refined; bits != 0; bits &= bits - 1)
         {
@@ -99,7 +102,7 @@ std::vector<std::uint32_t> append_vertices(const DecodedModel& model, const Repl
 
 } // namespace
 
-std::uint64_t cut_id(std::span<const FrontPage> pages) noexcept
+std::uint64_t cut_id(std::span<const RefinementStatePage> pages) noexcept
 {
     std::uint64_t hash = 0xCBF2'9CE4'8422'2325U;
     const auto add = [&hash](std::uint64_t value)
@@ -109,7 +112,7 @@ std::uint64_t cut_id(std::span<const FrontPage> pages) noexcept
             hash = (hash ^ ((value >> shift) & 0xFFU)) * 0x0000'0100'0000'01B3U;
         }
     };
-    for (const FrontPage& page : pages)
+    for (const RefinementStatePage& page : pages)
     {
         if (page.refined != 0)
         {
@@ -120,16 +123,16 @@ std::uint64_t cut_id(std::span<const FrontPage> pages) noexcept
     return hash;
 }
 
-Result<DecodedModel, Refusal> decode_cut(KnownModel& model, std::span<const FrontPage> pages,
-                                         bool whole)
+Result<DecodedModel, Refusal> decode_cut(KnownModel& model,
+                                         std::span<const RefinementStatePage> pages, bool whole)
 {
     if (auto refusal = look_at(model.header().counts(), pages))
     {
         return *refusal;
     }
-    std::vector<FrontPage> needed;
+    std::vector<RefinementStatePage> needed;
     std::vector<ContentKey> keys;
-    for (const FrontPage& page : pages)
+    for (const RefinementStatePage& page : pages)
     {
         if (page.refined != 0)
         {
@@ -154,7 +157,7 @@ Result<DecodedModel, Refusal> decode_cut(KnownModel& model, std::span<const Fron
 }
 
 std::optional<Refusal> split_all(Replay& replay, const DecodedModel& model,
-                                 std::span<const FrontPage> pages)
+                                 std::span<const RefinementStatePage> pages)
 {
     if (auto refusal = look_at(model.header().counts(), pages))
     {
@@ -164,16 +167,17 @@ std::optional<Refusal> split_all(Replay& replay, const DecodedModel& model,
     {
         if (const auto fault = replay.split(id))
         {
-            return Refusal{"the front contradicts the model: " + *fault};
+            return Refusal{"the refinement state contradicts the model: " + *fault};
         }
     }
     return std::nullopt;
 }
 
-std::vector<FrontPage> splittable_part(const DecodedModel& model, std::span<const FrontPage> pages)
+std::vector<RefinementStatePage> splittable_part(const DecodedModel& model,
+                                                 std::span<const RefinementStatePage> pages)
 {
-    std::vector<FrontPage> linked(pages.begin(), pages.end());
-    std::vector<FrontPage> part = linked;
+    std::vector<RefinementStatePage> linked(pages.begin(), pages.end());
+    std::vector<RefinementStatePage> part = linked;
     for (std::size_t i = 0; i < part.size(); ++i)
     {
         linked[i].refined =
@@ -185,14 +189,16 @@ std::vector<FrontPage> splittable_part(const DecodedModel& model, std::span<cons
     {
         if (!replay.split(id))
         {
-            const auto page = std::ranges::lower_bound(part, chunk_of(id), {}, &FrontPage::chunk);
+            const auto page =
+                std::ranges::lower_bound(part, chunk_of(id), {}, &RefinementStatePage::chunk);
             page->refined |= std::uint64_t{1} << place_in_chunk(id);
         }
     }
     return part;
 }
 
-Result<std::string, Refusal> cut_bytes(const DecodedModel& model, std::span<const FrontPage> pages)
+Result<std::string, Refusal> cut_bytes(const DecodedModel& model,
+                                       std::span<const RefinementStatePage> pages)
 {
     Replay replay(model);
     if (auto refusal = split_all(replay, model, pages))

@@ -4,7 +4,7 @@
 
 #include "platform/recording/replay.hpp"
 #include "transport/content_hash.hpp"
-#include "transport/told_frame.hpp"
+#include "transport/telemetry_from_frame.hpp"
 
 #include <fmt/format.h>
 
@@ -163,10 +163,10 @@ std::uint64_t hash_of(const std::vector<SceneChange>& changes)
     return fold.value();
 }
 
-std::uint64_t hash_of(const std::vector<DoorEvent>& events)
+std::uint64_t hash_of(const std::vector<QueueEvent>& events)
 {
     Fold fold;
-    for (const DoorEvent& event : events)
+    for (const QueueEvent& event : events)
     {
         fold.add(static_cast<std::uint8_t>(event.kind));
         fold.add(event.owner);
@@ -228,10 +228,11 @@ struct Film::Maker
     }
 
 private:
-    /// Worst kind in the order of hrtc's counts: decided, exact, within tolerance, bracket, stale.
+    /// Worst kind in the order of hrtc's counts: separated, exact, within tolerance, bounded,
+    /// stale.
     static AnswerKind worst_of(std::span<const PairOutput> pairs)
     {
-        constexpr std::array order{AnswerKind::stale, AnswerKind::bracket,
+        constexpr std::array order{AnswerKind::stale, AnswerKind::bounded,
                                    AnswerKind::within_tolerance, AnswerKind::exact};
         for (const AnswerKind kind : order)
         {
@@ -240,7 +241,7 @@ private:
                 return kind;
             }
         }
-        return AnswerKind::decided;
+        return AnswerKind::separated;
     }
 
     /// Records pages that are removed first, since another slot may have the same chunk now.
@@ -287,7 +288,7 @@ private:
     {
         const Object& object = frame->objects()[which];
         std::optional<SeenObject> seen;
-        if (object.is_here)
+        if (object.is_resident)
         {
             const std::uint32_t model = object.spec.model.value;
             seen =
@@ -362,7 +363,7 @@ std::span<const PairTelemetry> Film::pairs(std::uint64_t frame) const
     return std::span(pairs_).subspan(begin, moments_[frame].pairs_end - begin);
 }
 
-std::span<const FrontRegion> Film::regions(std::uint64_t frame) const
+std::span<const RefinementStateRegion> Film::regions(std::uint64_t frame) const
 {
     const std::uint32_t begin = frame == 0 ? 0 : moments_[frame - 1].regions_end;
     return std::span(regions_).subspan(begin, moments_[frame].regions_end - begin);
@@ -382,8 +383,8 @@ LiveController Film::at(std::uint64_t frame) const
     telemetry.period_ns = period_ns_;
     telemetry.time_ns = moment.time_ns;
     telemetry.exact = moment.answers[static_cast<std::size_t>(AnswerKind::exact)];
-    telemetry.decided = moment.answers[static_cast<std::size_t>(AnswerKind::decided)];
-    telemetry.bracket = moment.answers[static_cast<std::size_t>(AnswerKind::bracket)];
+    telemetry.separated = moment.answers[static_cast<std::size_t>(AnswerKind::separated)];
+    telemetry.bounded = moment.answers[static_cast<std::size_t>(AnswerKind::bounded)];
     telemetry.stale = moment.answers[static_cast<std::size_t>(AnswerKind::stale)];
     telemetry.within_tolerance =
         moment.answers[static_cast<std::size_t>(AnswerKind::within_tolerance)];

@@ -82,7 +82,7 @@ private:
         std::uint32_t faults_seen{0};
         std::uint32_t pairs_end{0};
         std::uint32_t regions_end{0};
-        AnswerKind kind{AnswerKind::decided};
+        AnswerKind kind{AnswerKind::separated};
     };
     /// Split records of a page; none while it is not resident.
     using Page = std::optional<std::uint64_t>;
@@ -101,7 +101,7 @@ private:
 
     [[nodiscard]] std::span<const ToolTelemetry> tools(std::uint64_t frame) const;
     [[nodiscard]] std::span<const PairTelemetry> pairs(std::uint64_t frame) const;
-    [[nodiscard]] std::span<const FrontRegion> regions(std::uint64_t frame) const;
+    [[nodiscard]] std::span<const RefinementStateRegion> regions(std::uint64_t frame) const;
     void add_models(std::uint64_t frame, LiveController& controller) const;
 
     dds::ControllerId id_{};
@@ -109,12 +109,13 @@ private:
     std::string note_;
     std::int64_t period_ns_{1};
     std::size_t tool_count_{0};
-    std::vector<FrontTool> shapes_;     ///< Shapes by tool.
-    std::vector<ModelIdentity> models_; ///< Identities by model.
-    std::vector<Moment> moments_;       ///< Moments by frame.
-    std::vector<ToolTelemetry> tools_;  ///< Tools by frame, tool_count_ each.
-    std::vector<PairTelemetry> pairs_;  ///< Pairs; those of a moment end at its pairs_end.
-    std::vector<FrontRegion> regions_;  ///< Regions; those of a moment end at its regions_end.
+    std::vector<RefinementStateTool> shapes_; ///< Shapes by tool.
+    std::vector<ModelIdentity> models_;       ///< Identities by model.
+    std::vector<Moment> moments_;             ///< Moments by frame.
+    std::vector<ToolTelemetry> tools_;        ///< Tools by frame, tool_count_ each.
+    std::vector<PairTelemetry> pairs_;        ///< Pairs; those of a moment end at its pairs_end.
+    std::vector<RefinementStateRegion>
+        regions_; ///< Regions; those of a moment end at its regions_end.
     Timeline<Budgets, SameBudgets> budgets_;
     std::vector<Timeline<ModelTelemetry>> model_states_; ///< States by model.
     std::map<PageName, Timeline<Page>> pages_;

@@ -57,7 +57,7 @@ std::string why_of(std::size_t cause, std::span<const ModelTelemetry> models)
 
 } // namespace
 
-std::string force_words(const FrontTool& tool, const ToolTelemetry& telemetry,
+std::string force_words(const RefinementStateTool& tool, const ToolTelemetry& telemetry,
                         std::span<const ModelTelemetry> models)
 {
     std::string words;

@@ -13,15 +13,16 @@ namespace tactus::view
 namespace
 {
 
-std::size_t bytes_of(const Front& front)
+std::size_t bytes_of(const RefinementState& front)
 {
-    std::size_t bytes = sizeof(dds::SeenFront) + front.objects.size() * sizeof(FrontObject) +
-                        front.tools.size() * sizeof(FrontTool) +
-                        front.regions.size() * sizeof(FrontRegion);
-    for (const FrontModel& model : front.models)
+    std::size_t bytes = sizeof(dds::SeenFront) +
+                        front.objects.size() * sizeof(RefinementStateObject) +
+                        front.tools.size() * sizeof(RefinementStateTool) +
+                        front.regions.size() * sizeof(RefinementStateRegion);
+    for (const RefinementStateModel& model : front.models)
     {
-        bytes += sizeof(model) + model.pages.size() * sizeof(FrontPage) +
-                 model.wished.size() * sizeof(ChunkId);
+        bytes += sizeof(model) + model.pages.size() * sizeof(RefinementStatePage) +
+                 model.requested.size() * sizeof(ChunkId);
     }
     return bytes;
 }
@@ -108,11 +109,11 @@ void LiveState::keep(const dds::SeenFront& front)
 
 /// Updates the objects. An object in the listed range of numbers that the refinement state lacks
 /// was removed.
-void LiveState::add_objects(Kept& kept, const Front& front)
+void LiveState::add_objects(Kept& kept, const RefinementState& front)
 {
     kept.objects.erase(kept.objects.lower_bound(front.sweep_begin),
                        kept.objects.lower_bound(front.sweep_end));
-    for (const FrontObject& object : front.objects)
+    for (const RefinementStateObject& object : front.objects)
     {
         kept.objects[object.number] = {object, front.models[object.model].hash};
     }

@@ -25,7 +25,7 @@ using FrontPointer = std::shared_ptr<const dds::SeenFront>;
 /// An object and its last known pose.
 struct SeenObject
 {
-    FrontObject object;
+    RefinementStateObject object;
     ContentHash model{};
     std::string name{}; ///< Name in a recording; may be empty.
 
@@ -84,7 +84,7 @@ private:
         std::map<std::uint32_t, SeenObject> objects;
     };
 
-    static void add_objects(Kept& kept, const Front& front);
+    static void add_objects(Kept& kept, const RefinementState& front);
     /// True if the controllers or their data changed since the last snapshot.
     [[nodiscard]] bool is_news(const std::vector<dds::WatchedController>& told,
                                const std::vector<dds::SeenFront>& fronts) const;

@@ -59,7 +59,7 @@ private:
 struct Ears
 {
     std::unique_ptr<dds::TelemetryReader> telemetry;
-    std::unique_ptr<dds::FrontReader> fronts;
+    std::unique_ptr<dds::RefinementStateReader> fronts;
     std::unique_ptr<ModelFetcher> models; ///< Null if requests to servers are not possible.
 };
 
@@ -69,7 +69,7 @@ void look(Ears& ears, LiveState& live)
     ears.fronts->poll();
     for (const dds::SeenFront& seen : ears.fronts->fronts())
     {
-        for (const FrontModel& model : seen.front.models)
+        for (const RefinementStateModel& model : seen.front.models)
         {
             if (ears.models != nullptr)
             {
@@ -104,7 +104,7 @@ void watch(Ears& ears, LiveState& live, const Stay& stay)
 Result<Ears, Refusal> listen(const dds::Domain& domain, ModelShelf& shelf)
 {
     auto telemetry = dds::TelemetryReader::create(domain);
-    auto fronts = dds::FrontReader::create(domain);
+    auto fronts = dds::RefinementStateReader::create(domain);
     auto models = ModelFetcher::create(domain, shelf,
                                        [](const std::string& text)
                                        { log_message(LogLevel::warning, "spm_view", text); });

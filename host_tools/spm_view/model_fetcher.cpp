@@ -70,12 +70,12 @@ public:
         {
             want(key);
         }
-        const auto is_here = [&](ContentKey key) { return pieces_.contains(key); };
-        if (came_.wait_for(lock, kPatience, [&] { return std::ranges::all_of(keys, is_here); }))
+        const auto is_resident = [&](ContentKey key) { return pieces_.contains(key); };
+        if (came_.wait_for(lock, kPatience, [&] { return std::ranges::all_of(keys, is_resident); }))
         {
             return std::nullopt;
         }
-        const auto here = std::ranges::count_if(keys, is_here);
+        const auto here = std::ranges::count_if(keys, is_resident);
         return Refusal{fmt::format("{} of {} pieces of the model {} have come from its host{}",
                                    here, keys.size(), served_.name,
                                    is_gone_ ? ", which is gone" : "; the others are on their way")};

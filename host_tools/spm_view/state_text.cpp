@@ -27,7 +27,7 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array kKindNames{"exact", "decided", "bracket", "stale", "within_tolerance"};
+constexpr std::array kKindNames{"exact", "separated", "bounded", "stale", "within_tolerance"};
 
 /// Names of FrontTimes, the stages first.
 const char* time_name(std::size_t i)
@@ -66,9 +66,9 @@ Json tool_json(const LiveController& controller, std::size_t i)
               {"force_n", tool.force_n},
               {"torque_nm", tool.torque_nm},
               {"in_contact", tool.in_contact},
-              {"frozen", tool.frozen},
-              {"squeezed", tool.squeezed},
-              {"held_back", tool.held_back},
+              {"halted", tool.halted},
+              {"over_constrained", tool.over_constrained},
+              {"data_limited", tool.data_limited},
               {"buttons", tool.buttons},
               {"words", nullptr},
               {"state", nullptr},
@@ -76,7 +76,7 @@ Json tool_json(const LiveController& controller, std::size_t i)
               {"radius_m", nullptr}};
     if (controller.front != nullptr && i < controller.front->front.tools.size())
     {
-        const FrontTool& front = controller.front->front.tools[i];
+        const RefinementStateTool& front = controller.front->front.tools[i];
         if (!controller.is_recorded)
         {
             json["state"] = kSafetyStateNames[static_cast<std::size_t>(front.state)];
@@ -126,33 +126,33 @@ Json models_json(const dds::WatchedController& told)
     return models;
 }
 
-Json cuts_json(const Front& front, const ModelShelf& shelf)
+Json cuts_json(const RefinementState& front, const ModelShelf& shelf)
 {
     Json cuts = Json::array();
-    for (const FrontModel& model : front.models)
+    for (const RefinementStateModel& model : front.models)
     {
         int refined = 0;
-        for (const FrontPage& page : model.pages)
+        for (const RefinementStatePage& page : model.pages)
         {
             refined += std::popcount(page.refined);
         }
         cuts.push_back({{"hash", hash_text(model.hash)},
-                        {"is_here", shelf.has(model.hash)},
+                        {"is_resident", shelf.has(model.hash)},
                         {"cut", fmt::format("{:016x}", cut_id(model.pages))},
                         {"pages", model.pages.size()},
                         {"refined", refined},
-                        {"wished", model.wished.size()}});
+                        {"requested", model.requested.size()}});
     }
     return cuts;
 }
 
-Json regions_json(const Front& front)
+Json regions_json(const RefinementState& front)
 {
     Json regions = Json::array();
-    for (const FrontRegion& region : front.regions)
+    for (const RefinementStateRegion& region : front.regions)
     {
         regions.push_back({{"model", hash_text(front.models[region.model].hash)},
-                           {"is_foretold", region.is_foretold},
+                           {"is_predicted", region.is_predicted},
                            {"center_m", region.center_m},
                            {"radius_m", region.radius_m}});
     }
@@ -176,13 +176,13 @@ Json objects_json(const LiveController& controller)
     return objects;
 }
 
-Json front_json(const LiveController& controller, const ModelShelf& shelf)
+Json refinement_state_json(const LiveController& controller, const ModelShelf& shelf)
 {
     if (controller.front == nullptr)
     {
         return nullptr;
     }
-    const Front& front = controller.front->front;
+    const RefinementState& front = controller.front->front;
     Json times = nullptr;
     for (std::size_t i = 0; i < kFrontTimes && !controller.is_recorded; ++i)
     {
@@ -208,8 +208,8 @@ Json front_json(const LiveController& controller, const ModelShelf& shelf)
 Json deadlines_json(const Telemetry& telemetry)
 {
     return {{"missed", telemetry.missed},
-            {"own_faults", telemetry.own_faults},
-            {"machine_late", telemetry.machine_late}};
+            {"overruns", telemetry.overruns},
+            {"latency_misses", telemetry.latency_misses}};
 }
 
 Json controller_json(const LiveController& controller, const ModelShelf& shelf)
@@ -228,8 +228,8 @@ Json controller_json(const LiveController& controller, const ModelShelf& shelf)
             {"period_us", static_cast<double>(telemetry.period_ns) * 1e-3},
             {"answers",
              {{"exact", telemetry.exact},
-              {"decided", telemetry.decided},
-              {"bracket", telemetry.bracket},
+              {"separated", telemetry.separated},
+              {"bounded", telemetry.bounded},
               {"stale", telemetry.stale},
               {"within_tolerance", telemetry.within_tolerance}}},
             {"deadlines", controller.is_recorded ? Json(nullptr) : deadlines_json(telemetry)},
@@ -238,7 +238,7 @@ Json controller_json(const LiveController& controller, const ModelShelf& shelf)
             {"tools", tools},
             {"pairs", pairs_json(telemetry)},
             {"models", models_json(controller.told)},
-            {"front", front_json(controller, shelf)}};
+            {"front", refinement_state_json(controller, shelf)}};
 }
 
 /// Reason why nothing is visible; empty if there is none.
@@ -256,11 +256,12 @@ std::string waits_for(const LiveController* controller, const ModelShelf& shelf,
     }
     if (controller->front == nullptr)
     {
-        return fmt::format("{} to tell what it has refined: it runs with --no-front or is older "
-                           "than this viewer",
-                           controller->told.name);
+        return fmt::format(
+            "{} to tell what it has refined: it runs with --no-refinement-state or is older "
+            "than this viewer",
+            controller->told.name);
     }
-    for (const FrontModel& model : controller->front->front.models)
+    for (const RefinementStateModel& model : controller->front->front.models)
     {
         if (!shelf.has(model.hash))
         {

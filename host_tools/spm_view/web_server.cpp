@@ -54,15 +54,15 @@ constexpr std::size_t kKeptAnswers = 16;
 /// Result of `tell` for the cut of the model in the refinement state, or for the part of it that
 /// can be shown.
 template <typename Tell>
-Result<std::string, Refusal> with_cut(KnownModel& model, const FrontModel& front, bool is_whole,
-                                      const Tell& tell)
+Result<std::string, Refusal> with_cut(KnownModel& model, const RefinementStateModel& front,
+                                      bool is_whole, const Tell& tell)
 {
     const auto decoded = decode_cut(model, front.pages, is_whole);
     if (!decoded)
     {
         return decoded.error();
     }
-    return is_whole ? tell(decoded.value(), std::span<const FrontPage>(front.pages))
+    return is_whole ? tell(decoded.value(), std::span<const RefinementStatePage>(front.pages))
                     : tell(decoded.value(), splittable_part(decoded.value(), front.pages));
 }
 
@@ -103,8 +103,8 @@ struct WebServer::Inside
     bool send_next(httplib::DataSink& sink, const std::string& chosen, std::uint64_t& seen);
     /// Builder of an answer about one model of a refinement state; `what` in send_built() names its
     /// kind. `is_whole`: the state has all pages of the controller.
-    using Build =
-        std::function<Result<std::string, Refusal>(KnownModel&, const FrontModel&, bool is_whole)>;
+    using Build = std::function<Result<std::string, Refusal>(
+        KnownModel&, const RefinementStateModel&, bool is_whole)>;
     void send_built(const httplib::Request& request, httplib::Response& response,
                     const std::string& what, const Build& build);
     [[nodiscard]] Result<std::shared_ptr<const std::string>, Refusal>
@@ -171,38 +171,39 @@ void WebServer::Inside::declare_answers()
     server.Get("/front",
                [this](const Request& request, Response& response)
                {
-                   send_built(request, response, "faces",
-                              [](KnownModel& model, const FrontModel& front, bool is_whole)
-                              { return with_cut(model, front, is_whole, &cut_bytes); });
+                   send_built(
+                       request, response, "faces",
+                       [](KnownModel& model, const RefinementStateModel& front, bool is_whole)
+                       { return with_cut(model, front, is_whole, &cut_bytes); });
                });
     server.Get("/loaded",
                [this](const Request& request, Response& response)
                {
                    send_built(request, response, "loaded",
-                              [](KnownModel& model, const FrontModel& front, bool)
+                              [](KnownModel& model, const RefinementStateModel& front, bool)
                               { return chunk_box_bytes(model, chunks_of(front.pages)); });
                });
-    server.Get("/wished",
+    server.Get("/requested",
                [this](const Request& request, Response& response)
                {
-                   send_built(request, response, "wished",
-                              [](KnownModel& model, const FrontModel& front, bool)
-                              { return chunk_box_bytes(model, front.wished); });
+                   send_built(request, response, "requested",
+                              [](KnownModel& model, const RefinementStateModel& front, bool)
+                              { return chunk_box_bytes(model, front.requested); });
                });
     server.Get("/boxes",
                [this](const Request& request, Response& response)
                {
                    const auto level =
                        number_in<std::uint32_t>(request.get_param_value("level")).value_or(0);
-                   send_built(request, response, fmt::format("boxes{}", level),
-                              [level](KnownModel& model, const FrontModel& front, bool is_whole)
-                              {
-                                  return with_cut(model, front, is_whole,
-                                                  [level](const DecodedModel& decoded,
-                                                          std::span<const FrontPage> pages) {
-                                                      return tree_box_bytes(decoded, pages, level);
-                                                  });
-                              });
+                   send_built(
+                       request, response, fmt::format("boxes{}", level),
+                       [level](KnownModel& model, const RefinementStateModel& front, bool is_whole)
+                       {
+                           return with_cut(model, front, is_whole,
+                                           [level](const DecodedModel& decoded,
+                                                   std::span<const RefinementStatePage> pages)
+                                           { return tree_box_bytes(decoded, pages, level); });
+                       });
                });
 }
 
@@ -309,16 +310,18 @@ void WebServer::Inside::send_built(const httplib::Request& request, httplib::Res
     if (seen == nullptr || model == nullptr)
     {
         answer(response, 404,
-               seen == nullptr ? "this front isn't kept any more" : "the model isn't here");
+               seen == nullptr ? "this refinement state isn't kept any more"
+                               : "the model isn't here");
         return;
     }
-    const auto found = std::ranges::find(seen->front.models, *hash, &FrontModel::hash);
-    const FrontModel front = found == seen->front.models.end() ? FrontModel{*hash, {}, {}} : *found;
+    const auto found = std::ranges::find(seen->front.models, *hash, &RefinementStateModel::hash);
+    const RefinementStateModel front =
+        found == seen->front.models.end() ? RefinementStateModel{*hash, {}, {}} : *found;
     // Boxes of chunks depend on the chunks, split or not.
     std::uint64_t chunks = 0xCBF2'9CE4'8422'2325U;
-    for (const ChunkId chunk : what == "loaded"   ? chunks_of(front.pages)
-                               : what == "wished" ? front.wished
-                                                  : std::vector<ChunkId>{})
+    for (const ChunkId chunk : what == "loaded"      ? chunks_of(front.pages)
+                               : what == "requested" ? front.requested
+                                                     : std::vector<ChunkId>{})
     {
         chunks = (chunks ^ chunk.value) * 0x0000'0100'0000'01B3U;
     }

@@ -242,7 +242,7 @@ Result<std::unique_ptr<HapticDevice>, Refusal> open_device(const DeviceChoice& c
         UdpDeviceOptions options;
         options.address = choice.address;
         options.port = choice.port;
-        options.seal = choice.seal.get();
+        options.authenticator = choice.authenticator.get();
         options.wait = wait.most;
         options.goes_on = [asked = 0, told = wait.goes_on, choice]() mutable
         {

@@ -36,15 +36,15 @@ enum class DeviceKind : std::uint8_t
 struct DeviceChoice
 {
     DeviceKind kind{DeviceKind::simulated};
-    DeviceLimits limits{kDeskClass};                 ///< Of the simulated and of dhd.
-    std::string address{UdpDeviceOptions{}.address}; ///< Of udp.
-    int port{UdpDeviceOptions::kPortDefault};        ///< Of udp.
-    std::shared_ptr<const udp::Seal> seal;           ///< Of udp; null without --device-key.
-    int index{0};                                    ///< Of dhd.
-    std::string recording;                           ///< Of replay: the file.
-    std::string library;                             ///< Of plugin: the file,
-    std::string words;                               ///< and what is for its device.
-    Similarity frame;                                ///< Device coordinates in the world.
+    DeviceLimits limits{kDeskClass};                         ///< Limits of simulated and dhd.
+    std::string address{UdpDeviceOptions{}.address};         ///< Address of udp.
+    int port{UdpDeviceOptions::kPortDefault};                ///< Port of udp.
+    std::shared_ptr<const udp::Authenticator> authenticator; ///< Null without --device-key.
+    int index{0};                                            ///< Number of dhd's device.
+    std::string recording;                                   ///< File of replay.
+    std::string library;                                     ///< File of plugin.
+    std::string words;                                       ///< Words for the plugin's device.
+    Similarity frame;                                        ///< Device coordinates in the world.
 };
 
 /// One of the forms that --help shows.

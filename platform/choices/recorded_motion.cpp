@@ -27,7 +27,7 @@ std::optional<std::array<double, 3>> to_array(const std::optional<Vec3>& v)
 /// What the device said. A rotation that was none is none again.
 DeviceSample reading_of(const ToolState& state, const DeviceRecord& device)
 {
-    const HandPlace hand = device.hand.value_or(HandPlace{state.position_m, state.rotation});
+    const DevicePose hand = device.hand.value_or(DevicePose{state.position_m, state.rotation});
     DeviceSample reading;
     reading.position_world_m = tactus::to_array(hand.position_m);
     reading.velocity_world_m_per_s = to_array(device.velocity_m_per_s);
@@ -65,8 +65,8 @@ Result<ReplayDeviceOptions, Refusal> read_recorded_motion(const std::string& pat
     ReplayDeviceOptions options;
     options.rate_hz = std::llround(1e9 / static_cast<double>(setup.period_ns));
     options.limits.force_max_n = setup.tools[played].force_max_n;
-    options.limits.turn = kDeskTurn;
-    options.limits.turn.torque_max_nm = setup.tools[played].torque_max_nm;
+    options.limits.rotation = kDeskTurn;
+    options.limits.rotation.torque_max_nm = setup.tools[played].torque_max_nm;
     options.readings.reserve(recording.value().frame_count());
     FrameDecoder decoder(recording.value().shape());
     for (ByteReader reader(recording.value().frames()); !reader.at_end();)

@@ -4,11 +4,11 @@
 
 #include "platform/choices/device_choice.hpp"
 #include "platform/choices/file_readers.hpp"
-#include "platform/choices/guide.hpp"
+#include "platform/choices/fixture.hpp"
 #include "platform/choices/placement.hpp"
 #include "platform/choices/scene_materials.hpp"
 #include "platform/choices/tool_choice.hpp"
-#include "platform/devices/simulated/hand_motions.hpp"
+#include "platform/devices/simulated/operator_motions.hpp"
 #include "platform/machine/rt_thread.hpp"
 #include "rt_core/kernels/kernels.hpp"
 #include "rt_core/records/frame_input.hpp"
@@ -31,8 +31,8 @@ enum class TransportKind : std::uint8_t
     file,
 };
 
-/// What a simulated hand does, and on what.
-struct HandChoice
+/// What a simulated operator does, and on what.
+struct OperatorChoice
 {
     MotionKind motion{MotionKind::script};
     std::string object; ///< Its name, or its model's; empty: each hand has another object.
@@ -43,9 +43,9 @@ struct ToolOptions
 {
     std::optional<ToolChoice> shape; ///< None: default_tool().
     ToolLoad load;                   ///< What hangs on the device.
-    std::optional<GuideChoice> guide;
+    std::optional<FixtureChoice> fixture;
     DeviceChoice device;
-    HandChoice hand; ///< On a simulated device.
+    OperatorChoice hand; ///< Operator of a simulated device.
 
     /// ToolChoice's; empty: it is no mesh.
     [[nodiscard]] std::string mesh_model() const
@@ -74,8 +74,8 @@ struct Options
     std::string name;         ///< Of the controller, with DDS; empty: hrtc-PID.
     Failover failover;        ///< With DDS.
     bool follows_poses{true}; ///< Objects move as the hosts say.
-    bool shows_front{true};   ///< With DDS: tells which records are split.
-    double wait_s{10.0};      ///< For a model that nobody publishes yet, or a device.
+    bool shows_refinement_state{true}; ///< With DDS: tells which records are split.
+    double wait_s{10.0};               ///< For a model that nobody publishes yet, or a device.
     std::int64_t rate_hz{1'000};
     double duration_s{10.0};
     std::vector<std::string> report_paths;
@@ -94,15 +94,15 @@ struct Options
     const Kernels* kernels{nullptr}; ///< Of the queries; null: the best of the processor.
     double stiffness_n_per_m{500.0};
     double angular_stiffness_nm_per_rad{0.0}; ///< 0: as the stiffness and the tool's size make it.
-    double smooth_m{0.0};                     ///< 0: facets are felt.
+    double shading_m{0.0};                    ///< 0: facets are felt.
     double force_tolerance_n{kForceToleranceUsual_n}; ///< FrameSetup's.
     std::optional<double> speed_limit_m_per_s;        ///< None: the device's own.
-    double object_speed_m_per_s{0.5};                 ///< Believed of an object near a tool.
+    double object_speed_m_per_s{0.5};                 ///< Speed limit near a tool.
     std::optional<std::uint32_t> clutch_button;       ///< A button, the same on every device.
     /// Of a silent loop, until the supervisor brakes. None: as the kernel can promise.
     std::optional<std::uint32_t> supervisor_periods;
     /// None: one diagonal of the first model a second.
-    std::optional<double> follow_speed_m_per_s;
+    std::optional<double> proxy_speed_m_per_s;
     double slew_share_per_ms{kSlewShare_per_ms}; ///< ChangeRule's.
     bool trap_system_calls{false};
     bool virtual_time{false}; ///< See LoopTime; with files and hands that the program moves alone.

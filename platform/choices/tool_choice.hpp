@@ -45,12 +45,13 @@ struct ToolChoice
 /// objects show are known. Returns why a tool can't be had.
 [[nodiscard]] std::optional<Refusal> take_tool_files(Options& options);
 
-/// A ball of so many metres round the tool's origin holds the tool. `mesh`: of a tool that is one.
+/// A sphere of so many metres round the tool's origin holds the tool. `mesh`: of a tool that is
+/// one.
 [[nodiscard]] double reach_m(const ToolChoice& tool, const ModelHeader* mesh);
 
-/// How far from a surface a simulated hand holds the tool's origin to touch it: a sphere's radius,
-/// half of what others reach, however they are turned, and that of default_tool() for a point; no
-/// more than the diagonal of the model that it touches.
+/// How far from a surface a simulated operator holds the tool's origin to touch it: a sphere's
+/// radius, half of what others reach, however they are turned, and that of default_tool() for a
+/// point; no more than the diagonal of the model that it touches.
 [[nodiscard]] double hand_radius_m(const ToolChoice& tool, const ModelHeader* mesh,
                                    double diagonal_m);
 

@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #include "platform/controller/controller.hpp"
 
-#include "platform/controller/following_hand.hpp"
-#include "platform/devices/simulated/hand_motions.hpp"
+#include "platform/controller/following_operator.hpp"
+#include "platform/devices/simulated/operator_motions.hpp"
 #include "platform/devices/simulated/simulated_device.hpp"
 #include "platform/scene/material_limits.hpp"
 #include "platform/scene/object_pose.hpp"
@@ -33,9 +33,9 @@ namespace
 constexpr double kWithinRadius = 0.99;
 
 constexpr double kBytesPerMib = 1024.0 * 1024.0;
-/// Without --follow-speed.
+/// Speed of the proxy without --proxy-speed.
 constexpr double kSpeedMax_diag = 1.0;
-/// The simulated hand flies at two diagonals a second; its device stands twice that.
+/// The simulated operator flies at two diagonals a second; its device stands twice that.
 constexpr double kHandSpeed_diag = 4.0;
 /// It touches what is so many times as large as its tool's radius, if there is such a thing.
 constexpr double kHandRoom = 10.0;
@@ -70,7 +70,7 @@ Controller::create(const Options& options, std::vector<ServedModel> models, cons
     {
         return *error;
     }
-    controller->make_courier(log);
+    controller->make_chunk_loader(log);
     if (std::optional<Refusal> error = controller->finish_devices(options))
     {
         return *error;
@@ -158,20 +158,20 @@ void Controller::make_tools(const Options& options)
             tool.device != nullptr ? tool.device->info().limits : asked.device.limits;
         tool.shape = shape.words;
         tool.spec = {shape.radius_m, options.stiffness_n_per_m, limits.force_max_n,
-                     options.follow_speed_m_per_s.value_or(kSpeedMax_diag * diagonal_world_m())};
+                     options.proxy_speed_m_per_s.value_or(kSpeedMax_diag * diagonal_world_m())};
         tool.spec.core = shape.core;
         const auto* mesh = std::get_if<MeshCore>(&tool.spec.core);
         tool.hand_radius_m = hand_radius_m(
             shape, mesh != nullptr ? &headers_[mesh->model.value] : nullptr, diagonal_world_m());
-        if (asked.guide)
+        if (asked.fixture)
         {
-            guides_.push_back(std::make_unique<Guide>(*asked.guide));
-            tool.own_force = guides_.back().get();
-            tool.guide = asked.guide->words;
+            fixtures_.push_back(std::make_unique<VirtualFixture>(*asked.fixture));
+            tool.external_force = fixtures_.back().get();
+            tool.fixture = asked.fixture->words;
         }
-        tool.spec.torque_max_nm = limits.turn.torque_max_nm;
+        tool.spec.torque_max_nm = limits.rotation.torque_max_nm;
         tool.spec.angular_stiffness_nm_per_rad = options.angular_stiffness_nm_per_rad;
-        tool.spec.smooth_m = Tool::is_held_as_body(tool.spec) ? 0.0 : options.smooth_m;
+        tool.spec.shading_m = Tool::is_held_as_body(tool.spec) ? 0.0 : options.shading_m;
         tool_specs_.push_back(tool.spec);
     }
 }
@@ -224,7 +224,7 @@ std::optional<Refusal> Controller::lay_out_pools(const Options& options)
     const std::size_t most = options.pool_bytes() - sizeof(Frame);
     std::vector<ModelCapacities> capacities(models_.size());
     const bool fits = try_plan_pools(setup_, headers_, most, cache, capacities);
-    if (!fits && !try_plan_as_guests(options, most, cache))
+    if (!fits && !try_plan_as_streamed_models(options, most, cache))
     {
         const std::size_t least = least_pool_bytes(setup_, headers_, cache) + sizeof(Frame);
         return Refusal{fmt::format("--pool-mib: {} MiB is too small for {}; {:.2f} MiB would "
@@ -247,7 +247,7 @@ std::optional<Refusal> Controller::lay_out_pools(const Options& options)
     setup_.models = sources_;
     const ModelCapacities sum = pool_capacities(setup_);
     memory_.emplace(Frame::required_bytes(setup_) +
-                    Courier::required_bytes(sum.pages, sum.index_pages));
+                    ChunkLoader::required_bytes(sum.pages, sum.index_pages));
     arena_.emplace(memory_->span());
     if (const auto started = Frame::start(frame_, *arena_, setup_); !started)
     {
@@ -266,7 +266,8 @@ std::optional<Refusal> Controller::fetch_bases(std::span<ServedModel> models,
 }
 
 /// A scene of more models than there is room for at once.
-bool Controller::try_plan_as_guests(const Options& options, std::size_t bytes, std::size_t cache)
+bool Controller::try_plan_as_streamed_models(const Options& options, std::size_t bytes,
+                                             std::size_t cache)
 {
     if (options.scene.empty() || std::ranges::any_of(tool_specs_, &is_mesh))
     {
@@ -277,27 +278,27 @@ bool Controller::try_plan_as_guests(const Options& options, std::size_t bytes, s
         sources_.push_back({model.header, {}, {}});
     }
     setup_.models = sources_;
-    if (try_plan_guests(setup_, headers_, bytes, cache, setup_.for_guests))
+    if (try_plan_streamed_models(setup_, headers_, bytes, cache, setup_.for_streamed_models))
     {
         return true;
     }
     sources_.clear();
     setup_.models = {};
-    setup_.for_guests = {};
+    setup_.for_streamed_models = {};
     return false;
 }
 
-void Controller::make_courier(const Log& log)
+void Controller::make_chunk_loader(const Log& log)
 {
     ModelPools& pools = frame_->pools();
-    CourierOptions courier;
-    courier.forgotten_ns =
-        std::max(courier.forgotten_ns, 3 * kWishTimeoutFrames * setup_.period_ns);
-    courier_.emplace(*arena_, pools.slots, pools.cache.door, log, courier);
+    ChunkLoaderOptions chunk_loader;
+    chunk_loader.forgotten_ns =
+        std::max(chunk_loader.forgotten_ns, 3 * kRequestTimeoutFrames * setup_.period_ns);
+    chunk_loader_.emplace(*arena_, pools.slots, pools.cache.queues, log, chunk_loader);
     for (std::uint32_t i = 0; i < models_.size(); ++i)
     {
         Model& model = frame_->model({i});
-        courier_->add(model.header, model.linker, *models_[i].link, models_[i].name);
+        chunk_loader_->add(model.header, model.linker, *models_[i].link, models_[i].name);
     }
 }
 
@@ -332,11 +333,12 @@ std::optional<Refusal> Controller::check_grippers(const Options& options) const
     for (std::size_t i = 0; i < options.tools.size(); ++i)
     {
         const DeviceInfo& device = tools_[i].device->info();
-        const std::optional<GuideChoice>& guide = options.tools[i].guide;
-        if (guide && guide->kind == GuideKind::gripper && !(device.gripper_force_max_n > 0.0))
+        const std::optional<FixtureChoice>& fixture = options.tools[i].fixture;
+        if (fixture && fixture->kind == FixtureKind::gripper && !(device.gripper_force_max_n > 0.0))
         {
             return Refusal{fmt::format("{}: '{}': the device {} makes no force at a gripper",
-                                       options.of_tool("--guide", i), guide->words, device.name)};
+                                       options.of_tool("--fixture", i), fixture->words,
+                                       device.name)};
         }
     }
     return std::nullopt;
@@ -354,7 +356,7 @@ std::optional<Refusal> Controller::hang_load(const Options& options, std::size_t
     load.down_world = options.tools[tool].device.frame.rotation * load.down_world;
     const std::string option = options.of_tool("--tool-mass", tool);
     const DeviceInfo& device = tools_[tool].device->info();
-    const double torque_max_nm = device.limits.turn.torque_max_nm;
+    const double torque_max_nm = device.limits.rotation.torque_max_nm;
     if (load.weight_n() > 0.5 * device.limits.force_max_n)
     {
         return Refusal{fmt::format("{}: {:.4g} kg weigh {:.3g} N; the device {} carries half of "
@@ -402,7 +404,7 @@ std::optional<Refusal> Controller::simulate_device(const Options& options, std::
     {
         return error;
     }
-    HandScene scene;
+    OperatorScene scene;
     scene.anchors_world_m = anchors_world_m(object);
     if (scene.anchors_world_m.empty())
     {
@@ -432,7 +434,7 @@ std::optional<Refusal> Controller::simulate_device(const Options& options, std::
     if (is_followed(options, object))
     {
         device_options.workspace_radius_m = kPoseReachMax_m;
-        motion.value().hand = std::make_unique<FollowingHand>(
+        motion.value().hand = std::make_unique<FollowingOperator>(
             std::move(motion.value().hand), frame_->objects(), static_cast<std::uint32_t>(object),
             model_pose(poses_[object], headers_[objects_[object].model.value].origin_m()),
             0.5 * kHandSpeed_diag * scene.diagonal_m * to_seconds(options.period()));

@@ -10,7 +10,7 @@
 #include "platform/scene/scene_parts.hpp"
 #include "rt_core/frame/frame.hpp"
 #include "transport/base/refusal.hpp"
-#include "transport/courier.hpp"
+#include "transport/chunk_loader.hpp"
 #include "transport/served_model.hpp"
 
 #include <cstddef>
@@ -25,25 +25,25 @@
 namespace tactus::hrtc
 {
 
-/// Everything between the transport and the devices: the pools, the frame in them, the courier,
-/// the objects' poses and the devices. Assembled before any thread starts.
+/// Everything between the transport and the devices: the pools, the frame in them, the chunk
+/// loader, the objects' poses and the devices. Assembled before any thread starts.
 class Controller
 {
 public:
     /// Opens the devices, waiting for those that have to come as long as `goes_on`, lays out all
     /// pools inside options.pool_mib, brings the base meshes that aren't here, makes the frame, and
-    /// a simulated device for each tool without another. Of guests it brings the base meshes that
-    /// simulated hands need alone. Refused when a device isn't there or doesn't run at that rate,
-    /// when a base mesh doesn't come in options.wait_s, or when the pools are too small, with the
-    /// size that would do for a start.
+    /// a simulated device for each tool without another. Of streamed models it brings the base
+    /// meshes that simulated operators need alone. Refused when a device isn't there or doesn't run
+    /// at that rate, when a base mesh doesn't come in options.wait_s, or when the pools are too
+    /// small, with the size that would do for a start.
     [[nodiscard]] static Result<std::unique_ptr<Controller>, Refusal>
     create(const Options& options, std::vector<ServedModel> models, const Log& log,
            const std::function<bool()>& goes_on);
 
     [[nodiscard]] Frame& frame() noexcept { return *frame_; }
     [[nodiscard]] const Frame& frame() const noexcept { return *frame_; }
-    [[nodiscard]] Courier& courier() noexcept { return *courier_; }
-    [[nodiscard]] const Courier& courier() const noexcept { return *courier_; }
+    [[nodiscard]] ChunkLoader& chunk_loader() noexcept { return *chunk_loader_; }
+    [[nodiscard]] const ChunkLoader& chunk_loader() const noexcept { return *chunk_loader_; }
     [[nodiscard]] std::vector<ToolSetup>& tools() noexcept { return tools_; }
     [[nodiscard]] const std::vector<ToolSetup>& tools() const noexcept { return tools_; }
     /// By their numbers, with where they stand at the start.
@@ -69,13 +69,13 @@ private:
     [[nodiscard]] std::optional<Refusal> lay_out_pools(const Options& options);
     [[nodiscard]] std::optional<Refusal> fetch_bases(std::span<ServedModel> models,
                                                      const Options& options) const;
-    [[nodiscard]] bool try_plan_as_guests(const Options& options, std::size_t bytes,
-                                          std::size_t cache);
+    [[nodiscard]] bool try_plan_as_streamed_models(const Options& options, std::size_t bytes,
+                                                   std::size_t cache);
     void make_poses(const Options& options);
     [[nodiscard]] std::optional<Refusal> open_devices(const Options& options);
     void make_tools(const Options& options);
     [[nodiscard]] std::optional<Refusal> check_tolerance(const Options& options) const;
-    void make_courier(const Log& log);
+    void make_chunk_loader(const Log& log);
     [[nodiscard]] std::optional<Refusal> simulate_device(const Options& options, std::size_t tool);
     [[nodiscard]] std::optional<Refusal> finish_devices(const Options& options);
     void limit_force(const Options& options, ToolSetup& tool) const;
@@ -101,9 +101,9 @@ private:
     std::optional<PoolMemory> memory_; ///< As much as the plan needs.
     std::optional<Arena> arena_;
     std::optional<Frame> frame_;
-    std::optional<Courier> courier_;
-    PosixClock clock_;                           ///< Of the devices that aren't simulated.
-    std::vector<std::unique_ptr<Guide>> guides_; ///< Lent to the tools.
+    std::optional<ChunkLoader> chunk_loader_;
+    PosixClock clock_; ///< Clock of the devices that aren't simulated.
+    std::vector<std::unique_ptr<VirtualFixture>> fixtures_; ///< Fixtures, lent to the tools.
     std::vector<ToolSetup> tools_;
     std::vector<std::size_t> objects_of_hands_; ///< Of the simulated ones, so far.
 };

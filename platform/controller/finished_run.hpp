@@ -4,9 +4,9 @@
 
 #include "platform/controller/recorder.hpp"
 #include "platform/controller/trace_file.hpp"
-#include "platform/loop/pose_door.hpp"
 #include "platform/loop/run_statistics.hpp"
 #include "platform/loop/safety_record.hpp"
+#include "platform/loop/scene_mailbox.hpp"
 #include "platform/machine/periodic_timer.hpp"
 #include "platform/machine/rt_thread.hpp"
 #include "platform/machine/time.hpp"
@@ -46,7 +46,7 @@ struct FinishedRun
     std::vector<dds::PeerRefusals> refused{};      ///< Of others on the domain.
     std::vector<dds::ServerEvent> server_events{}; ///< None from files.
     std::uint64_t telemetry_sent{0};
-    std::uint64_t fronts_sent{0};
+    std::uint64_t states_sent{0};
     std::optional<RecordingResult> recording{};
     std::optional<std::string> recording_error{}; ///< Why a wanted recording is not there.
     std::optional<TraceResult> trace{};

@@ -13,7 +13,7 @@ namespace tactus::hrtc
 Result<std::unique_ptr<HostTopics>, Refusal>
 HostTopics::create(dds::DdsClient& client, const Controller& controller,
                    std::span<dds::Authority> authorities, std::unique_ptr<SceneKeeper> keeper,
-                   bool shows_front)
+                   bool shows_refinement_state)
 {
     std::unique_ptr<HostTopics> topics(
         new HostTopics(client, controller, authorities, std::move(keeper)));
@@ -31,9 +31,9 @@ HostTopics::create(dds::DdsClient& client, const Controller& controller,
         return telemetry.error();
     }
     topics->telemetry_ = std::move(telemetry).value();
-    if (shows_front)
+    if (shows_refinement_state)
     {
-        auto front = FrontSender::create(client, controller);
+        auto front = RefinementStateSender::create(client, controller);
         if (!front)
         {
             return front.error();
@@ -53,7 +53,7 @@ HostTopics::HostTopics(const dds::DdsClient& client, const Controller& controlle
 {
 }
 
-void HostTopics::connect(PoseDoor& door, const TelemetryTap& tap, FrontTap* front,
+void HostTopics::connect(SceneMailbox& queues, const TelemetryTap& tap, RefinementStateTap* front,
                          MonotonicTime now, SceneKeeper::NameSink names)
 {
     tap_ = &tap;
@@ -64,7 +64,7 @@ void HostTopics::connect(PoseDoor& door, const TelemetryTap& tap, FrontTap* fron
     }
     if (keeper_ != nullptr)
     {
-        keeper_->connect(door, now, std::move(names));
+        keeper_->connect(queues, now, std::move(names));
     }
 }
 
@@ -144,7 +144,7 @@ void HostTopics::send_telemetry(MonotonicTime now)
 void HostTopics::add_transport_side(std::size_t model, ModelTelemetry& telemetry, MonotonicTime now)
 {
     const WaitingTimes& waiting =
-        controller_.courier().waiting_times(static_cast<std::uint32_t>(model));
+        controller_.chunk_loader().waiting_times(static_cast<std::uint32_t>(model));
     telemetry.host_gone = controller_.models()[model].link->state() == LinkState::host_gone;
     telemetry.pieces = waiting.total();
     Seen& seen = seen_[model];

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "platform/controller/controller.hpp"
-#include "platform/controller/front_sender.hpp"
-#include "platform/loop/pose_door.hpp"
+#include "platform/controller/refinement_state_sender.hpp"
+#include "platform/loop/scene_mailbox.hpp"
 #include "platform/loop/telemetry_tap.hpp"
 #include "platform/machine/time.hpp"
 #include "platform/scene/scene_keeper.hpp"
@@ -30,22 +30,23 @@ public:
     static constexpr Duration kTelemetryPeriod = milliseconds(10);
 
     /// `client`, `controller` and `authorities`, those of the keeper, must outlive it. What hosts
-    /// show is passed over without `keeper`, what is refined is told unless `shows_front` is false.
+    /// show is passed over without `keeper`, what is refined is told unless
+    /// `shows_refinement_state` is false.
     [[nodiscard]] static Result<std::unique_ptr<HostTopics>, Refusal>
     create(dds::DdsClient& client, const Controller& controller,
            std::span<dds::Authority> authorities, std::unique_ptr<SceneKeeper> keeper,
-           bool shows_front);
+           bool shows_refinement_state);
 
     /// Between these and the haptic thread; all live as long as the run. `front` may be null where
-    /// shows_front() is false; `names` is the keeper's.
-    void connect(PoseDoor& door, const TelemetryTap& tap, FrontTap* front, MonotonicTime now,
-                 SceneKeeper::NameSink names = {});
+    /// shows_refinement_state() is false; `names` is the keeper's.
+    void connect(SceneMailbox& queues, const TelemetryTap& tap, RefinementStateTap* front,
+                 MonotonicTime now, SceneKeeper::NameSink names = {});
     /// Any thread: viewers are told that the tool began inside a closed object.
     void tell_begins_inside(std::size_t tool) noexcept;
-    [[nodiscard]] bool shows_front() const noexcept { return front_ != nullptr; }
+    [[nodiscard]] bool shows_refinement_state() const noexcept { return front_ != nullptr; }
 
-    /// The transport thread, after the couriers' round: poses to the door, telemetry and front when
-    /// they are due.
+    /// The transport thread, after the chunk loaders' round: poses to the mailbox, telemetry
+    /// and refinement state when they are due.
     void step(MonotonicTime now);
 
     /// One a model; none when what hosts show is passed over. While no step is under way.
@@ -60,7 +61,7 @@ public:
     /// What became of the servers whose word counts, in order.
     [[nodiscard]] std::vector<dds::ServerEvent> server_events() const;
     [[nodiscard]] std::uint64_t telemetry_sent() const noexcept { return telemetry_->sent(); }
-    [[nodiscard]] std::uint64_t fronts_sent() const noexcept
+    [[nodiscard]] std::uint64_t states_sent() const noexcept
     {
         return front_ != nullptr ? front_->sent() : 0;
     }
@@ -85,7 +86,7 @@ private:
     std::span<dds::Authority> authorities_;
     std::unique_ptr<SceneKeeper> keeper_; ///< May be none.
     std::unique_ptr<dds::TelemetryWriter> telemetry_;
-    std::unique_ptr<FrontSender> front_; ///< Likewise.
+    std::unique_ptr<RefinementStateSender> front_; ///< Likewise.
     const TelemetryTap* tap_{nullptr};
     MonotonicTime last_sent_{};
     std::vector<Seen> seen_;

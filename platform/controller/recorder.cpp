@@ -7,13 +7,14 @@
 namespace tactus::hrtc
 {
 
-Recorder::Recorder(AtomicFile file, const RecordedSetup& setup, Courier& courier, Worker worker)
-    : file_(std::move(file)), courier_(courier), writer_(setup)
+Recorder::Recorder(AtomicFile file, const RecordedSetup& setup, ChunkLoader& chunk_loader,
+                   Worker worker)
+    : file_(std::move(file)), chunk_loader_(chunk_loader), writer_(setup)
 {
-    for (std::uint32_t model = 0; model < courier_.model_count(); ++model)
+    for (std::uint32_t model = 0; model < chunk_loader_.model_count(); ++model)
     {
         sinks_.push_back(std::make_unique<Sink>(*this, model));
-        courier_.copy_pieces_to(sinks_.back().get(), model);
+        chunk_loader_.copy_pieces_to(sinks_.back().get(), model);
     }
     if (worker == Worker::own_thread)
     {
@@ -24,9 +25,9 @@ Recorder::Recorder(AtomicFile file, const RecordedSetup& setup, Courier& courier
 Recorder::~Recorder()
 {
     stop();
-    for (std::uint32_t model = 0; model < courier_.model_count(); ++model)
+    for (std::uint32_t model = 0; model < chunk_loader_.model_count(); ++model)
     {
-        courier_.copy_pieces_to(nullptr, model);
+        chunk_loader_.copy_pieces_to(nullptr, model);
     }
 }
 
@@ -71,7 +72,7 @@ void Recorder::step()
     store();
 }
 
-/// A piece is copied before it goes through the door, so those of a frame that has run are here.
+/// A piece is copied before it goes through the queues, so those of a frame that has run are here.
 void Recorder::take_frames()
 {
     std::vector<std::byte> coded;

@@ -7,7 +7,7 @@
 #include "platform/recording/recording_writer.hpp"
 #include "transport/base/atomic_file.hpp"
 #include "transport/base/refusal.hpp"
-#include "transport/courier.hpp"
+#include "transport/chunk_loader.hpp"
 
 #include <cstdint>
 #include <map>
@@ -39,9 +39,9 @@ public:
         own_thread, ///< Starts here, so before the haptic thread: it inherits policy and processor.
         caller,     ///< Of step(), at least twice in the time that the tap holds.
     };
-    /// The courier must outlive the recorder, and nobody may run it while this is made or
+    /// The chunk loader must outlive the recorder, and nobody may run it while this is made or
     /// destroyed.
-    Recorder(AtomicFile file, const RecordedSetup& setup, Courier& courier, Worker worker);
+    Recorder(AtomicFile file, const RecordedSetup& setup, ChunkLoader& chunk_loader, Worker worker);
     Recorder(const Recorder&) = delete;
     Recorder& operator=(const Recorder&) = delete;
     ~Recorder();
@@ -87,7 +87,7 @@ private:
     void store();
 
     AtomicFile file_;
-    Courier& courier_;
+    ChunkLoader& chunk_loader_;
     std::vector<std::unique_ptr<Sink>> sinks_;
     FrameTap tap_;
     RecordingWriter writer_;

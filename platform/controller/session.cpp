@@ -99,7 +99,7 @@ std::optional<std::string> start_recorder(const Options& options, Controller& co
         return "--record: " + file.error().text;
     }
     recorder.emplace(
-        std::move(file).value(), recorded_setup(options, controller), controller.courier(),
+        std::move(file).value(), recorded_setup(options, controller), controller.chunk_loader(),
         options.virtual_time ? Recorder::Worker::caller : Recorder::Worker::own_thread);
     return std::nullopt;
 }
@@ -358,7 +358,7 @@ std::optional<Refusal> Session::assemble()
                                                    controller_->scene_parts(), scene_, log_line);
         }
         auto topics = HostTopics::create(*client_, *controller_, authorities_, std::move(keeper),
-                                         options_.shows_front);
+                                         options_.shows_refinement_state);
         if (!topics)
         {
             return failure(topics.error().text);

@@ -31,7 +31,7 @@ namespace tactus::hrtc
 namespace
 {
 
-/// How long before the deadline the loop wakes to rehearse its queries.
+/// How long before the deadline the loop wakes to warm its caches.
 constexpr Duration kMarginMost = microseconds(100);
 /// Between two looks at the loop.
 constexpr std::chrono::milliseconds kLook{20};
@@ -92,11 +92,11 @@ SessionRun::SessionRun(const RunParts& parts)
     , done_(empty_run(parts.controller, parts.options))
     , time_(parts.options.virtual_time)
     , governor_(make_governor(parts.options))
-    , door_(parts.controller.poses(), parts.controller.frame().objects().capacity(),
-            nanoseconds(parts.controller.setup().pose_age_max_ns),
-            parts.options.object_speed_m_per_s)
+    , queues_(parts.controller.poses(), parts.controller.frame().objects().capacity(),
+              nanoseconds(parts.controller.setup().pose_age_max_ns),
+              parts.options.object_speed_m_per_s)
     , telemetry_(period_)
-    , transport_(parts.controller.courier(), parts.controller.models(), connected_topics(),
+    , transport_(parts.controller.chunk_loader(), parts.controller.models(), connected_topics(),
                  parts.trace != nullptr ? &parts.trace->tap() : nullptr)
     , loop_(loop_parts(), done_.statistics)
     , devices_gone_(parts.controller.tools().size())
@@ -137,16 +137,16 @@ HostTopics* SessionRun::connected_topics()
                 [recorder](std::uint32_t number, std::uint32_t generation, const std::string& name)
             { recorder->name_object(number, generation, name); };
         }
-        parts_.topics->connect(door_, telemetry_, make_front(), time_.clock().now(),
+        parts_.topics->connect(queues_, telemetry_, make_front(), time_.clock().now(),
                                std::move(names));
     }
     return parts_.topics;
 }
 
 /// Null where nobody is to see it.
-FrontTap* SessionRun::make_front()
+RefinementStateTap* SessionRun::make_front()
 {
-    if (parts_.topics->shows_front())
+    if (parts_.topics->shows_refinement_state())
     {
         front_.emplace(parts_.controller.frame().pools().cache.pages);
     }
@@ -173,7 +173,7 @@ LoopParts SessionRun::loop_parts()
             .is_virtual = time_.is_virtual(),
             .hosts_gone = &transport_.hosts_gone(),
             .starved = &transport_.starved(),
-            .pose_door = has_topics ? &door_ : nullptr,
+            .scene_mailbox = has_topics ? &queues_ : nullptr,
             .telemetry = has_topics ? &telemetry_ : nullptr,
             .front = front_ ? &*front_ : nullptr,
             .trace = parts_.trace != nullptr ? &parts_.trace->tap() : nullptr};
@@ -532,13 +532,13 @@ void SessionRun::note_topics()
 {
     if (parts_.topics != nullptr)
     {
-        done_.pose_uses.assign(door_.uses().begin(), door_.uses().end());
+        done_.pose_uses.assign(queues_.uses().begin(), queues_.uses().end());
         done_.pose_counts = parts_.topics->pose_counts();
         done_.scene_news = parts_.topics->scene_news();
         done_.refused = parts_.topics->refused();
         done_.server_events = parts_.topics->server_events();
         done_.telemetry_sent = parts_.topics->telemetry_sent();
-        done_.fronts_sent = parts_.topics->fronts_sent();
+        done_.states_sent = parts_.topics->states_sent();
     }
 }
 

@@ -14,10 +14,10 @@
 #include "platform/controller/transport_thread.hpp"
 #include "platform/loop/assertion_brake.hpp"
 #include "platform/loop/budget_governor.hpp"
-#include "platform/loop/front_tap.hpp"
 #include "platform/loop/haptic_loop.hpp"
 #include "platform/loop/loop_time.hpp"
-#include "platform/loop/pose_door.hpp"
+#include "platform/loop/refinement_state_tap.hpp"
+#include "platform/loop/scene_mailbox.hpp"
 #include "platform/loop/supervisor.hpp"
 #include "platform/loop/telemetry_tap.hpp"
 #include "platform/machine/posix/posix_periodic_timer.hpp"
@@ -68,7 +68,7 @@ public:
 
 private:
     [[nodiscard]] HostTopics* connected_topics();
-    [[nodiscard]] FrontTap* make_front();
+    [[nodiscard]] RefinementStateTap* make_front();
     [[nodiscard]] LoopParts loop_parts();
     [[nodiscard]] std::optional<Refusal> start_supervisor();
     void run_loop();
@@ -92,10 +92,10 @@ private:
     LoopTime time_;
     PosixPeriodicTimer alarm_; ///< The supervisor's.
     std::optional<BudgetGovernor> governor_;
-    PoseDoor door_;
+    SceneMailbox queues_;
     TelemetryTap telemetry_;
-    std::optional<FrontTap> front_;         ///< None with --no-front.
-    std::optional<LastInputs> last_inputs_; ///< None with --record.
+    std::optional<RefinementStateTap> front_; ///< None with --no-refinement-state.
+    std::optional<LastInputs> last_inputs_;   ///< None with --record.
     TransportRounds transport_;
     std::optional<TransportThread> transport_thread_;
     HapticLoop loop_;

@@ -19,8 +19,8 @@ namespace
 enum Row : int
 {
     kLoop = 1,
-    kDoor = 2,
-    kCourier = 3,
+    kQueues = 2,
+    kChunkLoader = 3,
 };
 
 /// In microseconds, which the format's times are in, to the nanosecond.
@@ -49,8 +49,8 @@ TraceFile::TraceFile(AtomicFile file, Duration period) : file_(std::move(file)),
 {
     text_ = R"({"displayTimeUnit":"ns","traceEvents":[
 {"name":"process_name","ph":"M","pid":1,"args":{"name":"hrtc"}})";
-    for (const auto& [row, name] : {std::pair(kLoop, "haptic loop"), std::pair(kDoor, "door"),
-                                    std::pair(kCourier, "courier")})
+    for (const auto& [row, name] : {std::pair(kLoop, "haptic loop"), std::pair(kQueues, "queues"),
+                                    std::pair(kChunkLoader, "chunk loader")})
     {
         text_ += fmt::format(
             ",\n{{\"name\":\"thread_name\",\"ph\":\"M\",\"pid\":1,\"tid\":{0},\"args\":"
@@ -160,22 +160,23 @@ void TraceFile::put(const TracedFrame& frame)
     if (frame.arrivals + frame.link_updates > 0)
     {
         put_instant(
-            kDoor, "taken", frame.start,
+            kQueues, "taken", frame.start,
             fmt::format("\"arrivals\":{},\"link_updates\":{}", frame.arrivals, frame.link_updates));
     }
-    if (frame.wishes > 0)
+    if (frame.requests > 0)
     {
-        put_instant(kDoor, "wishes", frame.start + frame.stage[0],
-                    fmt::format("\"wishes\":{}", frame.wishes));
+        put_instant(kQueues, "requests", frame.start + frame.stage[0],
+                    fmt::format("\"requests\":{}", frame.requests));
     }
 }
 
 void TraceFile::put(const TracedRound& round)
 {
-    put_span(kCourier, "round", round.start, round.end - round.start,
-             fmt::format("\"wishes\":{},\"pieces\":{},\"bytes\":{},\"handed_over\":{},"
+    put_span(kChunkLoader, "round", round.start, round.end - round.start,
+             fmt::format("\"requests\":{},\"pieces\":{},\"bytes\":{},\"handed_over\":{},"
                          "\"refused\":{}",
-                         round.wishes, round.pieces, round.bytes, round.delivered, round.refused));
+                         round.requests, round.pieces, round.bytes, round.delivered,
+                         round.refused));
 }
 
 } // namespace tactus::hrtc

@@ -19,13 +19,13 @@ namespace tactus::hrtc
 struct TraceResult
 {
     std::uint64_t frames{0};
-    std::uint64_t rounds{0}; ///< Of the courier, those that did something.
+    std::uint64_t rounds{0}; ///< Rounds of the chunk loader that did something.
     std::uint64_t bytes{0};
     std::uint64_t lost{0}; ///< Frames and rounds that found no room.
 };
 
-/// Writes when each frame, its stages, the door and the courier did what, in Chrome's trace format
-/// (docs/report.md), on a thread of its own, of ordinary priority.
+/// Writes when each frame, its stages, the queues and the chunk loader did what, in Chrome's trace
+/// format (docs/report.md), on a thread of its own, of ordinary priority.
 class TraceFile
 {
 public:

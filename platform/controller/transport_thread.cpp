@@ -12,7 +12,7 @@ namespace tactus::hrtc
 
 void TransportRounds::run(MonotonicTime now)
 {
-    run_courier(now);
+    run_chunk_loader(now);
     watch_models();
     if (topics_ != nullptr)
     {
@@ -20,26 +20,26 @@ void TransportRounds::run(MonotonicTime now)
     }
 }
 
-void TransportRounds::run_courier(MonotonicTime now)
+void TransportRounds::run_chunk_loader(MonotonicTime now)
 {
-    courier_.step(now.ns);
+    chunk_loader_.step(now.ns);
     if (trace_ == nullptr)
     {
         return;
     }
     TracedRound sums;
-    for (std::uint32_t model = 0; model < courier_.model_count(); ++model)
+    for (std::uint32_t model = 0; model < chunk_loader_.model_count(); ++model)
     {
-        const CourierCounters& counters = courier_.counters(model);
-        sums.wishes += counters.wishes;
+        const ChunkLoaderCounters& counters = chunk_loader_.counters(model);
+        sums.requests += counters.requests;
         sums.pieces += counters.pieces;
         sums.bytes += counters.coded_bytes;
         sums.delivered += counters.delivered;
         sums.refused += counters.refused();
     }
-    if (sums.wishes != told_.wishes || sums.pieces != told_.pieces)
+    if (sums.requests != told_.requests || sums.pieces != told_.pieces)
     {
-        trace_->add(TracedRound{now, PosixClock().now(), sums.wishes - told_.wishes,
+        trace_->add(TracedRound{now, PosixClock().now(), sums.requests - told_.requests,
                                 sums.pieces - told_.pieces, sums.bytes - told_.bytes,
                                 sums.delivered - told_.delivered, sums.refused - told_.refused});
         told_ = sums;
@@ -52,7 +52,7 @@ void TransportRounds::watch_models()
     {
         const bool is_gone = models_[i].link->state() == LinkState::host_gone;
         hosts_gone_.set(i, is_gone);
-        starved_.set(i, courier_.is_starved(static_cast<std::uint32_t>(i)));
+        starved_.set(i, chunk_loader_.is_starved(static_cast<std::uint32_t>(i)));
         host_was_lost_.store(host_was_lost_.load() || is_gone);
     }
 }

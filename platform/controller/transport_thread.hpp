@@ -6,7 +6,7 @@
 #include "platform/loop/model_marks.hpp"
 #include "platform/loop/trace_tap.hpp"
 #include "platform/machine/time.hpp"
-#include "transport/courier.hpp"
+#include "transport/chunk_loader.hpp"
 #include "transport/served_model.hpp"
 
 #include <atomic>
@@ -16,18 +16,18 @@
 namespace tactus::hrtc
 {
 
-/// What the transport does again and again: the courier's round, a look at the hosts, and what the
-/// topics have to say. When a host goes away or comes back, the model's link says so; the loop goes
-/// on with what is resident.
+/// What the transport does again and again: the chunk loader's round, a look at the hosts, and what
+/// the topics have to say. When a host goes away or comes back, the model's link says so; the loop
+/// goes on with what is resident.
 class TransportRounds
 {
 public:
-    /// Courier and models outlive this; nobody else touches them or the models' links while rounds
-    /// are run. `topics` has its turn after each round of the courier; `trace` takes the times of
-    /// those rounds of the courier that do something. Either may be none.
-    TransportRounds(Courier& courier, const std::vector<ServedModel>& models, HostTopics* topics,
-                    TraceTap* trace = nullptr) noexcept
-        : courier_(courier), models_(models), topics_(topics), trace_(trace)
+    /// Chunk loader and models outlive this; nobody else touches them or the models' links while
+    /// rounds are run. `topics` has its turn after each round of the chunk loader; `trace` takes
+    /// the times of those rounds of the chunk loader that do something. Either may be none.
+    TransportRounds(ChunkLoader& chunk_loader, const std::vector<ServedModel>& models,
+                    HostTopics* topics, TraceTap* trace = nullptr) noexcept
+        : chunk_loader_(chunk_loader), models_(models), topics_(topics), trace_(trace)
     {
     }
 
@@ -38,14 +38,14 @@ public:
     [[nodiscard]] bool host_was_lost() const noexcept { return host_was_lost_.load(); }
     /// Models whose host is gone now.
     [[nodiscard]] const ModelMarks& hosts_gone() const noexcept { return hosts_gone_; }
-    /// Models of which something that is wished for doesn't come (Courier::is_starved).
+    /// Models of which something that is requested doesn't come (ChunkLoader::is_starved).
     [[nodiscard]] const ModelMarks& starved() const noexcept { return starved_; }
 
 private:
-    void run_courier(MonotonicTime now);
+    void run_chunk_loader(MonotonicTime now);
     void watch_models();
 
-    Courier& courier_;
+    ChunkLoader& chunk_loader_;
     const std::vector<ServedModel>& models_;
     HostTopics* topics_;
     TraceTap* trace_;
@@ -55,7 +55,7 @@ private:
     ModelMarks starved_;
 };
 
-/// Pause between two rounds: a wish waits this long at most before it leaves.
+/// Pause between two rounds: a request waits this long at most before it leaves.
 inline constexpr Duration kRoundPause = microseconds(300);
 
 /// Runs rounds on one thread of ordinary priority, a few thousand a second. Start it before the

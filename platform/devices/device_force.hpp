@@ -29,7 +29,7 @@ namespace tactus
                                         DeviceStatus& status) noexcept
 {
     const Vec3 force_n = to_vec3(written.force_world_n);
-    const double torque_max_nm = info.limits.turn.torque_max_nm;
+    const double torque_max_nm = info.limits.rotation.torque_max_nm;
     const Vec3 torque_nm =
         torque_max_nm > 0.0 ? to_vec3(written.torque_world_nm) : Vec3(Vec3::Zero());
     const double norm_n = force_n.norm();

@@ -35,7 +35,7 @@ public:
 
     [[nodiscard]] Vec3 position_to_world(const Vec3& device_m) const noexcept
     {
-        return frame_.to_there(device_m);
+        return frame_.local_to_world(device_m);
     }
     /// Velocity in metres per second.
     [[nodiscard]] Vec3 velocity_to_world(const Vec3& device_m_per_s) const noexcept

@@ -86,7 +86,7 @@ struct DeviceStatus
     std::uint64_t forces_refused{0}; ///< Writes that were not finite; zero was written instead.
 };
 
-/// Duration of the fade of a soft brake, equal to that of SafeState.
+/// Duration of the fade of a soft brake, equal to that of ForceFader.
 inline constexpr Duration kBrakeFade = milliseconds(50);
 
 /// A device that the haptic thread reads and writes once a period. read(), write(), release_brake()

@@ -89,8 +89,8 @@ std::string table_of(std::span<const DeadlinePhase> phases)
         const auto us = [](const LatencyHistogram& histogram, double q)
         { return to_us(histogram.quantile(q)); };
         text += fmt::format("{:<12}{:>8}{:>8}{:>5}{:>8}{:>8}", phase.name, cycles_of(phase),
-                            count_of(phase, "missed"), count_of(phase, "own_fault"),
-                            count_of(phase, "machine_late"), count_of(phase, "stopped"));
+                            count_of(phase, "missed"), count_of(phase, "overrun"),
+                            count_of(phase, "latency_misses"), count_of(phase, "stopped"));
         text += fmt::format("{:>7.0f}{:>6.0f}{:>6.0f}{:>8.0f}{:>7.0f}{:>9.0f}{:>8.0f}{:>9.0f}\n",
                             us(phase.cpu, 0.5), us(phase.cpu, 0.99), to_us(phase.cpu.max()),
                             us(phase.wake, 0.5), us(phase.wake, 0.99), to_us(phase.wake.max()),
@@ -118,7 +118,7 @@ plot::Table figures_of(std::span<const DeadlinePhase> phases)
     {
         std::vector<std::string>& line = table.lines.emplace_back();
         line = {loads_of(phase), fmt::format("{}", cycles_of(phase))};
-        for (const char* key : {"missed", "own_fault", "machine_late", "stopped"})
+        for (const char* key : {"missed", "overrun", "latency_misses", "stopped"})
         {
             line.push_back(fmt::format("{}", count_of(phase, key)));
         }
@@ -156,7 +156,7 @@ std::string verdict_of(const SelfCheck& check, std::span<const DeadlinePhase> ph
     for (const DeadlinePhase& phase : phases)
     {
         cycles += cycles_of(phase);
-        own += count_of(phase, "own_fault");
+        own += count_of(phase, "overrun");
     }
     if (!check.is_passed())
     {
@@ -165,7 +165,7 @@ std::string verdict_of(const SelfCheck& check, std::span<const DeadlinePhase> ph
             "nothing else counts; run it again with less beside it",
             check.flagged, counted(check.injected, "fault"), check.false_flags);
     }
-    return fmt::format("{}: {} in {}", own == 0 ? "passed" : "failed", counted(own, "own fault"),
+    return fmt::format("{}: {} in {}", own == 0 ? "passed" : "failed", counted(own, "overrun"),
                        counted(cycles, "cycle"));
 }
 
@@ -182,7 +182,7 @@ std::string bar_of(double count)
 bool is_passed(const SelfCheck& check, std::span<const DeadlinePhase> phases)
 {
     return check.is_passed() && std::ranges::all_of(phases, [](const DeadlinePhase& phase)
-                                                    { return count_of(phase, "own_fault") == 0; });
+                                                    { return count_of(phase, "overrun") == 0; });
 }
 
 Json make_deadline_report(const SelfCheck& check, std::span<const DeadlinePhase> phases)

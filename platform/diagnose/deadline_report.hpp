@@ -52,7 +52,7 @@ struct DeadlineSetting
                                               const DeadlineSetting& setting,
                                               plot::ChartLibrary library);
 
-/// No own fault, and a self-check that saw all.
+/// No overrun, and a self-check that saw all.
 [[nodiscard]] bool is_passed(const SelfCheck& check, std::span<const DeadlinePhase> phases);
 
 } // namespace tactus::hrtc

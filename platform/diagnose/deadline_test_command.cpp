@@ -270,7 +270,7 @@ int run_deadline_test(int argc, char** argv, CommandForm form)
     form.name = "hrtc deadline-test";
     form.description = "Runs the loop alone and beside load, and tells whose fault each missed "
                        "deadline was. First faults are injected to prove that they are seen. Exit "
-                       "code 1 after a fault of the loop's own. Takes the options of hrtc; "
+                       "code 1 after an overrun. Takes the options of hrtc; "
                        "--report FILE.json writes FILE.txt and FILE.html, too.";
     form.records = false;
     form.duration_s = kDuration_s;

@@ -190,7 +190,7 @@ SelfCheck judge_injections(DeadlineAccount& deadlines, const FaultInjector& inje
     check.allocations_counted = allocation_counter::available();
     for (const auto& [frame, flags] : noted)
     {
-        check.false_flags += !InjectionPlan::at(frame) && has_any(flags, kOwnFaults) ? 1U : 0U;
+        check.false_flags += !InjectionPlan::at(frame) && has_any(flags, kOverruns) ? 1U : 0U;
     }
     for (std::uint64_t frame = 0; frame < InjectionPlan::kFrames; ++frame)
     {

@@ -56,7 +56,7 @@ struct SelfCheck
 {
     std::uint64_t injected{0};
     std::uint64_t flagged{0};              ///< Of these, as what they were.
-    std::uint64_t false_flags{0};          ///< Own faults in frames that were not spoilt.
+    std::uint64_t false_flags{0};          ///< Overruns in frames that were not spoilt.
     bool allocations_counted{true};        ///< False: this build can't, and none was injected.
     std::optional<std::uint64_t> unseen{}; ///< The first spoilt frame that was not flagged so.
 

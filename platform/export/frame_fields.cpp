@@ -16,7 +16,7 @@ namespace tactus
 namespace
 {
 
-constexpr std::array kAnswerNames{"exact", "decided", "bracket", "stale", "within_tolerance"};
+constexpr std::array kAnswerNames{"exact", "separated", "bounded", "stale", "within_tolerance"};
 constexpr std::array kFeatureNames{"corner_0", "corner_1", "corner_2", "edge_0",
                                    "edge_1",   "edge_2",   "interior"};
 constexpr std::array kSideNames{"unsigned", "outside", "inside"};
@@ -68,10 +68,10 @@ std::optional<Eigen::Quaterniond> quaternion(const Mat3& rotation)
 }
 
 /// Number of events of this kind that a frame took, for instance chunks or index pages.
-std::int64_t count_of(std::span<const DoorEvent> events, DoorEventKind kind)
+std::int64_t count_of(std::span<const QueueEvent> events, QueueEventKind kind)
 {
     std::int64_t count = 0;
-    for (const DoorEvent& event : events)
+    for (const QueueEvent& event : events)
     {
         count += event.kind == kind ? 1 : 0;
     }
@@ -144,8 +144,8 @@ void tell_device(FieldSink& sink, const ToolState& state, const DeviceRecord& de
     sink.flag("deadman_held", device.deadman_held);
     sink.integer("buttons", device.buttons);
     sink.number("gripper_m", device.gripper_m);
-    sink.vector("goal_world_m", state.position_m);
-    sink.rotation("goal_rotation_world", quaternion(state.rotation));
+    sink.vector("device_world_m", state.position_m);
+    sink.rotation("device_rotation_world", quaternion(state.rotation));
     sink.vector("hand_world_m",
                 device.hand ? std::optional<Vec3>(device.hand->position_m) : std::nullopt);
     sink.rotation("hand_rotation_world",
@@ -177,13 +177,13 @@ void tell_tool_spec(FieldSink& sink, const ToolSpec& tool)
     sink.number("radius_m", tool.radius_m);
     sink.number("stiffness_n_per_m", tool.stiffness_n_per_m);
     sink.number("angular_stiffness_nm_per_rad", tool.angular_stiffness_nm_per_rad);
-    sink.number("smooth_m", tool.smooth_m);
+    sink.number("shading_m", tool.shading_m);
     sink.number("force_max_n", tool.force_max_n);
     sink.number("torque_max_nm", tool.torque_max_nm);
     sink.number("speed_max_m_per_s", tool.speed_max_m_per_s);
     sink.flag("wants_contacts", tool.wants_contacts);
     sink.flag("wants_pairs", tool.wants_pairs);
-    sink.flag("passes_through", tool.passes_through);
+    sink.flag("query_only", tool.query_only);
     sink.flag("wants_distance", tool.wants_distance);
 }
 
@@ -207,7 +207,7 @@ void tell_model_spec(FieldSink& sink, const RecordedSetup& setup, std::size_t nu
     sink.integer("faces", model.capacities.faces);
     sink.integer("blocks", model.capacities.blocks);
     sink.integer("nodes", model.capacities.nodes);
-    sink.flag("is_guest", model.base.empty());
+    sink.flag("is_streamed_model", model.base.empty());
 }
 
 void tell_frame(FieldSink& sink, const ReplayedFrameView& frame)
@@ -218,15 +218,15 @@ void tell_frame(FieldSink& sink, const ReplayedFrameView& frame)
     sink.words("faults", names_of(frame.returned.faults));
     tell_work(sink, frame.returned.work);
     tell_budgets(sink, frame.given.budgets);
-    sink.integer("arrivals", count_of(frame.given.events, DoorEventKind::arrival));
-    sink.integer("link_updates", count_of(frame.given.events, DoorEventKind::link_update));
-    sink.integer("wish_room", frame.given.wish_room);
+    sink.integer("arrivals", count_of(frame.given.events, QueueEventKind::arrival));
+    sink.integer("link_updates", count_of(frame.given.events, QueueEventKind::link_update));
+    sink.integer("request_room", frame.given.request_room);
     const SceneOutput& scene = frame.returned.scene;
     sink.integer("objects", scene.objects);
     sink.integer("pairs_awake", scene.pairs);
-    sink.integer("crowded_tools", scene.crowded_tools);
+    sink.integer("tools_over_capacity", scene.tools_over_capacity);
     sink.integer("walled_tools", scene.walled_tools);
-    sink.integer("walks", scene.walks);
+    sink.integer("traversals", scene.walks);
     for (std::size_t i = 0; i < kChangeRefusals; ++i)
     {
         const std::string name = std::string("refused_") + kChangeRefusalNames[i];
@@ -250,11 +250,11 @@ void tell_tool(FieldSink& sink, const ReplayedFrameView& frame, std::size_t tool
     sink.vector("carried_world_m", output.carried_m);
     sink.vector("carried_world_rad", output.carried_rad);
     sink.flag("in_contact", output.in_contact);
-    sink.flag("frozen", output.frozen);
-    sink.flag("squeezed", output.squeezed);
-    sink.flag("held_back", output.held_back);
+    sink.flag("halted", output.halted);
+    sink.flag("over_constrained", output.over_constrained);
+    sink.flag("data_limited", output.data_limited);
     sink.flag("under_way", output.under_way);
-    sink.flag("crowded", output.crowded);
+    sink.flag("capacity_exceeded", output.capacity_exceeded);
     sink.flag("lost_object", output.lost_object);
     sink.flag("is_gone", output.is_gone);
     sink.words("faults", names_of(frame_faults(output)));

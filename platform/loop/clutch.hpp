@@ -21,7 +21,7 @@ public:
     explicit Clutch(std::optional<std::uint32_t> button) noexcept : button_(button) {}
 
     /// Pose of the tool for this device pose. Both rotations are orthonormal to kRotationTolerance.
-    [[nodiscard]] HandPlace tool_at(const HandPlace& hand, std::uint32_t buttons) noexcept
+    [[nodiscard]] DevicePose tool_at(const DevicePose& hand, std::uint32_t buttons) noexcept
     {
         const bool was_held = is_held_;
         is_held_ = button_ && ((buttons >> *button_) & 1U) != 0;
@@ -44,9 +44,9 @@ public:
     [[nodiscard]] bool has_parted() const noexcept { return has_parted_; }
 
 private:
-    [[nodiscard]] HandPlace moved(const HandPlace& hand) const noexcept
+    [[nodiscard]] DevicePose moved(const DevicePose& hand) const noexcept
     {
-        return has_parted_ ? HandPlace{hand.position_m + offset_m_, hand.rotation * turn_} : hand;
+        return has_parted_ ? DevicePose{hand.position_m + offset_m_, hand.rotation * turn_} : hand;
     }
 
     std::optional<std::uint32_t> button_;
@@ -54,7 +54,7 @@ private:
     bool has_parted_{false};
     Vec3 offset_m_{0.0, 0.0, 0.0}; ///< Offset from device to tool, in the world.
     Mat3 turn_{Mat3::Identity()};  ///< Rotation of the tool in the device's frame.
-    HandPlace tool_;               ///< Last pose.
+    DevicePose tool_;              ///< Last pose.
     bool has_tool_{false};
 };
 

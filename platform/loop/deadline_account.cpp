@@ -51,7 +51,7 @@ void DeadlineAccount::add(std::uint64_t frame, const CycleMeasures& measures, st
     (lost.ns > 0 ? after_loss_ : in_turn_).record(measures.lateness_of_end + lost);
     CycleFlag flags = flags_of(measures, over_work);
     const bool is_suspect = has_any(flags, CycleFlag::over_cpu) &&
-                            !has_any(without(flags, CycleFlag::over_cpu), kOwnFaults);
+                            !has_any(without(flags, CycleFlag::over_cpu), kOverruns);
     if (is_suspect)
     {
         flags = cpu_verdict(flags, is_shown(work));
@@ -62,7 +62,7 @@ void DeadlineAccount::add(std::uint64_t frame, const CycleMeasures& measures, st
     calls = measures.calls;
     own_losses_ = std::max(measures.lateness_of_end, Duration{}) / period_;
     count(flags, 1);
-    if (has_any(flags, kOwnFaults | CycleFlag::slowed | CycleFlag::missed))
+    if (has_any(flags, kOverruns | CycleFlag::slowed | CycleFlag::missed))
     {
         note({frame, flags, measures.cycle.wake_lateness, measures.frame, measures.cpu,
               measures.lateness_of_end});
@@ -110,13 +110,13 @@ void DeadlineAccount::count(CycleFlag flags, std::uint64_t sign) noexcept
     {
         flagged[bit] += has_any(flags, static_cast<CycleFlag>(1U << bit)) ? sign : 0U;
     }
-    const bool own = has_any(flags, kOwnFaults);
+    const bool own = has_any(flags, kOverruns);
     const bool is_missed = has_any(flags, CycleFlag::missed);
     const bool was_stopped = has_any(flags, CycleFlag::stopped);
-    own_faults += own ? sign : 0U;
+    overruns += own ? sign : 0U;
     missed += is_missed ? sign : 0U;
     stopped += is_missed && !own && was_stopped ? sign : 0U;
-    machine_late += is_missed && !own && !was_stopped ? sign : 0U;
+    latency_misses += is_missed && !own && !was_stopped ? sign : 0U;
 }
 
 void DeadlineAccount::note(const NotedCycle& cycle) noexcept

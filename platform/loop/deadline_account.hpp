@@ -56,9 +56,9 @@ inline constexpr std::array<const char*, kCycleFlags> kCycleFlagNames{
 }
 
 /// Events that are overruns of the loop itself, even if the deadline was met.
-inline constexpr CycleFlag kOwnFaults = CycleFlag::page_fault | CycleFlag::allocation |
-                                        CycleFlag::gave_way | CycleFlag::system_call |
-                                        CycleFlag::over_work | CycleFlag::over_cpu;
+inline constexpr CycleFlag kOverruns = CycleFlag::page_fault | CycleFlag::allocation |
+                                       CycleFlag::gave_way | CycleFlag::system_call |
+                                       CycleFlag::over_work | CycleFlag::over_cpu;
 
 /// A cycle to be listed.
 struct NotedCycle
@@ -71,7 +71,7 @@ struct NotedCycle
     Duration lateness_of_end;
 };
 
-/// Attributes each failed cycle to its cause: an overrun if a flag of kOwnFaults is set, even if
+/// Attributes each failed cycle to its cause: an overrun if a flag of kOverruns is set, even if
 /// the deadline was met. Any other missed deadline is attributed to the stop if the process was
 /// stopped from outside, otherwise to the machine.
 ///
@@ -131,10 +131,10 @@ public:
     [[nodiscard]] std::span<const NotedCycle> noted() const noexcept { return noted_; }
 
     std::uint64_t missed{0};
-    std::uint64_t own_faults{0};   ///< Overruns: cycles, missed or not.
-    std::uint64_t machine_late{0}; ///< Missed deadlines.
-    std::uint64_t stopped{0};      ///< Missed deadlines.
-    std::uint64_t not_kept{0};     ///< Cycles to be listed that are not in noted().
+    std::uint64_t overruns{0};       ///< Cycles with an overrun, missed or not.
+    std::uint64_t latency_misses{0}; ///< Missed deadlines without an overrun.
+    std::uint64_t stopped{0};        ///< Missed deadlines of a stopped process.
+    std::uint64_t not_kept{0};       ///< Cycles to be listed that are not in noted().
     std::array<std::uint64_t, kCycleFlags> flagged{}; ///< Cycles with each flag.
     std::uint64_t allocations{0};
     std::uint64_t page_faults{0};

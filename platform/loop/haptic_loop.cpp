@@ -123,7 +123,7 @@ void HapticLoop::wait_for_deadline() noexcept
     parts_.timer->sleep_until_margin();
     const ThreadUsage awake = thread_usage();
     const MonotonicTime awake_at = parts_.clock->now();
-    rehearse();
+    warm_caches();
     measures_.beside += parts_.clock->now() - awake_at;
     const ThreadUsage ready = thread_usage();
     measures_.cycle = parts_.timer->spin_until_deadline();
@@ -136,10 +136,10 @@ void HapticLoop::wait_for_deadline() noexcept
 }
 
 /// Warms the caches. This and the frame must make no system call.
-void HapticLoop::rehearse() noexcept
+void HapticLoop::warm_caches() noexcept
 {
     system_call_trap::mark_frame(true);
-    parts_.frame->rehearse();
+    parts_.frame->warm_caches();
     system_call_trap::mark_frame(false);
 }
 
@@ -180,14 +180,14 @@ void HapticLoop::trace(const FrameOutput& output, MonotonicTime start) noexcept
                        .stage = measures_.stage,
                        .wake_lateness = measures_.cycle.wake_lateness,
                        .periods = measures_.cycle.periods,
-                       .wishes = output.work.requests,
+                       .requests = output.work.requests,
                        .splits = output.work.splits,
                        .merges = output.work.merges,
                        .triangles = output.work.triangles_tested,
                        .faults = output.faults};
-    for (const DoorEvent& event : output.door.events)
+    for (const QueueEvent& event : output.queues.events)
     {
-        ++(event.kind == DoorEventKind::arrival ? traced.arrivals : traced.link_updates);
+        ++(event.kind == QueueEventKind::arrival ? traced.arrivals : traced.link_updates);
     }
     for (const ToolOutput& tool : output.tools)
     {
@@ -289,9 +289,9 @@ std::span<const Vec3> HapticLoop::first_places_m() const noexcept
 FrameInput HapticLoop::read_scene(MonotonicTime now) noexcept
 {
     FrameInput input{states_, {}, measures_.budgets, now.ns};
-    if (parts_.pose_door != nullptr)
+    if (parts_.scene_mailbox != nullptr)
     {
-        input.changes = parts_.pose_door->refresh(now, touches_.view());
+        input.changes = parts_.scene_mailbox->refresh(now, touches_.view());
     }
     return input;
 }
@@ -332,9 +332,9 @@ void HapticLoop::make_safe(const FrameOutput& output) noexcept
             note(i, forces_[i].state, forces_[i].causes);
         }
     }
-    if (parts_.pose_door != nullptr) // The poses at the start of the next frame need them.
+    if (parts_.scene_mailbox != nullptr) // The poses at the start of the next frame need them.
     {
-        list_touches(*parts_.frame, output.pairs, parts_.pose_door->belief(), touches_);
+        list_touches(*parts_.frame, output.pairs, parts_.scene_mailbox->belief(), touches_);
     }
 }
 
@@ -347,16 +347,18 @@ bool HapticLoop::may_touch(const PairOutput& pair, const FrameOutput& output) co
 bool HapticLoop::meets_what_outruns(std::uint32_t tool) const noexcept
 {
     return std::ranges::any_of(touches_,
-                               [&](const ObjectTouch& touch) {
+                               [&](const ObjectTouch& touch)
+                               {
                                    return touch.tool == tool && touch.is_in_reach &&
-                                          parts_.pose_door->outruns(touch.object);
+                                          parts_.scene_mailbox->exceeds_limit(touch.object);
                                });
 }
 
 /// True if the tool is data-limited or halted near a starved model.
 bool HapticLoop::starves(std::uint32_t tool, const FrameOutput& output) const noexcept
 {
-    if (parts_.starved == nullptr || !(output.tools[tool].held_back || output.tools[tool].frozen))
+    if (parts_.starved == nullptr ||
+        !(output.tools[tool].data_limited || output.tools[tool].halted))
     {
         return false;
     }

@@ -3,11 +3,11 @@
 #pragma once
 
 #include "platform/loop/budget_governor.hpp"
-#include "platform/loop/front_tap.hpp"
 #include "platform/loop/model_marks.hpp"
-#include "platform/loop/pose_door.hpp"
+#include "platform/loop/refinement_state_tap.hpp"
 #include "platform/loop/run_statistics.hpp"
 #include "platform/loop/safety_log.hpp"
+#include "platform/loop/scene_mailbox.hpp"
 #include "platform/loop/telemetry_tap.hpp"
 #include "platform/loop/tool_port.hpp"
 #include "platform/loop/trace_tap.hpp"
@@ -44,9 +44,9 @@ struct LoopParts
     bool is_virtual{false}; ///< No time is measured, since others work on this thread, too.
     const ModelMarks* hosts_gone{nullptr}; ///< Models whose host is gone; may be null.
     const ModelMarks* starved{nullptr};    ///< Starved models; may be null.
-    PoseDoor* pose_door{nullptr};          ///< Motion of the objects; may be null.
+    SceneMailbox* scene_mailbox{nullptr};  ///< Motion of the objects; may be null.
     TelemetryTap* telemetry{nullptr};      ///< Shows every frame; may be null.
-    FrontTap* front{nullptr};              ///< Shows the refinement state; may be null.
+    RefinementStateTap* front{nullptr};    ///< Shows the refinement state; may be null.
     TraceTap* trace{nullptr};              ///< Traces every frame's times; may be null.
 };
 
@@ -95,7 +95,7 @@ public:
 private:
     void wait_for_deadline() noexcept;
     void run_period() noexcept;
-    void rehearse() noexcept;
+    void warm_caches() noexcept;
     [[nodiscard]] FrameOutput run_frame(const FrameInput& input) noexcept;
     [[nodiscard]] ThreadUsage thread_usage() const noexcept;
     [[nodiscard]] Duration cpu_time() const noexcept;

@@ -16,13 +16,13 @@ int badness(AnswerKind kind) noexcept
 {
     switch (kind)
     {
-    case AnswerKind::decided:
+    case AnswerKind::separated:
         return 0;
     case AnswerKind::exact:
         return 1;
     case AnswerKind::within_tolerance:
         return 2;
-    case AnswerKind::bracket:
+    case AnswerKind::bounded:
         return 3;
     case AnswerKind::stale:
         return 4;
@@ -39,11 +39,11 @@ bool is_felt(const ToolOutput& output, const ToolForce& force) noexcept
 
 void AnswerCounts::add(AnswerKind kind, double width_m, double tolerated_m) noexcept
 {
-    const bool is_inexact = kind == AnswerKind::bracket || kind == AnswerKind::stale;
+    const bool is_inexact = kind == AnswerKind::bounded || kind == AnswerKind::stale;
     exact += kind == AnswerKind::exact ? 1 : 0;
-    decided += kind == AnswerKind::decided ? 1 : 0;
+    separated += kind == AnswerKind::separated ? 1 : 0;
     within_tolerance += kind == AnswerKind::within_tolerance ? 1 : 0;
-    bracket += kind == AnswerKind::bracket ? 1 : 0;
+    bounded += kind == AnswerKind::bounded ? 1 : 0;
     stale += kind == AnswerKind::stale ? 1 : 0;
     inexact_run_ = is_inexact ? inexact_run_ + 1 : 0;
     longest_inexact_run = std::max(longest_inexact_run, inexact_run_);
@@ -56,18 +56,19 @@ void ForceCounts::add(const ToolOutput& output, const ToolForce& force) noexcept
     add_sent(force, output.in_contact);
     contact_frames += output.in_contact ? 1 : 0;
     force_frames += is_felt(output, force) ? 1U : 0U;
-    frozen_frames += output.frozen ? 1 : 0;
-    held_back_frames += output.held_back ? 1 : 0;
+    halted_frames += output.halted ? 1 : 0;
+    data_limited_frames += output.data_limited ? 1 : 0;
     lag_max_m = std::max(lag_max_m, output.lag_m);
     twist_max_rad = std::max(twist_max_rad, force.twist_rad);
-    guide_max_n = std::max(guide_max_n, force.own_n);
+    fixture_max_n = std::max(fixture_max_n, force.own_n);
     load_max_n = std::max(load_max_n, force.load_n.norm());
     load_max_nm = std::max(load_max_nm, force.load_nm.norm());
-    if (has_action(force.push.actions, ForceAction::stiffness_capped))
+    if (has_action(force.push.actions, ForceAction::stiffness_limited))
     {
-        softest_wall_n_per_m = std::min(softest_wall_n_per_m, force.push.stiffness_n_per_m);
+        least_stiffness_n_per_m = std::min(least_stiffness_n_per_m, force.push.stiffness_n_per_m);
     }
-    surplus_max_j = std::max({surplus_max_j, force.push.surplus_j, force.turn.surplus_j});
+    observed_energy_max_j = std::max(
+        {observed_energy_max_j, force.push.observed_energy_j, force.turn.observed_energy_j});
     for (std::size_t bit = 0; bit < kForceActions; ++bit)
     {
         const auto action = static_cast<ForceAction>(1U << bit);
@@ -134,7 +135,7 @@ void RunStatistics::add(const FrameOutput& output, std::span<const ToolForce> fo
                   is_over_budget(output.work, measures.budgets));
     bool any_contact = false;
     bool any_force = false;
-    bool any_held_back = false;
+    bool any_data_limited = false;
     for (std::size_t i = 0; i < tools.size(); ++i)
     {
         tools[i].add(output.tools[i], forces[i]);
@@ -144,17 +145,17 @@ void RunStatistics::add(const FrameOutput& output, std::span<const ToolForce> fo
                       static_cast<float>(forces[i].push.force_n.norm())});
         any_contact = any_contact || output.tools[i].in_contact;
         any_force = any_force || is_felt(output.tools[i], forces[i]);
-        any_held_back = any_held_back || output.tools[i].held_back;
+        any_data_limited = any_data_limited || output.tools[i].data_limited;
     }
     contact_frames += any_contact ? 1 : 0;
     force_frames += any_force ? 1 : 0;
-    held_back_frames += any_held_back ? 1 : 0;
+    data_limited_frames += any_data_limited ? 1 : 0;
     std::copy(output.models.begin(), output.models.end(), models.begin());
 }
 
 double RunStatistics::add_answers(const FrameOutput& output) noexcept
 {
-    AnswerKind worst = AnswerKind::decided;
+    AnswerKind worst = AnswerKind::separated;
     double widest_m = 0.0;
     double tolerated_m = 0.0;
     for (const PairOutput& pair : output.pairs)
@@ -218,7 +219,7 @@ void RunStatistics::add_scene(const FrameOutput& output) noexcept
     objects_now = scene.objects;
     objects_max = std::max(objects_max, scene.objects);
     pairs_awake_max = std::max(pairs_awake_max, scene.pairs);
-    crowded_frames += scene.crowded_tools > 0 ? 1 : 0;
+    capacity_exceeded_frames += scene.tools_over_capacity > 0 ? 1 : 0;
     invisible_wall_frames += scene.walled_tools > 0 ? 1 : 0;
     scene_walks += scene.walks;
     shed_pairs += static_cast<std::uint64_t>(

@@ -24,8 +24,8 @@ namespace tactus::hrtc
 struct AnswerCounts
 {
     std::uint64_t exact{0};
-    std::uint64_t decided{0};
-    std::uint64_t bracket{0};
+    std::uint64_t separated{0};
+    std::uint64_t bounded{0};
     std::uint64_t stale{0};
     std::uint64_t within_tolerance{0};
     std::uint64_t longest_inexact_run{0};
@@ -35,7 +35,7 @@ struct AnswerCounts
     void add(AnswerKind kind, double width_m, double tolerated_m) noexcept;
     [[nodiscard]] std::uint64_t in_all() const noexcept
     {
-        return exact + decided + within_tolerance + bracket + stale;
+        return exact + separated + within_tolerance + bounded + stale;
     }
 
 private:
@@ -50,17 +50,18 @@ struct ForceCounts
     double torque_max_nm{0.0};
     double torque_max_step_nm{0.0}; ///< Largest |T(k) - T(k - 1)|.
     double twist_max_rad{0.0};      ///< Largest angle between device and proxy, in contact.
-    double guide_max_n{0.0};        ///< Largest force of --guide before it was limited.
+    double fixture_max_n{0.0};      ///< Largest force of --fixture before it was limited.
     double load_max_n{0.0};         ///< Largest force that carried a payload, not in the others.
     double load_max_nm{0.0};        ///< Largest torque that carried a payload, not in the others.
     std::uint64_t contact_frames{0};
     std::uint64_t force_frames{0}; ///< Contact frames with a force sent.
-    std::uint64_t frozen_frames{0};
-    std::uint64_t held_back_frames{0};
+    std::uint64_t halted_frames{0};
+    std::uint64_t data_limited_frames{0};
     double lag_max_m{0.0}; ///< Largest ToolOutput::lag_m.
     /// Least stiffness to which a contact was reduced for the device; infinite if none was.
-    double softest_wall_n_per_m{kInfinity};
-    double surplus_max_j{0.0}; ///< Largest SpringForce::surplus_j, of force or torque.
+    double least_stiffness_n_per_m{kInfinity};
+    double observed_energy_max_j{
+        0.0}; ///< Largest SpringForce::observed_energy_j, of force or torque.
     std::array<std::uint64_t, kForceActions> conditioned{}; ///< Frames with each ForceAction.
 
     void add(const ToolOutput& output, const ToolForce& force) noexcept;
@@ -112,9 +113,9 @@ public:
     std::vector<ForceCounts> tools;
     std::vector<ModelOutput> models; ///< Models of the last frame; `used_max` covers the run.
 
-    std::uint64_t contact_frames{0};   ///< Frames with some tool in contact.
-    std::uint64_t force_frames{0};     ///< Contact frames in which a tool in contact sent a force.
-    std::uint64_t held_back_frames{0}; ///< Frames with some tool data-limited.
+    std::uint64_t contact_frames{0}; ///< Frames with some tool in contact.
+    std::uint64_t force_frames{0};   ///< Contact frames in which a tool in contact sent a force.
+    std::uint64_t data_limited_frames{0}; ///< Frames with some tool data-limited.
     std::uint64_t splits{0};
     std::uint64_t merges{0};
     std::uint64_t nodes_visited{0};
@@ -129,7 +130,7 @@ public:
     std::uint32_t objects_max{0};
     std::uint32_t pairs_awake_max{0};
     /// Frames with some tool whose clearance is less than requested.
-    std::uint64_t crowded_frames{0};
+    std::uint64_t capacity_exceeded_frames{0};
     /// Frames with one of them held at its proven clearance.
     std::uint64_t invisible_wall_frames{0};
     std::uint64_t shed_pairs{0};  ///< Pairs dropped, summed over the frames.

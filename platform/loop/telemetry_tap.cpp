@@ -4,7 +4,7 @@
 
 #include "platform/loop/touch_forces.hpp"
 #include "rt_core/base/assert.hpp"
-#include "transport/told_frame.hpp"
+#include "transport/telemetry_from_frame.hpp"
 
 #include <algorithm>
 #include <array>
@@ -21,13 +21,13 @@ void TelemetryTap::show(const ShownFrame& frame, const RunStatistics& statistics
     news_.frame = statistics.frames;
     news_.time_ns = frame.start.ns;
     news_.exact = statistics.answers.exact;
-    news_.decided = statistics.answers.decided;
-    news_.bracket = statistics.answers.bracket;
+    news_.separated = statistics.answers.separated;
+    news_.bounded = statistics.answers.bounded;
     news_.stale = statistics.answers.stale;
     news_.within_tolerance = statistics.answers.within_tolerance;
     news_.missed = statistics.deadlines.missed;
-    news_.own_faults = statistics.deadlines.own_faults;
-    news_.machine_late = statistics.deadlines.machine_late;
+    news_.overruns = statistics.deadlines.overruns;
+    news_.latency_misses = statistics.deadlines.latency_misses;
     news_.faults_now = static_cast<std::uint32_t>(frame.output.faults);
     news_.faults_seen |= news_.faults_now;
     news_.tool_count = static_cast<std::uint32_t>(frame.tools.size());

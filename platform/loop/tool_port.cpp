@@ -37,14 +37,15 @@ ToolPort::ToolPort(const ToolSetup& setup) noexcept
     : device_(*setup.device)
     , clutch_(setup.clutch_button)
     , pipeline_(pipeline_of(setup))
-    , own_source_(setup.own_force)
+    , external_source_(setup.external_force)
 {
 }
 
 const ToolState& ToolPort::read(std::uint32_t periods) noexcept
 {
     sample_ = device_.read();
-    const bool is_turn_known = sample_.rotation_world || !device_.info().limits.turn.is_measured;
+    const bool is_turn_known =
+        sample_.rotation_world || !device_.info().limits.rotation.is_measured;
     const Quaternion rotation = sample_.rotation_world.value_or(kUnturned);
     const bool is_rotation_sound = is_unit(rotation, kRotationTolerance);
     hand_.position_m = to_vec3(sample_.position_world_m);
@@ -55,7 +56,7 @@ const ToolState& ToolPort::read(std::uint32_t periods) noexcept
     if (state_.valid && hand_.position_m.allFinite())
     {
         hand_.rotation = orthonormalised(to_rotation(rotation));
-        const HandPlace tool = clutch_.tool_at(hand_, sample_.buttons);
+        const DevicePose tool = clutch_.tool_at(hand_, sample_.buttons);
         state_.position_m = tool.position_m;
         state_.rotation = tool.rotation;
     }
@@ -84,16 +85,18 @@ const ToolForce& ToolPort::make_safe(const ToolOutput& output, PeriodContext con
 {
     context.causes |= clutch_.is_held() ? ForceOff::clutch : ForceOff::none;
     context.force_left = take_back();
-    const ToolForce& force = pipeline_.step(state_, output, record_, own_force(output), context);
+    const ToolForce& force =
+        pipeline_.step(state_, output, record_, external_force(output), context);
     record_.sent_n = force.push.force_n;
     record_.sent_nm = force.turn.force_n;
     record_.sent_gripper_n = force.gripper_n;
     return force;
 }
 
-OwnForce ToolPort::own_force(const ToolOutput& output) noexcept
+ExternalForce ToolPort::external_force(const ToolOutput& output) noexcept
 {
-    return own_source_ != nullptr ? own_source_->next(sample_, state_, output) : OwnForce{};
+    return external_source_ != nullptr ? external_source_->next(sample_, state_, output)
+                                       : ExternalForce{};
 }
 
 /// Returns the fraction of the last force that the device still renders: less than 1 if another

@@ -19,34 +19,35 @@ namespace tactus::hrtc
 {
 
 /// External force that a program adds to the contact forces of one tool. It passes the same stages.
-class OwnForceSource
+class ExternalForceSource
 {
 public:
-    virtual ~OwnForceSource() = default;
+    virtual ~ExternalForceSource() = default;
     /// Force of this frame. Haptic thread: must not block, allocate or throw. If any component is
     /// not a number, the whole force is zero.
-    [[nodiscard]] virtual OwnForce next(const DeviceSample& sample, const ToolState& tool,
-                                        const ToolOutput& output) noexcept = 0;
+    [[nodiscard]] virtual ExternalForce next(const DeviceSample& sample, const ToolState& tool,
+                                             const ToolOutput& output) noexcept = 0;
 
 protected:
-    OwnForceSource() = default;
-    OwnForceSource(const OwnForceSource&) = default;
-    OwnForceSource& operator=(const OwnForceSource&) = default;
+    ExternalForceSource() = default;
+    ExternalForceSource(const ExternalForceSource&) = default;
+    ExternalForceSource& operator=(const ExternalForceSource&) = default;
 };
 
 /// Setup of one tool before the loop starts.
 struct ToolSetup
 {
-    ToolSpec spec;     ///< Tool of the frame.
-    std::string shape; ///< Shape as given by --tool.
-    std::string guide; ///< Virtual fixture as given by --guide; empty: none.
+    ToolSpec spec;       ///< Tool of the frame.
+    std::string shape;   ///< Shape as given by --tool.
+    std::string fixture; ///< Virtual fixture as given by --fixture; empty: none.
     /// Distance from surfaces at which a simulated operator holds it.
     double hand_radius_m{0.0};
     std::unique_ptr<HapticDevice> device;
     SafetyLimits limits;
     ConditionerSetup conditioner;
     std::optional<std::uint32_t> clutch_button;
-    OwnForceSource* own_force{nullptr}; ///< Source of an external force; borrowed, may be null.
+    ExternalForceSource* external_force{
+        nullptr};  ///< Source of an external force; borrowed, may be null.
     ToolLoad load; ///< Payload; its weight must not exceed the device's largest force.
     ChangeRule change;
 };
@@ -88,7 +89,7 @@ public:
 
 private:
     void look() noexcept;
-    [[nodiscard]] OwnForce own_force(const ToolOutput& output) noexcept;
+    [[nodiscard]] ExternalForce external_force(const ToolOutput& output) noexcept;
     [[nodiscard]] double take_back() noexcept;
     void release_brake() noexcept;
     void send(const ToolForce& force) noexcept;
@@ -96,9 +97,9 @@ private:
     HapticDevice& device_;
     Clutch clutch_;
     ForcePipeline pipeline_;
-    OwnForceSource* own_source_;
+    ExternalForceSource* external_source_;
     DeviceSample sample_;
-    HandPlace hand_; ///< Device pose of the last sample.
+    DevicePose hand_; ///< Device pose of the last sample.
     ToolState state_;
     DeviceRecord record_;
     std::atomic<bool> is_braked_for_good_{false};

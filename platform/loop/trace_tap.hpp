@@ -28,7 +28,7 @@ struct TracedFrame
     std::uint32_t periods{1};      ///< Periods since the frame before.
     std::uint32_t arrivals{0};     ///< Arrivals taken from the queues.
     std::uint32_t link_updates{0}; ///< Link updates taken from the queues.
-    std::uint32_t wishes{0};       ///< Requests put into the queues.
+    std::uint32_t requests{0};     ///< Requests put into the queues.
     std::uint32_t splits{0};
     std::uint32_t merges{0};
     std::uint32_t triangles{0};
@@ -38,12 +38,12 @@ struct TracedFrame
 
 static_assert(sizeof(TracedFrame) == 120); // The haptic thread copies this: docs/report.md.
 
-/// Times and results of one round of the courier.
+/// Times and results of one round of the chunk loader.
 struct TracedRound
 {
     MonotonicTime start{};
     MonotonicTime end{};
-    std::uint64_t wishes{0};
+    std::uint64_t requests{0};
     std::uint64_t pieces{0};
     std::uint64_t bytes{0};
     std::uint64_t delivered{0};

@@ -41,7 +41,7 @@ struct TimerCounts
 ///     timer.start(period, margin)
 ///     for (;;)
 ///         timer.sleep_until_margin()      wakes at deadline - margin, by absolute time
-///         frame.rehearse()
+///         frame.warm_caches()
 ///         cycle = timer.spin_until_deadline()
 ///         frame.run(...)
 ///

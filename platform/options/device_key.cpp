@@ -27,7 +27,7 @@ using Key = std::array<unsigned char, 32>;
 static_assert(std::tuple_size_v<Key> >= crypto_generichash_blake2b_KEYBYTES_MIN);
 static_assert(std::tuple_size_v<Key> <= crypto_generichash_blake2b_KEYBYTES_MAX);
 
-class KeyedHash final : public udp::Seal
+class KeyedHash final : public udp::Authenticator
 {
 public:
     explicit KeyedHash(const Key& key) noexcept : key_(key) {}
@@ -63,7 +63,7 @@ bool is_open_to_all(const std::string& path)
 
 } // namespace
 
-Result<std::shared_ptr<const udp::Seal>, Refusal> read_device_key(const std::string& path)
+Result<std::shared_ptr<const udp::Authenticator>, Refusal> read_device_key(const std::string& path)
 {
     const auto refused = [&path](std::string_view why)
     { return Refusal{fmt::format("--device-key: {}: {}", printable(path), why)}; };
@@ -85,7 +85,7 @@ Result<std::shared_ptr<const udp::Seal>, Refusal> read_device_key(const std::str
     {
         return refused("must hold 64 hexadecimal digits and nothing else");
     }
-    return std::shared_ptr<const udp::Seal>(std::make_shared<KeyedHash>(key));
+    return std::shared_ptr<const udp::Authenticator>(std::make_shared<KeyedHash>(key));
 }
 
 } // namespace tactus::hrtc

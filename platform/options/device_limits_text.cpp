@@ -26,7 +26,7 @@ struct NamedLimit
 {
     std::string_view name;
     double DeviceLimits::*value{nullptr};
-    double TurnLimits::*turn{nullptr};
+    double RotationLimits::*turn{nullptr};
 };
 
 constexpr std::array kNamedLimits{
@@ -39,15 +39,16 @@ constexpr std::array kNamedLimits{
     NamedLimit{"slew_max_n_per_s", &DeviceLimits::slew_max_n_per_s},
     NamedLimit{"stiffness_max_n_per_m", &DeviceLimits::stiffness_max_n_per_m},
     NamedLimit{"added_damping_max_n_s_per_m", &DeviceLimits::added_damping_max_n_s_per_m},
-    NamedLimit{"turn.torque_max_nm", nullptr, &TurnLimits::torque_max_nm},
-    NamedLimit{"turn.inertia_kg_m2", nullptr, &TurnLimits::inertia_kg_m2},
-    NamedLimit{"turn.damping_nm_s_per_rad", nullptr, &TurnLimits::damping_nm_s_per_rad},
-    NamedLimit{"turn.friction_nm", nullptr, &TurnLimits::friction_nm},
-    NamedLimit{"turn.quantum_rad", nullptr, &TurnLimits::quantum_rad},
-    NamedLimit{"turn.slew_max_nm_per_s", nullptr, &TurnLimits::slew_max_nm_per_s},
-    NamedLimit{"turn.stiffness_max_nm_per_rad", nullptr, &TurnLimits::stiffness_max_nm_per_rad},
-    NamedLimit{"turn.added_damping_max_nm_s_per_rad", nullptr,
-               &TurnLimits::added_damping_max_nm_s_per_rad},
+    NamedLimit{"rotation.torque_max_nm", nullptr, &RotationLimits::torque_max_nm},
+    NamedLimit{"rotation.inertia_kg_m2", nullptr, &RotationLimits::inertia_kg_m2},
+    NamedLimit{"rotation.damping_nm_s_per_rad", nullptr, &RotationLimits::damping_nm_s_per_rad},
+    NamedLimit{"rotation.friction_nm", nullptr, &RotationLimits::friction_nm},
+    NamedLimit{"rotation.quantum_rad", nullptr, &RotationLimits::quantum_rad},
+    NamedLimit{"rotation.slew_max_nm_per_s", nullptr, &RotationLimits::slew_max_nm_per_s},
+    NamedLimit{"rotation.stiffness_max_nm_per_rad", nullptr,
+               &RotationLimits::stiffness_max_nm_per_rad},
+    NamedLimit{"rotation.added_damping_max_nm_s_per_rad", nullptr,
+               &RotationLimits::added_damping_max_nm_s_per_rad},
 };
 
 std::string limit_names()
@@ -99,7 +100,7 @@ std::string set_device_limits(std::string_view text, DeviceLimits& limits)
             return fmt::format("{} is given twice", key->name);
         }
         said.set(at);
-        (key->value != nullptr ? changed.*key->value : changed.turn.*key->turn) = *value;
+        (key->value != nullptr ? changed.*key->value : changed.rotation.*key->turn) = *value;
         is_last = comma == std::string_view::npos;
         text.remove_prefix(is_last ? text.size() : comma + 1);
     }

@@ -63,9 +63,9 @@ void declare_tools(CommandLine& line, RawOptions& raw)
     line.begin_task("Hands, tools and devices",
                     "hrtc ball.spm --tool sphere:0.002 --device udp:48500");
     line.add_option("--tools", raw.tool_count,
-                    "Number of tools, 1 to 16. The n-th --tool, --tool-mass, --guide, --device, "
+                    "Number of tools, 1 to 16. The n-th --tool, --tool-mass, --fixture, --device, "
                     "--device-limits, --device-frame and --motion are for tool n, or none for its "
-                    "default; in an option file the n-th table [[tool]] has shape, mass, guide, "
+                    "default; in an option file the n-th table [[tool]] has shape, mass, fixture, "
                     "device, device-limits, device-frame and motion [as many as these speak of, "
                     "or 1]")
         .integer_between(1U, kMaxTools);
@@ -74,10 +74,11 @@ void declare_tools(CommandLine& line, RawOptions& raw)
         const ToolOption& option = tool_options()[i];
         line.add_option(option.option, raw.of_tools[i], option.help).repeatable();
     }
-    line.add_option("--device-key", raw.device_key,
-                    "File with the key that udp devices and their drivers seal their datagrams "
-                    "with: 64 hexadecimal digits, readable by its owner or group alone [no seal: "
-                    "whoever sends is believed]");
+    line.add_option(
+        "--device-key", raw.device_key,
+        "File with the key that udp devices and their drivers authenticate their datagrams "
+        "with: 64 hexadecimal digits, readable by its owner or group alone [no authentication: "
+        "every sender is accepted]");
     line.add_option("--device-fault", raw.device_faults,
                     "For tests: what goes wrong with the readings of simulated devices: "
                     "KIND@FRAME+LENGTH with jitter, dropout, stuck, nan, time_jump or disconnect, "
@@ -108,9 +109,10 @@ void declare_run(CommandLine& line, Options& options, const CommandForm& form)
     line.add_option("--histograms", options.histograms_folder,
                     "Write the percentiles of each time of the report into this folder, as "
                     "HdrHistogram prints them: frame.hgrm and so on");
-    line.add_option("--trace", options.trace_path,
-                    "Write when each frame, its stages, the door and the courier did what, in "
-                    "Chrome's trace format (.json), which Perfetto opens; some 0.7 MB a second");
+    line.add_option(
+        "--trace", options.trace_path,
+        "Write when each frame, its stages, the queues and the chunk loader did what, in "
+        "Chrome's trace format (.json), which Perfetto opens; some 0.7 MB a second");
 }
 
 /// Memory, and the work of a frame.
@@ -136,7 +138,7 @@ void declare_budgets(CommandLine& line, Options& options, RawOptions& raw)
     line.add_flag("--no-static", raw.refines_always,
                   "Refine locally also a model that fits the pools as a whole");
     line.add_option("--predict", raw.prediction,
-                    "How the regions to load are foretold: local, linear, quadratic, distance, or "
+                    "How the regions to load are predicted: local, linear, quadratic, distance, or "
                     "auto, whichever erred least of late")
         .one_of({kPredictionNames.begin(), kPredictionNames.end()})
         .show_default();
@@ -155,11 +157,11 @@ void declare_force(CommandLine& line, Options& options)
                     "Of the spring that turns tools other than spheres, in N m/rad; the device's "
                     "own cap holds for it, too [--stiffness times the square of the tool's size]")
         .number_between(kSoftestTurn_nm_per_rad, kStiffestTurn_nm_per_rad);
-    line.add_option("--smooth", options.smooth_m,
-                    "Points and balls feel facets within this width, in metres, as one smooth "
+    line.add_option("--force-shading", options.shading_m,
+                    "Points and spheres feel facets within this width, in metres, as one smooth "
                     "surface, which is within an eighth of it of the mesh; edges of more than "
                     "25 degrees stay [each facet is felt]")
-        .number_between(kSmoothWidthMin_m, kSmoothWidthMax_m);
+        .number_between(kShadingWidthMin_m, kShadingWidthMax_m);
     line.add_option("--force-tolerance", options.force_tolerance_n,
                     "Coarser levels count as the surface where that changes a force by no more "
                     "than this, in newtons, and farther where the pools have no room for finer "
@@ -179,12 +181,12 @@ void declare_force(CommandLine& line, Options& options)
                     "Speed of the hand, in m/s, above which its force fades [the device's own]")
         .number_between(0.01, 100.0);
     line.add_option("--object-speed", options.object_speed_m_per_s,
-                    "In m/s, the most that is believed of an object that a tool touches or may "
-                    "within 20 ms: it is carried no faster, and the force fades while its host "
-                    "moves it farther")
+                    "Speed limit, in m/s, of an object that a tool touches or may within 20 ms: "
+                    "it is carried no faster, and the force fades while its host moves it "
+                    "farther")
         .number_between(0.001, 100.0)
         .show_default();
-    line.add_option("--follow-speed", options.follow_speed_m_per_s,
+    line.add_option("--proxy-speed", options.proxy_speed_m_per_s,
                     "In m/s, at which a tool in contact follows a faster hand; what it needs round "
                     "itself grows with it [a diagonal of the first model a second]")
         .number_between(0.001, 100.0);
@@ -214,7 +216,7 @@ void declare_transport(CommandLine& line, Options& options, RawOptions& raw)
     line.add_flag("--ignore-poses", raw.ignores_poses,
                   "Leave the objects where --place or --scene put them at the start, whatever "
                   "their hosts say");
-    line.add_flag("--no-front", raw.hides_front,
+    line.add_flag("--no-refinement-state", raw.hides_refinement_state,
                   "With DDS: do not tell viewers (spm_view) which parts of the models are refined");
     line.add_option("--wait", options.wait_s,
                     "Seconds to wait for a model to be published, and for a device to come")

@@ -37,7 +37,7 @@ struct RawOptions
     std::optional<int> cpu;
     bool prints_config{false};
     bool ignores_poses{false};
-    bool hides_front{false};
+    bool hides_refinement_state{false};
     bool refines_always{false};
 };
 

@@ -255,13 +255,13 @@ std::string check_materials(Options& options, const RawOptions& raw)
 /// After the tools. Empty when all is well.
 std::string check_smooth(Options& options, const RawOptions& /*raw*/)
 {
-    const auto is_ball = [](const ToolOptions& tool)
+    const auto is_sphere = [](const ToolOptions& tool)
     {
         return !tool.shape || (std::holds_alternative<PointCore>(tool.shape->core) &&
                                tool.shape->hull_file.empty());
     };
-    return options.smooth_m > 0.0 && std::ranges::none_of(options.tools, is_ball)
-               ? "--smooth: no --tool is a point or a sphere, and others feel each facet"
+    return options.shading_m > 0.0 && std::ranges::none_of(options.tools, is_sphere)
+               ? "--force-shading: no --tool is a point or a sphere, and others feel each facet"
                : "";
 }
 
@@ -287,14 +287,15 @@ std::string take_device_key(Options& options, const RawOptions& raw)
     {
         return {};
     }
-    const auto seal = read_device_key(*raw.device_key);
-    if (!seal)
+    const auto authenticator = read_device_key(*raw.device_key);
+    if (!authenticator)
     {
-        return seal.error().text;
+        return authenticator.error().text;
     }
     for (ToolOptions& tool : options.tools)
     {
-        tool.device.seal = tool.device.kind == DeviceKind::udp ? seal.value() : nullptr;
+        tool.device.authenticator =
+            tool.device.kind == DeviceKind::udp ? authenticator.value() : nullptr;
     }
     return {};
 }
@@ -426,7 +427,7 @@ std::string check_virtual_time(Options& options, const RawOptions& raw)
         return fmt::format("--virtual-time: takes no time that {} could tell of",
                            options.trace_path.empty() ? "--histograms" : "--trace");
     }
-    // What --print-config shows of --priority is no wish.
+    // The --priority that --print-config shows was not asked for.
     const char* of_real_time = raw.cpu                      ? "--cpu"
                                : options.supervisor_periods ? "--supervisor-periods"
                                : options.thread.priority != RtThreadOptions{}.priority
@@ -544,7 +545,7 @@ std::variant<Options, int> parse_options(int argc, char** argv, const CommandFor
     }
     options.thread.cpu = raw.cpu;
     options.follows_poses = !raw.ignores_poses;
-    options.shows_front = !raw.hides_front;
+    options.shows_refinement_state = !raw.hides_refinement_state;
     options.static_when_it_fits = !raw.refines_always;
     options.as_file = option_file(line, options, raw);
     if (raw.prints_config)

@@ -41,9 +41,9 @@ std::string set_mass(const std::string& text, ToolOptions& tool)
     return set_to(tool.load, parse_tool_mass(text));
 }
 
-std::string set_guide(const std::string& text, ToolOptions& tool)
+std::string set_fixture(const std::string& text, ToolOptions& tool)
 {
-    return set_to(tool.guide, parse_guide(text));
+    return set_to(tool.fixture, parse_fixture(text));
 }
 
 std::string set_device(const std::string& text, ToolOptions& tool)
@@ -92,15 +92,16 @@ constexpr ToolOption kOptions[kToolOptions] = {
      "Payload of the device that is to weigh nothing in the hand: KG, 0 to 5 [,X,Y,Z of its "
      "centre in the tool's frame, within 1 m]; down is the device's -z [0]",
      set_mass},
-    {"guide", "--guide",
+    {"fixture", "--fixture",
      "A spring of its own that guides the tool; world coordinates in m: point:X,Y,Z pulls it "
      "there; line:X,Y,Z,DX,DY,DZ to the line through X,Y,Z along D; plane:X,Y,Z,NX,NY,NZ pushes "
      "it back to the side where N points; gripper:X holds the device's gripper X open, 0 to 1; "
      "each with [,STIFFNESS in N/m, 1 to 3000 [100] [,FORCE at most, in N, 0.01 to 100 [1]]] "
      "[none]",
-     set_guide},
+     set_fixture},
     {"device", "--device",
-     "Device that moves the tool: sim[:CLASS], a simulated hand on a device of the class touch, "
+     "Device that moves the tool: sim[:CLASS], a simulated operator on a device of the class "
+     "touch, "
      "omega or delta; udp[:[ADDRESS:]PORT], a driver of your own; dhd[:INDEX], a device of Force "
      "Dimension's; replay:FILE, the hand of a recording; plugin:FILE[,WORDS], a library of your "
      "own [sim]",
@@ -115,7 +116,7 @@ constexpr ToolOption kOptions[kToolOptions] = {
      "[the world's]",
      set_frame},
     {"motion", "--motion",
-     "Motion of a simulated hand: script, free, approach, slide, tap, teleport, spin, tremor, "
+     "Motion of a simulated operator: script, free, approach, slide, tap, teleport, spin, tremor, "
      "turn, edge or peg; with :OBJECT behind it, on the scene's object of this name, or the first "
      "that shows the model of this name [script, each hand on another object]",
      set_motion},

@@ -42,7 +42,7 @@ function draw_marks(canvas, area, graph, marks) {
   canvas.globalAlpha = 1;
 }
 
-/// Legend of the vertical lines, for instance "own fault: 3".
+/// Legend of the vertical lines, for instance "overrun: 3".
 function name_marks(parent, marks) {
   for (const { name, kind, x } of marks) {
     const line = document.createElement("span");

@@ -64,8 +64,8 @@ private:
     CLI::Option* option_;
 };
 
-/// The options of a program. The only door to CLI11, whose headers take long to compile:
-/// docs/internals/decisions/0003-command-line-room.md.
+/// The options of a program. The only place that includes CLI11, whose headers take long to
+/// compile: docs/internals/decisions/0003-command-line-room.md.
 class CommandLine
 {
 public:

@@ -119,7 +119,7 @@ bool try_read_tool(ByteReader& reader, ToolState& tool, DeviceRecord& device)
     }
     if (has(kHasHand))
     {
-        HandPlace& hand = device.hand.emplace();
+        DevicePose& hand = device.hand.emplace();
         hand.position_m = read_vector(reader);
         hand.rotation = read_rotation(reader);
     }

@@ -83,7 +83,7 @@ const char* FrameDecoder::decode_body(ByteReader& reader)
             return "allows more than 256 splits or merges";
         }
     }
-    if (const char* fault = decode_door(reader))
+    if (const char* fault = decode_queue(reader))
     {
         return fault;
     }
@@ -103,16 +103,16 @@ const char* FrameDecoder::decode_body(ByteReader& reader)
     return nullptr;
 }
 
-const char* FrameDecoder::decode_door(ByteReader& reader)
+const char* FrameDecoder::decode_queue(ByteReader& reader)
 {
-    frame_.wish_room = reader.read<std::uint32_t>();
+    frame_.request_room = reader.read<std::uint32_t>();
     const auto events = reader.read<std::uint16_t>();
-    if (events > kMaxDoorEvents)
+    if (events > kMaxQueueEvents)
     {
-        return "takes more than 128 events from the door";
+        return "takes more than 128 events from the queues";
     }
     frame_.events.resize(events);
-    for (DoorEvent& event : frame_.events)
+    for (QueueEvent& event : frame_.events)
     {
         const auto kind = reader.read<std::uint8_t>();
         const auto content = reader.read<std::uint8_t>();
@@ -121,19 +121,19 @@ const char* FrameDecoder::decode_door(ByteReader& reader)
         event.slot = reader.read<std::uint32_t>();
         event.freed_taken = reader.read<std::uint32_t>();
         event.linked = reader.read<std::uint64_t>();
-        event.kind = static_cast<DoorEventKind>(kind);
+        event.kind = static_cast<QueueEventKind>(kind);
         event.key.kind = static_cast<ContentKind>(content);
-        const bool is_known = event.kind == DoorEventKind::arrival
+        const bool is_known = event.kind == QueueEventKind::arrival
                                   ? event.key.kind == ContentKind::chunk ||
                                         event.key.kind == ContentKind::index_page ||
                                         event.key.kind == ContentKind::base
-                                  : (event.kind == DoorEventKind::link_update &&
+                                  : (event.kind == QueueEventKind::link_update &&
                                      event.key.kind == ContentKind::chunk) ||
-                                        (event.kind == DoorEventKind::base_back &&
+                                        (event.kind == QueueEventKind::base_back &&
                                          event.key.kind == ContentKind::base);
         if (!reader.failed() && !is_known)
         {
-            return "takes an event of unknown kind from the door";
+            return "takes an event of unknown kind from the queues";
         }
     }
     return nullptr;

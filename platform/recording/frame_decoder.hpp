@@ -5,8 +5,8 @@
 #include "platform/recording/output_hash.hpp"
 #include "rt_core/base/byte_io.hpp"
 #include "rt_core/records/device_record.hpp"
-#include "rt_core/records/door_event.hpp"
 #include "rt_core/records/frame_input.hpp"
+#include "rt_core/records/queue_event.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -29,9 +29,9 @@ struct RecordedFrame
     std::vector<DeviceRecord> devices; ///< Records, one a tool.
     std::vector<SceneChange> changes;
     Budgets budgets;
-    std::uint32_t wish_room{0};
-    std::vector<DoorEvent> events; ///< Events taken from the queues.
-    bool has_hashes{true};         ///< False if the frame failed, or only its input was kept.
+    std::uint32_t request_room{0};
+    std::vector<QueueEvent> events; ///< Events taken from the queues.
+    bool has_hashes{true};          ///< False if the frame failed, or only its input was kept.
     std::vector<std::uint64_t> state_hashes; ///< Hashes, one a model, after the frame.
     OutputHashes output;
 
@@ -52,7 +52,7 @@ public:
 
 private:
     [[nodiscard]] const char* decode_body(ByteReader& reader);
-    [[nodiscard]] const char* decode_door(ByteReader& reader);
+    [[nodiscard]] const char* decode_queue(ByteReader& reader);
     [[nodiscard]] bool decode_tools(ByteReader& reader);
     [[nodiscard]] bool decode_changes(ByteReader& reader);
 

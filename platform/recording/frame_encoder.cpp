@@ -24,11 +24,11 @@ void write_budgets(FixedWriter& writer, const Budgets& budgets) noexcept
     }
 }
 
-void write_door(FixedWriter& writer, const DoorTake& door) noexcept
+void write_queue(FixedWriter& writer, const QueueTake& queues) noexcept
 {
-    writer.write(door.wish_room);
-    writer.write(static_cast<std::uint16_t>(door.events.size()));
-    for (const DoorEvent& event : door.events)
+    writer.write(queues.request_room);
+    writer.write(static_cast<std::uint16_t>(queues.events.size()));
+    for (const QueueEvent& event : queues.events)
     {
         writer.write(static_cast<std::uint8_t>(event.kind));
         writer.write(static_cast<std::uint8_t>(event.key.kind));
@@ -56,7 +56,7 @@ bool try_update(std::span<const std::byte> now, std::span<std::byte> last) noexc
 std::span<const std::byte> FrameEncoder::encode(const FrameInput& input, const FrameOutput& output,
                                                 std::span<const DeviceRecord> devices) noexcept
 {
-    FixedWriter writer = begin({input, output.door, devices}, 0);
+    FixedWriter writer = begin({input, output.queues, devices}, 0);
     for (const ModelOutput& model : output.models)
     {
         writer.write(model.state_hash);
@@ -77,7 +77,7 @@ std::span<const std::byte> FrameEncoder::encode_given(const GivenFrame& frame) n
 /// Writes everything except the hashes.
 FixedWriter FrameEncoder::begin(const GivenFrame& frame, std::uint8_t flags) noexcept
 {
-    const auto& [input, door, devices] = frame;
+    const auto& [input, queues, devices] = frame;
     TACTUS_ASSERT(devices.empty() || devices.size() == input.tools.size());
     TACTUS_ASSERT(input.changes.size() <= kMaxSceneChanges);
     std::array<std::byte, kBudgetsBytes> coded_budgets;
@@ -106,7 +106,7 @@ FixedWriter FrameEncoder::begin(const GivenFrame& frame, std::uint8_t flags) noe
     }
     writer.write_bytes(has_budgets ? std::span<const std::byte>(coded_budgets)
                                    : std::span<const std::byte>{});
-    write_door(writer, door);
+    write_queue(writer, queues);
     return writer;
 }
 

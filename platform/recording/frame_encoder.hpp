@@ -20,12 +20,12 @@ namespace tactus
 
 /// Sizes of the coded parts of a frame, in bytes; docs/recording.md lists the fields.
 inline constexpr std::size_t kBudgetsBytes = 40;
-inline constexpr std::size_t kDoorEventBytes = 23;
-inline constexpr std::size_t kMaxDoorEvents = kMaxArrivalsPerFrame + kMaxLinkUpdatesPerFrame;
+inline constexpr std::size_t kQueueEventBytes = 23;
+inline constexpr std::size_t kMaxQueueEvents = kMaxArrivalsPerFrame + kMaxLinkUpdatesPerFrame;
 /// Size of the largest frame: all tools, changes, models and events.
 inline constexpr std::size_t kMaxCodedFrameBytes =
     4 + 1 + 8 + kMaxTools * kToolStateBytes + 1 + kMaxSceneChanges * kSceneChangeBytes +
-    kBudgetsBytes + 4 + 2 + kMaxDoorEvents * kDoorEventBytes + kMaxModels * 8 +
+    kBudgetsBytes + 4 + 2 + kMaxQueueEvents * kQueueEventBytes + kMaxModels * 8 +
     sizeof(OutputHashes);
 
 /// Flags of a frame: scene changes follow; budgets follow, since they differ from the frame before;
@@ -38,7 +38,7 @@ inline constexpr std::uint8_t kHasNoHashes = 4;
 struct GivenFrame
 {
     FrameInput input;
-    DoorTake door;
+    QueueTake queues;
     std::span<const DeviceRecord> devices; ///< Records, one a tool, or empty without devices.
 };
 

@@ -66,12 +66,12 @@ std::uint64_t hash_tools(std::span<const ToolOutput> tools) noexcept
         hash.add(tool.torque_nm);
         hash.add(tool.proxy_rotation);
         hash.add(std::uint64_t{tool.in_contact});
-        hash.add(std::uint64_t{tool.frozen});
-        hash.add(std::uint64_t{tool.squeezed});
-        hash.add(std::uint64_t{tool.held_back});
+        hash.add(std::uint64_t{tool.halted});
+        hash.add(std::uint64_t{tool.over_constrained});
+        hash.add(std::uint64_t{tool.data_limited});
         hash.add(std::uint64_t{tool.under_way});
         hash.add(std::uint64_t{tool.cut_short});
-        hash.add(std::uint64_t{tool.crowded});
+        hash.add(std::uint64_t{tool.capacity_exceeded});
         hash.add(std::uint64_t{tool.lost_object});
         hash.add(std::uint64_t{tool.is_gone});
         hash.add(tool.clear_m);
@@ -183,7 +183,7 @@ std::uint64_t hash_work(const WorkCounters& work, const SceneOutput& scene,
         hash.add(std::uint64_t{count});
     }
     for (const std::uint32_t count :
-         {scene.objects, scene.pairs, scene.crowded_tools, scene.walled_tools, scene.walks})
+         {scene.objects, scene.pairs, scene.tools_over_capacity, scene.walled_tools, scene.walks})
     {
         hash.add(std::uint64_t{count});
     }

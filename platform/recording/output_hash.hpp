@@ -21,7 +21,7 @@ struct OutputHashes
     bool operator==(const OutputHashes&) const noexcept = default;
 };
 
-/// Hashes the output. About 60 multiplications for one tool and one object. `output.door` is an
+/// Hashes the output. About 60 multiplications for one tool and one object. `output.queues` is an
 /// input and left out.
 [[nodiscard]] OutputHashes hash_output(const FrameOutput& output) noexcept;
 

@@ -57,7 +57,7 @@ RecordedSetup to_recorded(const FrameSetup& setup)
     recorded.poses.assign(setup.poses.begin(), setup.poses.end());
     recorded.poses.resize(setup.objects.size());
     recorded.capacities = capacities_of(setup);
-    recorded.for_guests = setup.for_guests;
+    recorded.for_streamed_models = setup.for_streamed_models;
     for (const ModelSource& model : setup.models)
     {
         recorded.models.push_back({model.capacities,

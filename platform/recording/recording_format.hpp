@@ -75,7 +75,7 @@ struct RecordedSetup
     std::vector<ObjectSpec> objects;
     std::vector<ObjectPose> poses; ///< Poses, one an object.
     SceneCapacities capacities;
-    ModelCapacities for_guests;
+    ModelCapacities for_streamed_models;
     std::vector<RecordedModel> models;
     /// Names of models and objects, also of objects added later; at most kMaxRecordedNameBytes
     /// each.

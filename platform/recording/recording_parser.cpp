@@ -207,18 +207,19 @@ private:
             return fault;
         }
         Arena measuring = Arena::measuring();
-        const ModelPools pools(measuring, recording_.setup_.for_guests, model_count_);
+        const ModelPools pools(measuring, recording_.setup_.for_streamed_models, model_count_);
         static_cast<void>(pools);
         if (measuring.used() > pool_bytes_left_)
         {
             return "the pools of models that come and go need more than " +
                    std::to_string(kMaxRecordedPoolBytes >> 20U) + " MiB, which is the most allowed";
         }
-        pool_bytes_left_ -= recording_.setup_.for_guests.base_cells > 0 ? measuring.used() : 0;
+        pool_bytes_left_ -=
+            recording_.setup_.for_streamed_models.base_cells > 0 ? measuring.used() : 0;
         return std::nullopt;
     }
 
-    [[nodiscard]] bool is_guest(std::size_t model) const
+    [[nodiscard]] bool is_streamed_model(std::size_t model) const
     {
         return recording_.setup_.models[model].base.empty();
     }
@@ -227,8 +228,8 @@ private:
     {
         RecordedModel model;
         ModelCounts counts;
-        if (Fault fault = parse_model(payload, recording_.setup_.for_guests.base_cells > 0, model,
-                                      counts, pool_bytes_left_))
+        if (Fault fault = parse_model(payload, recording_.setup_.for_streamed_models.base_cells > 0,
+                                      model, counts, pool_bytes_left_))
         {
             return fault;
         }
@@ -249,11 +250,11 @@ private:
         const auto number = reader.read<std::uint32_t>();
         const auto bytes = reader.read_bytes(reader.remaining());
         const bool is_base = kind == ContentKind::base;
-        const bool is_known =
-            !reader.failed() && model < model_count_ &&
-            (kind == ContentKind::chunk        ? number < counts_[model].chunks()
-             : kind == ContentKind::index_page ? number < counts_[model].index_pages()
-                                               : is_base && is_guest(model) && number == 0);
+        const bool is_known = !reader.failed() && model < model_count_ &&
+                              (kind == ContentKind::chunk ? number < counts_[model].chunks()
+                               : kind == ContentKind::index_page
+                                   ? number < counts_[model].index_pages()
+                                   : is_base && is_streamed_model(model) && number == 0);
         if (!is_known)
         {
             return "a piece is not a chunk or index page of one of the recording's models, nor the "
@@ -308,29 +309,29 @@ private:
     /// Each arrival must have been recorded before.
     Fault check_pieces(const RecordedFrame& frame) const
     {
-        std::uint64_t pages = recording_.setup_.for_guests.pages;
-        std::uint64_t index_pages = recording_.setup_.for_guests.index_pages;
+        std::uint64_t pages = recording_.setup_.for_streamed_models.pages;
+        std::uint64_t index_pages = recording_.setup_.for_streamed_models.index_pages;
         for (const RecordedModel& model : recording_.setup_.models)
         {
             pages += model.capacities.pages;
             index_pages += model.capacities.index_pages;
         }
-        for (const DoorEvent& event : frame.events)
+        for (const QueueEvent& event : frame.events)
         {
             const std::uint64_t slots = event.key.kind == ContentKind::chunk ? pages
                                         : event.key.kind == ContentKind::index_page
                                             ? index_pages
-                                            : recording_.setup_.for_guests.base_cells;
+                                            : recording_.setup_.for_streamed_models.base_cells;
             if (event.slot >= slots)
             {
                 return "names slot " + std::to_string(event.slot) + " of " + std::to_string(slots);
             }
-            if (event.kind != DoorEventKind::base_back &&
+            if (event.kind != QueueEventKind::base_back &&
                 recording_.piece(event.owner, event.key).empty())
             {
                 return "takes piece " + std::to_string(event.key.number) + " of model " +
                        std::to_string(event.owner) +
-                       " from the door, which is not in the recording before it";
+                       " from the queues, which is not in the recording before it";
             }
         }
         return std::nullopt;

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/recording/replay.hpp"
 
-#include "platform/recording/replay_door.hpp"
+#include "platform/recording/replay_queues.hpp"
 #include "rt_core/frame/frame.hpp"
 
 #include <algorithm>
@@ -36,7 +36,7 @@ public:
             return Refusal{std::string("no frame can be made of the recording's setup: ") +
                            refusal_text(started.error())};
         }
-        replayed->door_.emplace(recording, *replayed->frame_);
+        replayed->queues_.emplace(recording, *replayed->frame_);
         return replayed;
     }
 
@@ -45,7 +45,7 @@ public:
     [[nodiscard]] std::optional<std::string> step(const RecordedFrame& recorded,
                                                   std::uint64_t number, const ReplayWatch& watch)
     {
-        if (auto fault = door_->open(recorded))
+        if (auto fault = queues_->open(recorded))
         {
             return fault;
         }
@@ -74,7 +74,7 @@ private:
         setup_.objects = setup.objects;
         setup_.poses = setup.poses;
         setup_.capacities = setup.capacities;
-        setup_.for_guests = setup.for_guests;
+        setup_.for_streamed_models = setup.for_streamed_models;
         setup_.tools = setup.tools;
         setup_.period_ns = setup.period_ns;
         setup_.pose_age_max_ns = setup.pose_age_max_ns;
@@ -89,10 +89,10 @@ private:
     [[nodiscard]] static std::optional<std::string> compare(const FrameOutput& output,
                                                             const RecordedFrame& recorded)
     {
-        if (output.door.events.size() != recorded.events.size())
+        if (output.queues.events.size() != recorded.events.size())
         {
-            return std::to_string(output.door.events.size()) + " of " +
-                   std::to_string(recorded.events.size()) + " events were taken from the door";
+            return std::to_string(output.queues.events.size()) + " of " +
+                   std::to_string(recorded.events.size()) + " events were taken from the queues";
         }
         for (std::size_t i = 0; i < recorded.state_hashes.size(); ++i)
         {
@@ -118,7 +118,7 @@ private:
     std::vector<CacheLine> memory_;
     std::optional<Arena> arena_;
     std::optional<Frame> frame_;
-    std::optional<ReplayDoor> door_;
+    std::optional<ReplayQueues> queues_;
 };
 
 } // namespace

@@ -59,7 +59,7 @@ bool is_sound(const ToolSpec& tool)
            is_within(tool.force_max_n, 0.0, 1e9) && is_within(tool.speed_max_m_per_s, 0.0, 1e9) &&
            is_within(tool.torque_max_nm, 0.0, 1e9) &&
            is_within(tool.angular_stiffness_nm_per_rad, 0.0, 1e9) &&
-           is_within(tool.smooth_m, 0.0, 1e6);
+           is_within(tool.shading_m, 0.0, 1e6);
 }
 
 // Values in a file; changing them requires a new format version (docs/recording.md).
@@ -89,14 +89,14 @@ Fault parse_tools(ByteReader& reader, std::uint32_t tools, std::uint32_t models,
         tool.wants_contacts = (wants & kWantsContacts) != 0;
         tool.wants_pairs = (wants & kWantsPairs) != 0;
         tool.torque_max_nm = reader.read<double>();
-        const auto wishes = reader.read<std::uint8_t>();
-        tool.passes_through = (wishes & kPassesThrough) != 0;
-        tool.wants_distance = (wishes & kWantsDistance) != 0;
+        const auto requests = reader.read<std::uint8_t>();
+        tool.query_only = (requests & kPassesThrough) != 0;
+        tool.wants_distance = (requests & kWantsDistance) != 0;
         tool.angular_stiffness_nm_per_rad = reader.read<double>();
-        tool.smooth_m = reader.read<double>();
+        tool.shading_m = reader.read<double>();
         const std::optional<ToolCore> core = read_core(reader, setup.hull_vertices);
         if (!core || wants > (kWantsContacts | kWantsPairs) ||
-            wishes > (kPassesThrough | kWantsDistance))
+            requests > (kPassesThrough | kWantsDistance))
         {
             return "tool " + std::to_string(i) +
                    " has an unknown core, one beyond 1e6 m or a hull of not 1 to 64 vertices";
@@ -196,10 +196,10 @@ std::vector<std::byte> code_setup(const RecordedSetup& setup)
         append(bytes, static_cast<std::uint8_t>((tool.wants_contacts ? kWantsContacts : 0U) |
                                                 (tool.wants_pairs ? kWantsPairs : 0U)));
         append(bytes, tool.torque_max_nm);
-        append(bytes, static_cast<std::uint8_t>((tool.passes_through ? kPassesThrough : 0U) |
+        append(bytes, static_cast<std::uint8_t>((tool.query_only ? kPassesThrough : 0U) |
                                                 (tool.wants_distance ? kWantsDistance : 0U)));
         append(bytes, tool.angular_stiffness_nm_per_rad);
-        append(bytes, tool.smooth_m);
+        append(bytes, tool.shading_m);
         append_core(bytes, tool.core);
     }
     for (std::size_t i = 0; i < setup.objects.size(); ++i)
@@ -213,9 +213,10 @@ std::vector<std::byte> code_setup(const RecordedSetup& setup)
     append_name(bytes, setup.compiler);
     append_name(bytes, setup.architecture);
     append_name(bytes, setup.kernels);
-    const ModelCapacities& guests = setup.for_guests;
-    for (const std::uint32_t capacity : {guests.pages, guests.index_pages, guests.faces,
-                                         guests.blocks, guests.nodes, guests.base_cells})
+    const ModelCapacities& streamed_models = setup.for_streamed_models;
+    for (const std::uint32_t capacity :
+         {streamed_models.pages, streamed_models.index_pages, streamed_models.faces,
+          streamed_models.blocks, streamed_models.nodes, streamed_models.base_cells})
     {
         append(bytes, capacity);
     }
@@ -298,9 +299,10 @@ std::optional<std::string> parse_setup(std::span<const std::byte> payload, Recor
             return "a name in the setup is not of at most 63 printable characters";
         }
     }
-    ModelCapacities& guests = setup.for_guests;
-    for (std::uint32_t* capacity : {&guests.pages, &guests.index_pages, &guests.faces,
-                                    &guests.blocks, &guests.nodes, &guests.base_cells})
+    ModelCapacities& streamed_models = setup.for_streamed_models;
+    for (std::uint32_t* capacity :
+         {&streamed_models.pages, &streamed_models.index_pages, &streamed_models.faces,
+          &streamed_models.blocks, &streamed_models.nodes, &streamed_models.base_cells})
     {
         *capacity = reader.read<std::uint32_t>();
     }
@@ -314,17 +316,18 @@ std::optional<std::string> parse_setup(std::span<const std::byte> payload, Recor
         return "the force tolerance is " + std::to_string(setup.force_tolerance_n) + " N; 0 to " +
                std::to_string(kForceToleranceMax_n) + " are allowed";
     }
-    if (guests.base_cells == 0)
+    if (streamed_models.base_cells == 0)
     {
-        return guests == ModelCapacities{}
+        return streamed_models == ModelCapacities{}
                    ? std::nullopt
                    : Fault("there are pools for models that come and go, and no base meshes");
     }
-    const Fault fault = check(guests, 0);
-    return fault || guests.base_cells <= kMaxCapacity ? fault : Fault("too many base meshes");
+    const Fault fault = check(streamed_models, 0);
+    return fault || streamed_models.base_cells <= kMaxCapacity ? fault
+                                                               : Fault("too many base meshes");
 }
 
-std::optional<std::string> parse_model(std::span<const std::byte> payload, bool has_guests,
+std::optional<std::string> parse_model(std::span<const std::byte> payload, bool has_streamed_models,
                                        RecordedModel& model, ModelCounts& counts,
                                        std::size_t& bytes_left)
 {
@@ -355,7 +358,7 @@ std::optional<std::string> parse_model(std::span<const std::byte> payload, bool 
     {
         return "the cache's switch is " + std::to_string(cache_off) + "; 0 and 1 are allowed";
     }
-    if (has_guests && model.base.empty())
+    if (has_streamed_models && model.base.empty())
     {
         return capacities == ModelCapacities{} ? std::nullopt
                                                : Fault("a model that comes and goes has pools");

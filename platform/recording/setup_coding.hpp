@@ -31,7 +31,7 @@ namespace tactus
 /// Reads a model section. `bytes_left`: memory that all pools may still need, reduced by this
 /// model's. Returns the fault, if any.
 [[nodiscard]] std::optional<std::string> parse_model(std::span<const std::byte> payload,
-                                                     bool has_guests, RecordedModel& model,
+                                                     bool has_streamed_models, RecordedModel& model,
                                                      ModelCounts& counts, std::size_t& bytes_left);
 
 /// Reads a name section into the names of the setup, whose models were read. Returns the fault, if

@@ -24,7 +24,7 @@ namespace
 /// way of a hand of 0.1 m/s in a millisecond.
 constexpr double kReachShare = 0.05;
 constexpr double kWay_m = 1e-4;
-/// Measured: for each face that is looked at, 5 to 18 are refined (boxes, capsules and balls of 2
+/// Measured: for each face that is looked at, 5 to 18 are refined (boxes, capsules and spheres of 2
 /// to 16 mm on 1.3 M faces).
 constexpr double kKeptPerFace = 8.0;
 

@@ -47,7 +47,7 @@ constexpr Limit kLimits[] = {
      Remedy::work},
     {"refine_heap_full", "more coarse faces are in reach of the tool than a frame ranks",
      Remedy::tool},
-    {"tool_crowded", "more holds the tool than is followed", Remedy::tool},
+    {"tool_over_capacity", "more holds the tool than is followed", Remedy::tool},
     {"forest_full", "no room for faces", Remedy::pool},
     {"tree_full", "no room for the tree", Remedy::pool},
     {"cache_full", "no room for pages", Remedy::pool},

@@ -31,7 +31,7 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-/// What a report is made of.
+/// Sources of a report.
 struct RunRecord
 {
     const Options& options;
@@ -49,9 +49,9 @@ Json times_of(const LatencyHistogram& histogram)
 Json answers_of(const AnswerCounts& answers, double diagonal_m)
 {
     return {{"exact", answers.exact},
-            {"decided", answers.decided},
+            {"separated", answers.separated},
             {"within_tolerance", answers.within_tolerance},
-            {"bracket", answers.bracket},
+            {"bounded", answers.bounded},
             {"stale", answers.stale},
             {"tolerated_max_m", answers.tolerated_max_m},
             {"longest_inexact_run", answers.longest_inexact_run},
@@ -65,13 +65,14 @@ Json pool_of(const PoolUse& use, std::size_t bytes_each)
             {"bytes", use.capacity * bytes_each}};
 }
 
-/// `for_guests` is what no model brings. The peaks of models that share a pool, at different times,
-/// may come to more than it has: no more than that was in use.
+/// Sum of the models' use of a pool and of `for_streamed_models`, the capacity without a model.
+/// Models that share a pool may have peaks at different times. The sum of the peaks is therefore
+/// clamped to the capacity.
 PoolUse sum_of(const std::vector<ModelOutput>& models, PoolUse ModelOutput::*pool,
-               std::uint32_t for_guests)
+               std::uint32_t for_streamed_models)
 {
     PoolUse sum;
-    sum.capacity = for_guests;
+    sum.capacity = for_streamed_models;
     for (const ModelOutput& model : models)
     {
         sum.used_max += (model.*pool).used_max;
@@ -81,25 +82,29 @@ PoolUse sum_of(const std::vector<ModelOutput>& models, PoolUse ModelOutput::*poo
     return sum;
 }
 
-/// Sums over the models. `bytes` is each pool's own; tables and the transport's side are what
-/// total_bytes holds besides.
+/// Pools, summed over the models. `bytes` covers one pool only. total_bytes also includes tables
+/// and the transport's side.
 Json pools_of(const RunRecord& record)
 {
     constexpr std::size_t kFaceBytes =
         sizeof(VertexForest::ActiveFace) + 2 * sizeof(IdTable::Entry);
     const std::vector<ModelOutput>& models = record.run.statistics.models;
-    const ModelCapacities& guests = record.controller.setup().for_guests;
-    return {{"pages", pool_of(sum_of(models, &ModelOutput::pages, guests.pages), sizeof(Page))},
-            {"index_pages", pool_of(sum_of(models, &ModelOutput::index_pages, guests.index_pages),
-                                    sizeof(IndexPage))},
-            {"faces", pool_of(sum_of(models, &ModelOutput::faces, guests.faces), kFaceBytes)},
-            {"blocks", pool_of(sum_of(models, &ModelOutput::blocks, guests.blocks),
-                               sizeof(BlockGeometry) + sizeof(BlockSide))},
-            {"nodes", pool_of(sum_of(models, &ModelOutput::nodes, guests.nodes), sizeof(AbNode))},
-            {"total_bytes", record.controller.pool_bytes()}};
+    const ModelCapacities& streamed_models = record.controller.setup().for_streamed_models;
+    return {
+        {"pages",
+         pool_of(sum_of(models, &ModelOutput::pages, streamed_models.pages), sizeof(Page))},
+        {"index_pages",
+         pool_of(sum_of(models, &ModelOutput::index_pages, streamed_models.index_pages),
+                 sizeof(IndexPage))},
+        {"faces", pool_of(sum_of(models, &ModelOutput::faces, streamed_models.faces), kFaceBytes)},
+        {"blocks", pool_of(sum_of(models, &ModelOutput::blocks, streamed_models.blocks),
+                           sizeof(BlockGeometry) + sizeof(BlockSide))},
+        {"nodes",
+         pool_of(sum_of(models, &ModelOutput::nodes, streamed_models.nodes), sizeof(AbNode))},
+        {"total_bytes", record.controller.pool_bytes()}};
 }
 
-/// How the object moved. All zero from files, and where poses are passed over.
+/// Motion of the object. All counts are zero for files, and if poses aren't followed.
 Json pose_of(const FinishedRun& run, std::size_t model, std::size_t object)
 {
     const PoseUse use = run.pose_uses.empty() ? PoseUse{} : run.pose_uses[object];
@@ -113,7 +118,7 @@ Json pose_of(const FinishedRun& run, std::size_t model, std::size_t object)
     return {{"followed", use.is_followed},  {"accepted", counts.accepted},
             {"refused", refused},           {"moves", use.moves},
             {"step_max_m", use.step_max_m}, {"age_max_s", to_seconds(use.age_max)},
-            {"old_frames", use.old_frames}, {"outran_frames", use.outran_frames}};
+            {"old_frames", use.old_frames}, {"rate_limited_frames", use.rate_limited_frames}};
 }
 
 Json models_of(const RunRecord& record)
@@ -125,8 +130,8 @@ Json models_of(const RunRecord& record)
         const ServedModel& served = record.controller.models()[i];
         const ModelHeader header = ModelHeader::parse(served.header).value();
         const ModelOutput& output = record.run.statistics.models[i];
-        const CourierCounters& courier =
-            record.controller.courier().counters(static_cast<std::uint32_t>(i));
+        const ChunkLoaderCounters& chunk_loader =
+            record.controller.chunk_loader().counters(static_cast<std::uint32_t>(i));
         list.push_back({{"name", served.name},
                         {"hash", hash_text(served.hash)},
                         {"faces", header.fields().source_faces},
@@ -137,9 +142,9 @@ Json models_of(const RunRecord& record)
                         {"static", output.is_static},
                         {"stage", kModelStageNames[static_cast<std::size_t>(output.stage)]},
                         {"bytes_received", served.link->bytes_received()},
-                        {"pieces_refused", courier.refused() + served.link->damaged()},
-                        {"pieces_overdue", courier.overdue},
-                        {"pieces_missing", courier.overdue - courier.overdue_came},
+                        {"pieces_refused", chunk_loader.refused() + served.link->damaged()},
+                        {"pieces_overdue", chunk_loader.overdue},
+                        {"pieces_missing", chunk_loader.overdue - chunk_loader.overdue_came},
                         {"host_connected", served.link->state() == LinkState::connected},
                         {"pose", first[i] < record.controller.objects().size()
                                      ? pose_of(record.run, i, first[i])
@@ -148,12 +153,12 @@ Json models_of(const RunRecord& record)
     return list;
 }
 
-double stiffness_cap_of(const ConditionerSetup& setup)
+double stiffness_limit_of(const ConditionerSetup& setup)
 {
-    return stiffness_cap(setup.device, setup.period_s);
+    return stiffness_limit(setup.device, setup.period_s);
 }
 
-/// Frames with each action; the start-up ramp is the SafeState's.
+/// Frames with each action; the ForceFader causes the start-up ramp.
 Json conditioned_of(const ForceCounts& force)
 {
     Json json = Json::object();
@@ -164,7 +169,7 @@ Json conditioned_of(const ForceCounts& force)
     return json;
 }
 
-/// What came and went between a tool's device and its driver; null of devices without one.
+/// Datagrams between a tool's device and its driver; null for devices without a driver.
 Json traffic_of(const HapticDevice& device)
 {
     const auto* udp = dynamic_cast<const UdpDevice*>(&device);
@@ -187,7 +192,7 @@ Json traffic_of(const HapticDevice& device)
             {"refused", refused}};
 }
 
-/// The name of the model; null of a tool that begins outside.
+/// Name of the model that the tool begins inside; null if it begins outside.
 Json begins_inside(const FinishedRun& run, std::size_t tool)
 {
     const bool is_inside = tool < run.begins_inside.size() && !run.begins_inside[tool].empty();
@@ -202,34 +207,34 @@ Json tools_of(const RunRecord& record)
     for (std::size_t i = 0; i < record.controller.tools().size(); ++i)
     {
         const ForceCounts& force = record.run.statistics.tools[i];
-        const std::string& guide = record.controller.tools()[i].guide;
-        list.push_back(
-            {{"shape", record.controller.tools()[i].shape},
-             {"radius_m", record.controller.tools()[i].spec.radius_m},
-             {"begins_inside", begins_inside(record.run, i)},
-             {"smooth_m", record.controller.tools()[i].spec.smooth_m},
-             {"force_max_n", force.max_n},
-             {"force_max_step_n", force.max_step_n},
-             {"torque_max_nm", force.torque_max_nm},
-             {"torque_max_step_nm", force.torque_max_step_nm},
-             {"twist_max_rad", force.twist_max_rad},
-             {"guide", guide.empty() ? Json() : Json(guide)},
-             {"guide_max_n", force.guide_max_n},
-             {"mass_kg", record.controller.tools()[i].load.mass_kg},
-             {"load_max_n", force.load_max_n},
-             {"load_max_nm", force.load_max_nm},
-             {"contact_share", static_cast<double>(force.contact_frames) / frames},
-             {"force_share", static_cast<double>(force.force_frames) / frames},
-             {"frozen_frames", force.frozen_frames},
-             {"held_back_frames", force.held_back_frames},
-             {"lag_max_m", force.lag_max_m},
-             {"stiffness_cap_n_per_m", stiffness_cap_of(record.controller.tools()[i].conditioner)},
-             {"softest_wall_n_per_m", std::isfinite(force.softest_wall_n_per_m)
-                                          ? Json(force.softest_wall_n_per_m)
-                                          : Json()},
-             {"surplus_max_j", force.surplus_max_j},
-             {"conditioned", conditioned_of(force)},
-             {"traffic", traffic_of(*record.controller.tools()[i].device)}});
+        const std::string& fixture = record.controller.tools()[i].fixture;
+        list.push_back({{"shape", record.controller.tools()[i].shape},
+                        {"radius_m", record.controller.tools()[i].spec.radius_m},
+                        {"begins_inside", begins_inside(record.run, i)},
+                        {"shading_m", record.controller.tools()[i].spec.shading_m},
+                        {"force_max_n", force.max_n},
+                        {"force_max_step_n", force.max_step_n},
+                        {"torque_max_nm", force.torque_max_nm},
+                        {"torque_max_step_nm", force.torque_max_step_nm},
+                        {"twist_max_rad", force.twist_max_rad},
+                        {"fixture", fixture.empty() ? Json() : Json(fixture)},
+                        {"fixture_max_n", force.fixture_max_n},
+                        {"mass_kg", record.controller.tools()[i].load.mass_kg},
+                        {"load_max_n", force.load_max_n},
+                        {"load_max_nm", force.load_max_nm},
+                        {"contact_share", static_cast<double>(force.contact_frames) / frames},
+                        {"force_share", static_cast<double>(force.force_frames) / frames},
+                        {"halted_frames", force.halted_frames},
+                        {"data_limited_frames", force.data_limited_frames},
+                        {"lag_max_m", force.lag_max_m},
+                        {"stiffness_limit_n_per_m",
+                         stiffness_limit_of(record.controller.tools()[i].conditioner)},
+                        {"least_stiffness_n_per_m", std::isfinite(force.least_stiffness_n_per_m)
+                                                        ? Json(force.least_stiffness_n_per_m)
+                                                        : Json()},
+                        {"observed_energy_max_j", force.observed_energy_max_j},
+                        {"conditioned", conditioned_of(force)},
+                        {"traffic", traffic_of(*record.controller.tools()[i].device)}});
     }
     return list;
 }
@@ -245,7 +250,7 @@ Json pairs_of(const RunRecord& record)
         const AnswerCounts& answers = record.run.statistics.pairs[i];
         if (answers.in_all() == 0)
         {
-            continue; // They were never near.
+            continue; // The tool and the object were never near each other.
         }
         list.push_back(
             {{"tool", i / places},
@@ -278,15 +283,15 @@ Json scene_of(const RunRecord& record)
             {"pairs_awake_max", statistics.pairs_awake_max},
             {"pairs_room", room.pairs},
             {"invisible_wall_frames", statistics.invisible_wall_frames},
-            {"crowded_frames", statistics.crowded_frames},
+            {"capacity_exceeded_frames", statistics.capacity_exceeded_frames},
             {"shed_pairs", statistics.shed_pairs},
-            {"came", record.run.scene_news.came},
-            {"went", record.run.scene_news.went},
-            {"feels", record.run.scene_news.feels},
+            {"added", record.run.scene_news.came},
+            {"removed", record.run.scene_news.went},
+            {"material_changes", record.run.scene_news.feels},
             {"limited", record.run.scene_news.limited},
-            {"passed_over", record.run.scene_news.passed_over},
+            {"ignored", record.run.scene_news.passed_over},
             {"motion_regained", record.run.scene_news.motion_regained},
-            {"walks", statistics.scene_walks},
+            {"traversals", statistics.scene_walks},
             {"models", models},
             {"changes_refused", refused}};
 }
@@ -304,7 +309,7 @@ Json force_of(const RunStatistics& statistics)
             {"max_step_n", worst.max_step_n},
             {"contact_share", static_cast<double>(statistics.contact_frames) / frames},
             {"force_share", static_cast<double>(statistics.force_frames) / frames},
-            {"held_back_share", static_cast<double>(statistics.held_back_frames) / frames}};
+            {"data_limited_share", static_cast<double>(statistics.data_limited_frames) / frames}};
 }
 
 Json machine_of(const RunRecord& record)
@@ -367,10 +372,10 @@ Json faults_of(const RunStatistics& statistics)
 Json cache_of(const RunRecord& record)
 {
     std::uint64_t loads = 0;
-    const Courier& courier = record.controller.courier();
-    for (std::uint32_t i = 0; i < courier.model_count(); ++i)
+    const ChunkLoader& chunk_loader = record.controller.chunk_loader();
+    for (std::uint32_t i = 0; i < chunk_loader.model_count(); ++i)
     {
-        loads += courier.counters(i).delivered;
+        loads += chunk_loader.counters(i).delivered;
     }
     const RunStatistics& statistics = record.run.statistics;
     return {{"prediction", prediction_name(record.controller.setup().prediction)},
@@ -387,7 +392,7 @@ Json wire_of(const RunRecord& record)
     for (std::size_t i = 0; i < record.controller.models().size(); ++i)
     {
         bytes_received += record.controller.models()[i].link->bytes_received();
-        waiting += record.controller.courier().waiting_times(static_cast<std::uint32_t>(i));
+        waiting += record.controller.chunk_loader().waiting_times(static_cast<std::uint32_t>(i));
     }
     const auto ms = [&](double value) { return waiting.total() > 0 ? Json(value) : Json(); };
     return {{"bytes_received", bytes_received},
@@ -398,7 +403,7 @@ Json wire_of(const RunRecord& record)
               {"max", ms(waiting.longest_ms())}}}};
 }
 
-/// What others on the domain said in vain, one entry a participant.
+/// Refused messages of other participants of the domain, one entry for each.
 Json refused_of(const std::vector<dds::PeerRefusals>& peers)
 {
     Json list = Json::array();
@@ -414,7 +419,7 @@ Json refused_of(const std::vector<dds::PeerRefusals>& peers)
     return list;
 }
 
-/// The options that were given or have a value, one a line, without the explanations.
+/// Options that were given or have a value, one a line, without comments.
 std::string settings_of(const std::string& option_file)
 {
     std::istringstream lines(option_file);
@@ -427,7 +432,7 @@ std::string settings_of(const std::string& option_file)
     return text;
 }
 
-/// As ISO 8601 has it, to the second.
+/// Time in the form of ISO 8601, to the second.
 std::string utc_text(std::time_t time)
 {
     std::tm parts{};
@@ -436,7 +441,7 @@ std::string utc_text(std::time_t time)
                        parts.tm_mon + 1, parts.tm_mday, parts.tm_hour, parts.tm_min, parts.tm_sec);
 }
 
-/// What it takes to run it again.
+/// Data for a repetition of the run.
 Json run_of(const RunRecord& record)
 {
     Json devices = Json::array();
@@ -513,7 +518,7 @@ Json make_report(const Options& options, const Controller& controller, const Fin
             {"recording", recording_of(record.run.recording)},
             {"trace", trace_of(record.run.trace)},
             {"telemetry",
-             {{"sent", record.run.telemetry_sent}, {"fronts_sent", record.run.fronts_sent}}},
+             {{"sent", record.run.telemetry_sent}, {"states_sent", record.run.states_sent}}},
             {"force", force_of(statistics)},
             {"safety", safety_of(run)},
             {"faults", faults_of(statistics)},

@@ -77,8 +77,8 @@ Json deadlines_of(const FinishedRun& run)
         noted.push_back(cycle_of(cycle));
     }
     return {{"missed", deadlines.missed},
-            {"own_fault", deadlines.own_faults},
-            {"machine_late", deadlines.machine_late},
+            {"overrun", deadlines.overruns},
+            {"latency_misses", deadlines.latency_misses},
             {"stopped", deadlines.stopped},
             {"missed_periods", run.timer.missed_periods},
             {"episodes", run.timer.episodes},

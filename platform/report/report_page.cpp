@@ -7,6 +7,7 @@
 #include "platform/report/report.hpp"
 #include "platform/report/report_words.hpp"
 #include "platform/report/verdict.hpp"
+#include "transport/base/counted.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -158,11 +159,12 @@ void add_verdict(const Json& report, plot::Page& page)
         page.verdict(verdict_text(complaints) + ".", is_machine_alone(complaints));
         return;
     }
-    const auto brackets = report["answers"]["bracket"].get<std::uint64_t>();
-    page.verdict(fmt::format("No deadline missed by the loop's own fault, {} by the machine's; {}.",
-                             report["deadline"]["machine_late"].get<std::uint64_t>(),
-                             brackets == 0 ? "no answer is a bracket"
-                                           : fmt::format("{} answers are brackets", brackets)),
+    const auto brackets = report["answers"]["bounded"].get<std::uint64_t>();
+    page.verdict(fmt::format("No deadline missed by an overrun of the loop, {} by the machine; {}.",
+                             report["deadline"]["latency_misses"].get<std::uint64_t>(),
+                             brackets == 0
+                                 ? "no answer is only bounded"
+                                 : counted(brackets, "answer is bounded", "answers are bounded")),
                  true);
 }
 
@@ -174,15 +176,15 @@ std::vector<plot::Mark> marks_of(const Json& report, const RunStatistics& statis
     for (const NotedCycle& cycle : statistics.deadlines.noted())
     {
         const double time_s = static_cast<double>(cycle.frame) * period_s;
-        if (has_any(cycle.flags, kOwnFaults))
+        if (has_any(cycle.flags, kOverruns))
         {
-            marks.push_back({time_s, "own fault", plot::MarkKind::fault});
+            marks.push_back({time_s, "overrun", plot::MarkKind::fault});
         }
         else if (has_any(cycle.flags, CycleFlag::missed))
         {
             marks.push_back(
                 {time_s,
-                 has_any(cycle.flags, CycleFlag::stopped) ? "stopped from outside" : "machine late",
+                 has_any(cycle.flags, CycleFlag::stopped) ? "stopped from outside" : "latency miss",
                  plot::MarkKind::warning});
         }
     }
@@ -200,7 +202,7 @@ std::vector<plot::Mark> marks_of(const Json& report, const RunStatistics& statis
     return marks;
 }
 
-/// Force, bracket and, where there are some, stage times over the run.
+/// Force, bounds and, where there are some, stage times over the run.
 std::vector<plot::Chart> series_of(const Json& report, const RunStatistics& statistics,
                                    bool has_times)
 {
@@ -233,11 +235,11 @@ std::vector<plot::Chart> series_of(const Json& report, const RunStatistics& stat
         return made;
     };
     std::vector<plot::Chart> charts{chart("Force on the device", "N"),
-                                    chart("Widest bracket; 0 where no answer is open", "mm"),
+                                    chart("Widest bounds; 0 where no answer is open", "mm"),
                                     chart("Times of the stages", "us")};
     charts[0].lines = {line("force", [](const SeriesPoint& point) { return point.force_n; })};
     charts[1].lines = {
-        line("bracket", [](const SeriesPoint& point) { return 1e3F * point.width_m; })};
+        line("bounded", [](const SeriesPoint& point) { return 1e3F * point.width_m; })};
     if (!has_times)
     {
         charts.pop_back();

@@ -14,7 +14,7 @@ namespace tactus::hrtc
 {
 
 /// A run's report as an HTML page: what it comes to, every figure of the report, and charts of
-/// `statistics`, those that the report is made from: force, bracket and stage times over the run,
+/// `statistics`, those that the report is made from: force, bounds and stage times over the run,
 /// and histograms of the times.
 /// `relief` shows where the tools were; without it the page has no picture.
 [[nodiscard]] std::string make_page(const nlohmann::ordered_json& report,

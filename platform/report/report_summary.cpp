@@ -105,9 +105,9 @@ void add_stability(const Json& tools, SummaryFacts& facts)
     double cap = std::numeric_limits<double>::infinity();
     for (const Json& tool : tools)
     {
-        capped += tool["conditioned"]["stiffness_capped"].get<std::uint64_t>();
+        capped += tool["conditioned"]["stiffness_limited"].get<std::uint64_t>();
         damped += tool["conditioned"]["damped"].get<std::uint64_t>();
-        const Json& softest = tool["softest_wall_n_per_m"];
+        const Json& softest = tool["least_stiffness_n_per_m"];
         cap = softest.is_null() ? cap : std::min(cap, softest.get<double>());
     }
     if (capped > 0)
@@ -163,15 +163,15 @@ std::string answers_text(const Json& report)
     const auto share = [&](const char* kind)
     { return 100.0 * report["answers"][kind].get<double>() / frames; };
     return fmt::format(
-        "exact {:.2f} %, decided {:.2f} %, {}bracket {:.2f} %, stale {:.2f} %; "
+        "exact {:.2f} %, separated {:.2f} %, {}bounded {:.2f} %, stale {:.2f} %; "
         "longest inexact run {}",
-        share("exact"), share("decided"),
+        share("exact"), share("separated"),
         share("within_tolerance") > 0.0
             ? fmt::format("within {:.2g} um {:.2f} %, ",
                           1e6 * report["answers"]["tolerated_max_m"].get<double>(),
                           share("within_tolerance"))
             : "",
-        share("bracket"), share("stale"),
+        share("bounded"), share("stale"),
         counted(report["answers"]["longest_inexact_run"].get<std::uint64_t>(), "frame"));
 }
 
@@ -180,9 +180,9 @@ std::string deadlines_text(const Json& report)
     const Json& deadline = report["deadline"];
     const auto stopped = deadline["stopped"].get<std::uint64_t>();
     return fmt::format(
-        "{} missed: {}, {} machine late{}; {}, {}", deadline["missed"].get<std::uint64_t>(),
-        counted(deadline["own_fault"].get<std::uint64_t>(), "own fault"),
-        deadline["machine_late"].get<std::uint64_t>(),
+        "{} missed: {}, {}{}; {}, {}", deadline["missed"].get<std::uint64_t>(),
+        counted(deadline["overrun"].get<std::uint64_t>(), "overrun"),
+        counted(deadline["latency_misses"].get<std::uint64_t>(), "latency miss", "latency misses"),
         stopped > 0 ? fmt::format(", {} stopped from outside", stopped) : "",
         counted(report["realtime"]["allocations"].get<std::uint64_t>(), "allocation"),
         counted(report["realtime"]["page_faults"].get<std::uint64_t>(), "page fault"));
@@ -267,7 +267,7 @@ void add_models(const Json& report, SummaryFacts& facts)
     {
         facts.emplace_back(
             "arrival",
-            fmt::format("{:.1f} / {:.1f} / {:.1f} ms from a wish to its piece (p50 / p99 / max)",
+            fmt::format("{:.1f} / {:.1f} / {:.1f} ms from a request to its piece (p50 / p99 / max)",
                         arrival["p50"].get<double>(), arrival["p99"].get<double>(),
                         arrival["max"].get<double>()));
     }
@@ -286,17 +286,17 @@ std::string torque_text(const Json& tools)
     return most_nm > 0.0 ? fmt::format("; torque at most {:.4f} N m", most_nm) : "";
 }
 
-/// That the tool was held back is told where it was: then less was felt than the hand asked for.
+/// Frames and their shares; the data-limited share, where less was felt, only if there is one.
 std::string frames_text(const Json& report)
 {
     const auto percent = [&report](const char* share)
     { return 100.0 * report["force"][share].get<double>(); };
-    const double held_back = percent("held_back_share");
-    return fmt::format("{} at {:.0f} Hz, in contact {:.1f} %, with a force {:.1f} %{}",
-                       report["frames"].get<std::uint64_t>(),
-                       1e9 / report["period_ns"].get<double>(), percent("contact_share"),
-                       percent("force_share"),
-                       held_back > 0.0 ? fmt::format(", held back {:.1f} %", held_back) : "");
+    const double data_limited = percent("data_limited_share");
+    return fmt::format(
+        "{} at {:.0f} Hz, in contact {:.1f} %, with a force {:.1f} %{}",
+        report["frames"].get<std::uint64_t>(), 1e9 / report["period_ns"].get<double>(),
+        percent("contact_share"), percent("force_share"),
+        data_limited > 0.0 ? fmt::format(", data-limited {:.1f} %", data_limited) : "");
 }
 
 SummaryFacts touch_facts(const Json& report)

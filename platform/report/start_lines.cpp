@@ -241,7 +241,7 @@ std::string tool_line(const Options& options, const ToolSetup& tool, const Contr
     }
     const double stiffest =
         std::min(tool.limits.stiffness_n_per_m,
-                 stiffness_cap(device.limits, tool.conditioner.period_s, damping_n_s_per_m));
+                 stiffness_limit(device.limits, tool.conditioner.period_s, damping_n_s_per_m));
     const std::string wall =
         stiffest < kSoftestFelt_n_per_m
             ? "NOTHING WILL BE FELT: the device's own damping, friction and rate allow no wall"
@@ -250,7 +250,7 @@ std::string tool_line(const Options& options, const ToolSetup& tool, const Contr
     const std::string where = device.workspace_radius_m < kPoseReachMax_m
                                   ? fmt::format("{:.3g} m round {}", device.workspace_radius_m,
                                                 text_of(Vec3(centre[0], centre[1], centre[2])))
-                                  : "anywhere"; // A simulated hand that follows an object.
+                                  : "anywhere"; // A simulated operator that follows an object.
     return fmt::format("{:<12}{} on {}, {}: {}{}; {}\n", "tool", tool.shape, device.name, where,
                        reach_of(options, tool, controller, objects), size_note(tool, objects),
                        wall);

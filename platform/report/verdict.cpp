@@ -23,8 +23,8 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-/// Less of a run is held back by the way that data takes.
-constexpr double kHeldBackShare = 0.25;
+/// A smaller share of a run is data-limited by the time that data takes to arrive.
+constexpr double kDataLimitedShare = 0.25;
 
 /// Collects what there is to be said.
 class Judge
@@ -53,9 +53,9 @@ private:
     }
     /// Whether the loop came late, and for the machine's sake. A watchdog alone may be the
     /// device's.
-    [[nodiscard]] bool is_machine_late() const
+    [[nodiscard]] bool is_latency_miss() const
     {
-        return begun("stall") > 0 && report_["deadline"]["own_fault"].get<std::uint64_t>() == 0;
+        return begun("stall") > 0 && report_["deadline"]["overrun"].get<std::uint64_t>() == 0;
     }
     [[nodiscard]] std::string why_untouched() const;
 
@@ -118,26 +118,26 @@ void Judge::judge_models()
 void Judge::judge_answers()
 {
     const Json& answers = report_["answers"];
-    if (const auto brackets = answers["bracket"].get<std::uint64_t>();
+    if (const auto brackets = answers["bounded"].get<std::uint64_t>();
         brackets > 0 && answers["exact"].get<std::uint64_t>() == 0 &&
         answers["within_tolerance"].get<std::uint64_t>() == 0)
     {
         say_loss(RunPart::scene,
-                 "no answer was exact, " + counted(brackets, "was a bracket", "were brackets"));
+                 "no answer was exact, " + counted(brackets, "was bounded", "were bounded"));
     }
     const auto stale = answers["stale"].get<std::uint64_t>();
     if (stale > 0)
     {
         say(RunPart::scene, counted(stale, "frame") + " with a stale answer");
     }
-    const std::uint64_t frozen = begun("frozen");
-    const auto held_back = report_["force"]["held_back_share"].get<double>();
-    if (frozen > 0 || held_back >= kHeldBackShare)
+    const std::uint64_t halted = begun("halted");
+    const auto data_limited = report_["force"]["data_limited_share"].get<double>();
+    if (halted > 0 || data_limited >= kDataLimitedShare)
     {
         const std::string limit = limit_text(report_);
         say_loss(RunPart::scene,
-                 fmt::format("held back for {:.1f} % of the time{}: {}", 100.0 * held_back,
-                             frozen > 0 ? ", and the force faded " + counted(frozen, "time") : "",
+                 fmt::format("data-limited for {:.1f} % of the time{}: {}", 100.0 * data_limited,
+                             halted > 0 ? ", and the force faded " + counted(halted, "time") : "",
                              limit.empty() ? "the surface at the tool wasn't known" : limit));
     }
 }
@@ -151,7 +151,7 @@ std::string Judge::why_untouched() const
         return "the tool began inside";
     }
     const Json& answers = report_["answers"];
-    if (answers["exact"].get<std::uint64_t>() + answers["bracket"].get<std::uint64_t>() +
+    if (answers["exact"].get<std::uint64_t>() + answers["bounded"].get<std::uint64_t>() +
             answers["within_tolerance"].get<std::uint64_t>() ==
         0)
     {
@@ -165,9 +165,9 @@ std::string Judge::why_untouched() const
             return fmt::format("the force was off for {}", cause);
         }
     }
-    if (report_["force"]["held_back_share"].get<double>() > 0.0)
+    if (report_["force"]["data_limited_share"].get<double>() > 0.0)
     {
-        return "the tool was held back before the surface";
+        return "the tool was data-limited before the surface";
     }
     return "a tool came near, and the run ended before it reached the surface";
 }
@@ -182,8 +182,8 @@ void Judge::judge_controller()
         }
     };
     const Json& realtime = report_["realtime"];
-    count(report_["deadline"]["own_fault"], "deadline missed by the loop's own fault",
-          "deadlines missed by the loop's own fault");
+    count(report_["deadline"]["overrun"], "deadline missed by an overrun of the loop",
+          "deadlines missed by an overrun of the loop");
     count(realtime["allocations"], "allocation in the loop", "allocations in the loop");
     count(realtime["system_calls_in_frame"], "system call in frames", "system calls in frames");
     judge_forces();
@@ -201,8 +201,8 @@ void Judge::judge_forces()
     std::string causes;
     for (const auto& [cause, times] : report_["safety"]["begun"].items())
     {
-        const bool is_told = cause == "software" || cause == "frozen" ||
-                             (is_machine_late() && (cause == "stall" || cause == "watchdog"));
+        const bool is_told = cause == "software" || cause == "halted" ||
+                             (is_latency_miss() && (cause == "stall" || cause == "watchdog"));
         if (const auto number = times.get<std::uint64_t>(); number > 0 && !is_told)
         {
             causes += fmt::format("{}{} {}", causes.empty() ? "" : ", ", cause, number);
@@ -223,7 +223,7 @@ void Judge::judge_walls()
     const Json& tools = report_["tools"];
     for (std::size_t i = 0; i < tools.size(); ++i)
     {
-        const Json& softest = tools[i]["softest_wall_n_per_m"]; // Null: none was softened.
+        const Json& softest = tools[i]["least_stiffness_n_per_m"]; // Null: none was softened.
         if (!softest.is_null() && softest.get<double>() < kSoftestFelt_n_per_m)
         {
             say_loss(RunPart::controller,
@@ -244,7 +244,7 @@ void Judge::judge_machine()
     }
     const std::uint64_t late = begun("stall") + begun("watchdog");
     const auto brakes = report_["safety"]["supervisor_brakes"].get<std::uint64_t>();
-    if (is_machine_late())
+    if (is_latency_miss())
     {
         say(RunPart::machine,
             fmt::format("it woke the loop late, and the force faded for a moment {}{}: 'hrtc "

@@ -26,7 +26,7 @@ double largest_damping(const DeviceLimits& device, double period_s, double wall_
     while (too_much - enough > 1e-6)
     {
         const double middle = 0.5 * (enough + too_much);
-        (stiffness_cap(device, period_s, middle) >= wall_n_per_m ? enough : too_much) = middle;
+        (stiffness_limit(device, period_s, middle) >= wall_n_per_m ? enough : too_much) = middle;
     }
     return std::floor(1e3 * enough + 1e-2) * 1e-3;
 }
@@ -36,10 +36,10 @@ std::optional<std::string> wall_refused(const ToolSetup& tool, const std::string
 {
     const DeviceInfo& device = tool.device->info();
     const double period_s = tool.conditioner.period_s;
-    const double bare_n_per_m = stiffness_cap(device.limits, period_s);
+    const double bare_n_per_m = stiffness_limit(device.limits, period_s);
     const double damping = material.damping_n_s_per_m;
     if (bare_n_per_m < kSoftestFelt_n_per_m ||
-        stiffness_cap(device.limits, period_s, damping) >= kSoftestFelt_n_per_m)
+        stiffness_limit(device.limits, period_s, damping) >= kSoftestFelt_n_per_m)
     {
         return std::nullopt;
     }
@@ -74,8 +74,8 @@ Material limited(const Material& material, std::span<const ToolSetup> tools)
         const DeviceLimits& device = tool.device->info().limits;
         const double period_s = tool.conditioner.period_s;
         const double wall_n_per_m =
-            std::min(tool.spec.stiffness_n_per_m, 0.5 * stiffness_cap(device, period_s));
-        if (stiffness_cap(device, period_s, felt.damping_n_s_per_m) < wall_n_per_m)
+            std::min(tool.spec.stiffness_n_per_m, 0.5 * stiffness_limit(device, period_s));
+        if (stiffness_limit(device, period_s, felt.damping_n_s_per_m) < wall_n_per_m)
         {
             felt.damping_n_s_per_m = largest_damping(device, period_s, wall_n_per_m);
         }

@@ -46,7 +46,7 @@ SceneKeeper::SceneKeeper(std::span<const dds::Authority> authorities,
             continue;
         }
         slot.spec = parts_.objects[place];
-        slot.is_here = true;
+        slot.is_resident = true;
         slot.is_told = true;
         if (!scene_.empty())
         {
@@ -56,9 +56,9 @@ SceneKeeper::SceneKeeper(std::span<const dds::Authority> authorities,
     }
 }
 
-void SceneKeeper::connect(PoseDoor& door, MonotonicTime now, NameSink names)
+void SceneKeeper::connect(SceneMailbox& queues, MonotonicTime now, NameSink names)
 {
-    door_ = &door;
+    queues_ = &queues;
     names_ = std::move(names);
     for (const auto& [name, place] : places_) // Objects added since are added in the first step.
     {
@@ -240,12 +240,12 @@ void SceneKeeper::bind(std::uint32_t place, const dds::SeenObject& object, Monot
     places_[name] = place;
     slot.bound = name;
     slot.known = {};
-    if (!slot.is_here)
+    if (!slot.is_resident)
     {
         free_.erase(place);
         slot.spec = {ModelId{static_cast<std::uint32_t>(*model_of(object.shown.model))},
                      felt(name, object.shown)};
-        slot.is_here = true;
+        slot.is_resident = true;
         slot.name = object.shown.name;
         untold_.push_back(place);
     }
@@ -268,7 +268,7 @@ void SceneKeeper::move(std::uint32_t place, const dds::SeenObject& object, Monot
     heard_[slot.spec.model.value] = now;
     if (slot.is_told)
     {
-        door_->put(place, slot.pose, now);
+        queues_->put(place, slot.pose, now);
     }
 }
 
@@ -309,7 +309,7 @@ Material SceneKeeper::felt(const HostObject& object, const ShownObject& shown)
 void SceneKeeper::leave(std::uint32_t place)
 {
     unbind(place);
-    slots_[place].is_here = false;
+    slots_[place].is_resident = false;
     untold_.push_back(place);
 }
 
@@ -320,9 +320,9 @@ void SceneKeeper::pass_on(MonotonicTime now)
     {
         const std::uint32_t place = untold_.front();
         Slot& slot = slots_[place];
-        if (slot.is_here && !slot.is_told)
+        if (slot.is_resident && !slot.is_told)
         {
-            if (!door_->try_come(place, slot.generation + 1, slot.spec, slot.pose, now))
+            if (!queues_->try_come(place, slot.generation + 1, slot.spec, slot.pose, now))
             {
                 return;
             }
@@ -334,26 +334,26 @@ void SceneKeeper::pass_on(MonotonicTime now)
             ++news_.came;
             slot.owes_feel = false; // An added object has its newest material.
         }
-        else if (!slot.is_here && slot.is_told)
+        else if (!slot.is_resident && slot.is_told)
         {
-            if (!door_->try_go(place))
+            if (!queues_->try_go(place))
             {
                 return;
             }
             ++news_.went;
         }
-        else if (slot.is_here && slot.owes_feel)
+        else if (slot.is_resident && slot.owes_feel)
         {
-            if (!door_->try_feel(place, slot.spec.material))
+            if (!queues_->try_feel(place, slot.spec.material))
             {
                 return;
             }
             ++news_.feels;
             slot.owes_feel = false;
         }
-        slot.is_told = slot.is_here;
+        slot.is_told = slot.is_resident;
         untold_.pop_front();
-        if (!slot.is_here)
+        if (!slot.is_resident)
         {
             free_.insert(place);
         }
@@ -391,7 +391,7 @@ void SceneKeeper::hear(MonotonicTime now)
             Slot& slot = slots_[at->second];
             const std::size_t model = slot.spec.model.value;
             heard_[model] = now;
-            door_->hear(at->second, now);
+            queues_->hear(at->second, now);
             const auto object = objects.find(at->first.number);
             if (object == objects.end())
             {

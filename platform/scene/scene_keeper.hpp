@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/loop/pose_door.hpp"
+#include "platform/loop/scene_mailbox.hpp"
 #include "platform/machine/time.hpp"
 #include "platform/scene/scene_choice.hpp"
 #include "platform/scene/scene_parts.hpp"
@@ -59,7 +59,7 @@ public:
     using NameSink = std::function<void(std::uint32_t, std::uint32_t, const std::string&)>;
 
     /// Connects the output; call it first. Both live as long as the run, and `names` may be empty.
-    void connect(PoseDoor& door, MonotonicTime now, NameSink names = {});
+    void connect(SceneMailbox& queues, MonotonicTime now, NameSink names = {});
     /// Never waits.
     void step(MonotonicTime now);
 
@@ -86,11 +86,11 @@ private:
         std::optional<HostObject> bound;
         std::string name; ///< Name; empty unless the object was added later.
         ObjectSpec spec;
-        ObjectPose pose;       ///< Newest pose.
-        dds::PoseCounts known; ///< Part in `counts_` of the host's object.
-        bool is_here{false};   ///< True if it should be in the frame's scene.
-        bool is_told{false};   ///< True if the frame knows it, or the change is queued.
-        bool owes_feel{false}; ///< True if a change of its material is still to be queued.
+        ObjectPose pose;         ///< Newest pose.
+        dds::PoseCounts known;   ///< Part in `counts_` of the host's object.
+        bool is_resident{false}; ///< True if it should be in the frame's scene.
+        bool is_told{false};     ///< True if the frame knows it, or the change is queued.
+        bool owes_feel{false};   ///< True if a change of its material is still to be queued.
         std::uint32_t generation{0};
     };
 
@@ -118,7 +118,7 @@ private:
     SceneMaterials materials_;
     RateLimitedLog log_;
     std::vector<ModelHeader> headers_; ///< Headers of the parts' models, as views.
-    PoseDoor* door_{nullptr};
+    SceneMailbox* queues_{nullptr};
     NameSink names_;
     std::vector<std::uint64_t> hosts_;       ///< Hosts that are followed.
     std::vector<std::uint64_t> model_hosts_; ///< Host of each model without a scene, or 0.
@@ -129,7 +129,7 @@ private:
     std::set<Generation> passed_over_;           ///< Objects that can't be touched.
     std::set<Generation> left_out_;              ///< Objects beyond the capacity.
     std::set<HostObject> limited_;               ///< Objects with a line on their limited material.
-    /// Places where is_here and is_told differ, or a material is owed.
+    /// Places where is_resident and is_told differ, or a material is owed.
     std::deque<std::uint32_t> untold_;
     std::vector<dds::PoseCounts> counts_;
     std::vector<MonotonicTime> heard_;

@@ -11,24 +11,24 @@ namespace tactus
 {
 
 CachePool::CachePool(Arena& arena, std::uint32_t page_slots, std::uint32_t index_slots,
-                     std::uint32_t models, std::uint32_t guests) noexcept
+                     std::uint32_t models, std::uint32_t streamed_models) noexcept
     : pages(arena, page_slots)
     , index_slot_of(arena, index_slots)
     , index_metas(arena.take<IndexMeta>(index_slots))
-    , chunk_wishes(arena, page_slots)
-    , index_wishes(arena, index_slots)
-    , door(arena, std::size_t{page_slots} + index_slots + guests,
-           std::size_t{page_slots} + index_slots + guests)
+    , chunk_requests(arena, page_slots)
+    , index_requests(arena, index_slots)
+    , queues(arena, std::size_t{page_slots} + index_slots + streamed_models,
+             std::size_t{page_slots} + index_slots + streamed_models)
     , caches_(arena.take<ChunkCache*>(models))
-    , taken_(arena.take<DoorEvent>(kMaxArrivalsPerFrame + kMaxLinkUpdatesPerFrame))
+    , taken_(arena.take<QueueEvent>(kMaxArrivalsPerFrame + kMaxLinkUpdatesPerFrame))
 {
 }
 
 void CachePool::set_period(std::int64_t period_ns) noexcept
 {
     TACTUS_ASSERT(period_ns > 0);
-    wish_timeout_frames_ = static_cast<std::uint32_t>(
-        std::clamp<std::int64_t>(kWishTimeout_ns / period_ns, 1, ChunkCache::kFirstFrame));
+    request_timeout_frames_ = static_cast<std::uint32_t>(
+        std::clamp<std::int64_t>(kRequestTimeout_ns / period_ns, 1, ChunkCache::kFirstFrame));
 }
 
 void CachePool::adopt_arrivals(std::uint32_t budget, std::uint32_t frame,
@@ -36,17 +36,17 @@ void CachePool::adopt_arrivals(std::uint32_t budget, std::uint32_t frame,
 {
     // Checked once a frame: the other side makes room at any time, and the number of requests must
     // not depend on that time.
-    wish_room_ = static_cast<std::uint32_t>(door.wanted.capacity() - door.wanted.size());
-    wish_room_at_start_ = wish_room_;
-    refused_class_ = kUrgencyClasses;
+    request_room_ = static_cast<std::uint32_t>(queues.wanted.capacity() - queues.wanted.size());
+    request_room_at_start_ = request_room_;
+    refused_class_ = kPriorityClasses;
     forget_taken();
     const std::uint32_t arrivals_end =
         std::min(budget - std::min(budget, work.pages_adopted), kMaxArrivalsPerFrame);
     std::uint32_t arrivals = 0;
     std::uint32_t updates = 0;
-    while (has_next_ || door.arrived.try_pop(next_))
+    while (has_next_ || queues.arrived.try_pop(next_))
     {
-        const bool is_update = next_.kind == DoorEventKind::link_update;
+        const bool is_update = next_.kind == QueueEventKind::link_update;
         has_next_ = is_update ? updates == kMaxLinkUpdatesPerFrame : arrivals == arrivals_end;
         if (has_next_)
         {
@@ -58,21 +58,21 @@ void CachePool::adopt_arrivals(std::uint32_t budget, std::uint32_t frame,
         ++(is_update ? updates : arrivals);
     }
     work.pages_adopted += arrivals;
-    chunk_wishes.expire(frame, wish_timeout_frames_);
-    index_wishes.expire(frame, wish_timeout_frames_);
+    chunk_requests.expire(frame, request_timeout_frames_);
+    index_requests.expire(frame, request_timeout_frames_);
 }
 
-/// Sends a request; false if the door had no room for one more at the start of the frame, or too
+/// Sends a request; false if the queues had no room for one more at the start of the frame, or too
 /// many are under way.
-bool CachePool::try_wish(ContentKey key, std::uint32_t owner, std::uint32_t generation) noexcept
+bool CachePool::try_request(ContentKey key, std::uint32_t owner, std::uint32_t generation) noexcept
 {
-    const std::uint32_t open = chunk_wishes.under_way() + index_wishes.under_way();
-    if (wish_room_ == 0 || open >= SlotDoor::kOpenWishes)
+    const std::uint32_t open = chunk_requests.under_way() + index_requests.under_way();
+    if (request_room_ == 0 || open >= SlotQueues::kOpenRequests)
     {
         return false;
     }
-    --wish_room_;
-    const bool pushed = door.wanted.try_push({key, generation, static_cast<std::uint8_t>(owner)});
+    --request_room_;
+    const bool pushed = queues.wanted.try_push({key, generation, static_cast<std::uint8_t>(owner)});
     TACTUS_ASSERT(pushed);
     return true;
 }

@@ -5,8 +5,8 @@
 #include "rt_core/base/arena.hpp"
 #include "rt_core/base/id_table.hpp"
 #include "rt_core/base/realtime.hpp"
-#include "rt_core/cache/slot_door.hpp"
-#include "rt_core/cache/wish_list.hpp"
+#include "rt_core/cache/request_list.hpp"
+#include "rt_core/cache/slot_queues.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/records/region_ranking.hpp"
 #include "rt_core/records/work_counters.hpp"
@@ -22,17 +22,17 @@ namespace tactus
 
 class ChunkCache;
 
-/// Shared data of the caches of all models: slot owners, free capacity, and the door. Haptic
-/// thread, except the other ends of the door.
+/// Shared data of the caches of all models: slot owners, free capacity, and the queues. Haptic
+/// thread, except the other ends of the queues.
 class CachePool
 {
 public:
-    /// Pool for up to `models` models, `guests` of which are streamed. The door holds all slots and
-    /// base meshes, and as many requests.
+    /// Pool for up to `models` models, `streamed_models` of which are streamed. The queues hold all
+    /// slots and base meshes, and as many requests.
     CachePool(Arena& arena, std::uint32_t page_slots, std::uint32_t index_slots,
-              std::uint32_t models, std::uint32_t guests = 0) noexcept;
+              std::uint32_t models, std::uint32_t streamed_models = 0) noexcept;
 
-    /// Sets the duration of a frame; 1 ms without a call. Requests wait kWishTimeout_ns for
+    /// Sets the duration of a frame; 1 ms without a call. Requests wait kRequestTimeout_ns for
     /// answers.
     void set_period(std::int64_t period_ns) noexcept;
 
@@ -45,13 +45,13 @@ public:
     void forget_taken() noexcept { taken_count_ = 0; }
     /// Events that the last frame took. With the frame's arguments they decide all that the frame
     /// does. Valid until the next adoption.
-    [[nodiscard]] DoorTake taken() const noexcept
+    [[nodiscard]] QueueTake taken() const noexcept
     {
-        return {taken_.first(taken_count_), wish_room_at_start_};
+        return {taken_.first(taken_count_), request_room_at_start_};
     }
 
-    /// Most urgent class for which a chunk at a tool found no page in this frame; kUrgencyClasses:
-    /// none.
+    /// Highest-priority class for which a chunk at a tool found no page in this frame;
+    /// kPriorityClasses: none.
     [[nodiscard]] std::uint32_t refused_class() const noexcept { return refused_class_; }
 
     /// State of a slot for index pages.
@@ -65,9 +65,9 @@ public:
     PagePool pages;
     IdTable index_slot_of; ///< Key: PagePool::first_key() + page.
     std::span<IndexMeta> index_metas;
-    WishPool chunk_wishes;
-    WishPool index_wishes;
-    SlotDoor door;
+    RequestPool chunk_requests;
+    RequestPool index_requests;
+    SlotQueues queues;
 
 private:
     friend class ChunkCache;
@@ -77,24 +77,24 @@ private:
     /// evicted.
     static constexpr std::uint32_t kEvictionLooks = 128;
 
-    [[nodiscard]] bool try_wish(ContentKey key, std::uint32_t owner,
-                                std::uint32_t generation) noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] bool try_request(ContentKey key, std::uint32_t owner,
+                                   std::uint32_t generation) noexcept TACTUS_NONBLOCKING;
     /// Records that a chunk of this class at a tool found no page to evict.
-    void refuse(UrgencyClass of) noexcept
+    void refuse(PriorityClass of) noexcept
     {
         refused_class_ = std::min(refused_class_, static_cast<std::uint32_t>(of));
     }
 
     /// Caches by owner, while alive: one cache may take an unused page of another.
     std::span<ChunkCache*> caches_;
-    std::span<DoorEvent> taken_; ///< Events of this frame are the first `taken_count_`.
+    std::span<QueueEvent> taken_; ///< Events of this frame are the first `taken_count_`.
     std::uint32_t taken_count_{0};
-    DoorEvent next_;       ///< Event for which the last frame had no room.
+    QueueEvent next_;      ///< Event for which the last frame had no room.
     bool has_next_{false}; ///< `next_` is valid.
-    std::uint32_t wish_room_at_start_{0};
-    std::uint32_t wish_room_{0};
-    std::uint32_t wish_timeout_frames_{kWishTimeoutFrames};
-    std::uint32_t refused_class_{kUrgencyClasses};
+    std::uint32_t request_room_at_start_{0};
+    std::uint32_t request_room_{0};
+    std::uint32_t request_timeout_frames_{kRequestTimeoutFrames};
+    std::uint32_t refused_class_{kPriorityClasses};
     std::uint32_t hand_{0};         ///< Next page to check for eviction.
     std::uint32_t barren_looks_{0}; ///< Checks since the last eviction.
 };

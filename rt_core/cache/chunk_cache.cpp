@@ -34,7 +34,7 @@ QuantumBox extent_of(const ModelHeader& header) noexcept
 }
 
 /// Boxes that a wider sphere meets, of the eight from `first` on and of those in `open`.
-std::uint32_t met_of(std::uint32_t open, std::span<const WantedBall> balls, double wider,
+std::uint32_t met_of(std::uint32_t open, std::span<const WantedSphere> spheres, double wider,
                      const IndexPage& index, const QuantumBox& page_box,
                      std::uint32_t first) noexcept
 {
@@ -44,9 +44,9 @@ std::uint32_t met_of(std::uint32_t open, std::span<const WantedBall> balls, doub
         const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
         const QuantumBox box = box_of(index, page_box, first + i);
         const bool is_met = std::ranges::any_of(
-            balls,
-            [&](const WantedBall& wanted) {
-                return meets({wanted.ball.center, wanted.ball.radius * wider}, box);
+            spheres,
+            [&](const WantedSphere& wanted) {
+                return meets({wanted.sphere.center, wanted.sphere.radius * wider}, box);
             });
         met |= is_met ? 1U << i : 0U;
     }
@@ -64,8 +64,8 @@ ChunkCache::ChunkCache(CachePool& pool, const Kept& kept, const ModelHeader& hea
     , pages_(&pages)
     , kernels_(&kernels)
     , index_meta_(pool.index_metas)
-    , chunk_wishes_(pool.chunk_wishes, pages.owner(), kept.pages)
-    , index_wishes_(pool.index_wishes, pages.owner(), kept.index_pages)
+    , chunk_requests_(pool.chunk_requests, pages.owner(), kept.pages)
+    , index_requests_(pool.index_requests, pages.owner(), kept.index_pages)
 {
     if (pool.caches_.data() != nullptr) // Null when measuring.
     {
@@ -73,9 +73,9 @@ ChunkCache::ChunkCache(CachePool& pool, const Kept& kept, const ModelHeader& hea
     }
 }
 
-void ChunkCache::take(const DoorEvent& event, std::uint32_t frame) noexcept
+void ChunkCache::take(const QueueEvent& event, std::uint32_t frame) noexcept
 {
-    if (event.kind == DoorEventKind::link_update)
+    if (event.kind == QueueEventKind::link_update)
     {
         pages_->update_linked({event.key.number}, event.slot, event.linked);
     }
@@ -83,7 +83,7 @@ void ChunkCache::take(const DoorEvent& event, std::uint32_t frame) noexcept
     {
         TACTUS_ASSERT(!is_open_);
         TACTUS_ASSERT(!has_base_);
-        has_base_ = event.kind == DoorEventKind::arrival;
+        has_base_ = event.kind == QueueEventKind::arrival;
         if (!has_base_)
         {
             has_cells_back_ = true;
@@ -102,12 +102,13 @@ void ChunkCache::take(const DoorEvent& event, std::uint32_t frame) noexcept
 }
 
 /// Returns a slot whose piece arrived after the model was removed.
-void ChunkCache::send_back(const DoorEvent& arrival, std::uint32_t frame) noexcept
+void ChunkCache::send_back(const QueueEvent& arrival, std::uint32_t frame) noexcept
 {
-    WishList& wishes = arrival.key.kind == ContentKind::chunk ? chunk_wishes_ : index_wishes_;
-    wishes.arrive(arrival.key.number, frame);
-    wishes.give_back_slot();
-    const bool freed = pool_->door.freed.try_push({arrival.key.kind, arrival.slot});
+    RequestList& requests =
+        arrival.key.kind == ContentKind::chunk ? chunk_requests_ : index_requests_;
+    requests.arrive(arrival.key.number, frame);
+    requests.give_back_slot();
+    const bool freed = pool_->queues.freed.try_push({arrival.key.kind, arrival.slot});
     TACTUS_ASSERT(freed);
 }
 
@@ -123,9 +124,9 @@ void ChunkCache::want_base(std::uint32_t first_cell, std::uint32_t frame) noexce
 {
     TACTUS_ASSERT(!is_open_);
     const bool is_under_way =
-        base_asked_ != 0 && frame - base_asked_ <= pool_->wish_timeout_frames_;
+        base_asked_ != 0 && frame - base_asked_ <= pool_->request_timeout_frames_;
     if (!has_base_ && !is_under_way &&
-        pool_->try_wish({ContentKind::base, first_cell}, pages_->owner(), frame))
+        pool_->try_request({ContentKind::base, first_cell}, pages_->owner(), frame))
     {
         base_asked_ = frame;
     }
@@ -169,17 +170,17 @@ void ChunkCache::end_base(std::uint32_t frame) noexcept
 {
     has_base_ = false;
     base_asked_ = 0;
-    const bool freed = pool_->door.freed.try_push({ContentKind::base, pages_->owner(), frame});
+    const bool freed = pool_->queues.freed.try_push({ContentKind::base, pages_->owner(), frame});
     TACTUS_ASSERT(freed);
 }
 
-void ChunkCache::adopt(const DoorEvent& arrival, std::uint32_t frame) noexcept
+void ChunkCache::adopt(const QueueEvent& arrival, std::uint32_t frame) noexcept
 {
     if (arrival.key.kind == ContentKind::chunk)
     {
         TACTUS_ASSERT(arrival.key.number < header_.counts().chunks());
         pages_->adopt({arrival.key.number}, arrival.slot, frame, arrival.linked);
-        chunk_wishes_.arrive(arrival.key.number, frame);
+        chunk_requests_.arrive(arrival.key.number, frame);
         ++loads_;
         return;
     }
@@ -192,7 +193,7 @@ void ChunkCache::adopt(const DoorEvent& arrival, std::uint32_t frame) noexcept
         PagePool::first_key(pages_->owner()) + arrival.key.number, arrival.slot);
     TACTUS_ASSERT(inserted);
     ++index_pages_used_;
-    index_wishes_.arrive(arrival.key.number, frame);
+    index_requests_.arrive(arrival.key.number, frame);
     forget(IndexPageId{arrival.key.number}); // The page has not been searched yet.
 }
 
@@ -202,13 +203,13 @@ void ChunkCache::request_missing(std::span<const RankedRegion> regions, const Bu
 {
     frame_ = frame;
     work.budget.spend(WorkCost::search);
-    const bool has_expired = chunk_wishes_.take_expired();
-    if (index_wishes_.take_expired() || has_expired)
+    const bool has_expired = chunk_requests_.take_expired();
+    if (index_requests_.take_expired() || has_expired)
     {
         begin_again(); // Requests without an answer must be repeated.
     }
-    const IndexSearch::Balls urgent = to_quanta(regions, true);
-    const IndexSearch::Balls patient = to_quanta(regions, false);
+    const IndexSearch::Spheres urgent = to_quanta(regions, true);
+    const IndexSearch::Spheres patient = to_quanta(regions, false);
     const bool is_far = urgent.empty() && patient.empty();
     work.skipped.add(Skip::models, is_far ? 1 : 0);
     const std::uint32_t pages = header_.counts().index_pages();
@@ -226,31 +227,31 @@ void ChunkCache::request_missing(std::span<const RankedRegion> regions, const Bu
 }
 
 /// The spheres near the model in the order of their levels.
-IndexSearch::Balls ChunkCache::to_quanta(std::span<const RankedRegion> regions,
-                                         bool are_urgent) const noexcept
+IndexSearch::Spheres ChunkCache::to_quanta(std::span<const RankedRegion> regions,
+                                           bool are_urgent) const noexcept
 {
     const double per_metre = 1.0 / static_cast<double>(header_.quantum_m());
-    IndexSearch::Balls balls;
-    const std::uint32_t first = are_urgent ? 0 : level_of(UrgencyClass::later, true);
-    const std::uint32_t end = are_urgent ? level_of(UrgencyClass::later, true) : kWantedLevels;
+    IndexSearch::Spheres spheres;
+    const std::uint32_t first = are_urgent ? 0 : level_of(PriorityClass::later, true);
+    const std::uint32_t end = are_urgent ? level_of(PriorityClass::later, true) : kWantedLevels;
     for (std::uint32_t level = first; level < end; ++level)
     {
         for (const RankedRegion& region : regions)
         {
-            if (level_of(region.of, region.lead_ns == 0) != level)
+            if (level_of(region.of, region.horizon_ns == 0) != level)
             {
                 continue;
             }
             const Vec3 center = region.center_m * per_metre;
-            const QuantumBall ball{{center.x(), center.y(), center.z()},
-                                   region.radius_m * per_metre};
-            if (!variant_.asks_near_models_only || meets(ball, extent_))
+            const QuantumSphere sphere{{center.x(), center.y(), center.z()},
+                                       region.radius_m * per_metre};
+            if (!variant_.asks_near_models_only || meets(sphere, extent_))
             {
-                balls.push_back({ball, level});
+                spheres.push_back({sphere, level});
             }
         }
     }
-    return balls;
+    return spheres;
 }
 
 /// Searches due groups, then pages of the round, until the frame has done `most`.
@@ -259,16 +260,16 @@ void ChunkCache::search(IndexSearch& search, const Budgets& most, WorkCounters& 
 {
     if (search.is_at_rest())
     {
-        work.skipped.add(Skip::searches, search.balls().empty() ? 0 : 1);
+        work.skipped.add(Skip::searches, search.spheres().empty() ? 0 : 1);
         return;
     }
-    const BallLanes lanes(search.balls(), search.wider());
+    const SphereLanes lanes(search.spheres(), search.wider());
     constexpr std::uint32_t kGroups = IndexSearch::kGroups;
     const std::uint32_t groups =
         kGroups * (most.regions - std::min(most.regions, work.regions_searched));
     const std::uint32_t group_cost =
         WorkCost::index_group +
-        static_cast<std::uint32_t>(search.balls().size()) * WorkCost::index_ball;
+        static_cast<std::uint32_t>(search.spheres().size()) * WorkCost::index_sphere;
     std::uint32_t looked = 0;
     const auto look = [&](IndexSearch::NearPage& near)
     {
@@ -307,7 +308,7 @@ void ChunkCache::request_everything(const Budgets& budgets, WorkCounters& work,
     const std::uint32_t chunks = header_.counts().chunks();
     for (std::uint32_t looked = 0;
          looked < std::min(chunks, kChunksPerIndexPage) && work.requests < budgets.requests &&
-         chunk_wishes_.under_way() < kMaxFillingWishes && pages_->used() < chunks;
+         chunk_requests_.under_way() < kMaxFillingRequests && pages_->used() < chunks;
          ++looked)
     {
         const ChunkId chunk{fill_cursor_};
@@ -382,15 +383,15 @@ void ChunkCache::look_at_boxes(IndexSearch::NearPage& near, const IndexPage& ind
                                FrameFault& faults) noexcept
 {
     const KernelPage page = look.lanes.page(page_box);
-    const std::span<const WantedBall> balls = look.search.balls();
+    const std::span<const WantedSphere> spheres = look.search.spheres();
     std::array<float, IndexSearch::kGroups> gaps{};
     gaps.fill(IndexSearch::kNever);
     std::uint64_t known = ~(~std::uint64_t{0} >> (kChunksPerIndexPage - index.chunks));
     std::uint32_t waiting = 0;
-    for (std::size_t first = 0, end = 0; first < balls.size(); first = end)
+    for (std::size_t first = 0, end = 0; first < spheres.size(); first = end)
     {
-        const std::uint32_t level = balls[first].level;
-        while (end < balls.size() && balls[end].level == level)
+        const std::uint32_t level = spheres[first].level;
+        while (end < spheres.size() && spheres[end].level == level)
         {
             ++end;
         }
@@ -401,7 +402,7 @@ void ChunkCache::look_at_boxes(IndexSearch::NearPage& near, const IndexPage& ind
             const NearBoxes seen = kernels_->near_boxes(
                 &index.low[0][std::size_t{8} * group], page, look.lanes.from(first),
                 static_cast<std::uint32_t>(end - first), known >> 8 * group & 0xffU);
-            const std::uint32_t opened = met_of(seen.open, balls.subspan(first, end - first),
+            const std::uint32_t opened = met_of(seen.open, spheres.subspan(first, end - first),
                                                 look.search.wider(), index, page_box, 8 * group);
             gaps[group] = std::min(gaps[group], opened == seen.open ? seen.gap : 0.0F);
             met |= std::uint64_t{seen.met | opened} << 8 * group;
@@ -427,7 +428,7 @@ void ChunkCache::look_at_boxes(IndexSearch::NearPage& near, const IndexPage& ind
         }
         known |= met;
     }
-    if (waiting != 0 && !chunk_wishes_.has_credit())
+    if (waiting != 0 && !chunk_requests_.has_credit())
     {
         begin_again();
     }
@@ -451,19 +452,19 @@ bool ChunkCache::try_touch(ChunkId chunk, const Want& want, WorkCounters& work) 
         ++work.cache_hits;
         return true;
     }
-    return chunk_wishes_.is_under_way(chunk.value);
+    return chunk_requests_.is_under_way(chunk.value);
 }
 
 /// Requests a chunk that is neither.
 bool ChunkCache::try_want(ChunkId chunk, const Want& want, const Budgets& most, WorkCounters& work,
                           FrameFault& faults) noexcept
 {
-    if (work.requests < most.requests && !chunk_wishes_.has_credit())
+    if (work.requests < most.requests && !chunk_requests_.has_credit())
     {
         give_page_back(want, work);
         // One page may not be enough if late answers to expired requests took slots meanwhile. A
         // predicted chunk may fail without a fault.
-        if (is_present(want.level) && !chunk_wishes_.has_credit())
+        if (is_present(want.level) && !chunk_requests_.has_credit())
         {
             faults |= FrameFault::cache_full;
             if (pool_->barren_looks_ >= pages_->capacity())
@@ -472,12 +473,12 @@ bool ChunkCache::try_want(ChunkId chunk, const Want& want, const Budgets& most, 
             }
         }
     }
-    if (work.requests >= most.requests || !chunk_wishes_.has_credit() ||
-        !pool_->try_wish({ContentKind::chunk, chunk.value}, pages_->owner(), frame_))
+    if (work.requests >= most.requests || !chunk_requests_.has_credit() ||
+        !pool_->try_request({ContentKind::chunk, chunk.value}, pages_->owner(), frame_))
     {
         return false;
     }
-    chunk_wishes_.ask(chunk.value, frame_);
+    chunk_requests_.ask(chunk.value, frame_);
     ++work.requests;
     ++work.cache_misses;
     return true;
@@ -487,18 +488,18 @@ bool ChunkCache::try_want(ChunkId chunk, const Want& want, const Budgets& most, 
 bool ChunkCache::try_want_index_page(IndexPageId page, WorkCounters& work,
                                      FrameFault& faults) noexcept
 {
-    if (index_wishes_.is_under_way(page.value))
+    if (index_requests_.is_under_way(page.value))
     {
         return true;
     }
-    const bool has_credit = index_wishes_.has_credit() || try_evict_index_page();
+    const bool has_credit = index_requests_.has_credit() || try_evict_index_page();
     faults |= has_credit ? FrameFault::none : FrameFault::cache_full;
     if (!has_credit ||
-        !pool_->try_wish({ContentKind::index_page, page.value}, pages_->owner(), frame_))
+        !pool_->try_request({ContentKind::index_page, page.value}, pages_->owner(), frame_))
     {
         return false;
     }
-    index_wishes_.ask(page.value, frame_);
+    index_requests_.ask(page.value, frame_);
     ++work.requests;
     return true;
 }
@@ -523,7 +524,7 @@ void ChunkCache::give_page_back(const Want& want, WorkCounters& work) noexcept
         const ChunkCache& owner = *pool_->caches_[meta.owner];
         const std::uint32_t before =
             &owner == this ? want.evict_before
-                           : owner.lends_before(owner.chunk_wishes_, frame_, want.age);
+                           : owner.lends_before(owner.chunk_requests_, frame_, want.age);
         oldest = meta.touched < before ? slot : oldest;
     }
     if (oldest == slots)
@@ -538,11 +539,11 @@ void ChunkCache::give_page_back(const Want& want, WorkCounters& work) noexcept
 /// Last touch before which other models may take a page of a kind: none of the pages reserved for
 /// the model, and none used in the last two rounds or in `age` frames before. A model without
 /// requests has no rounds.
-std::uint32_t ChunkCache::lends_before(const WishList& wishes, std::uint32_t frame,
+std::uint32_t ChunkCache::lends_before(const RequestList& requests, std::uint32_t frame,
                                        std::uint32_t age) const noexcept
 {
     const bool is_idle = frame - frame_ > 1;
-    return wishes.has_more_than_its_own() ? (is_idle ? frame : lends_before_) - age : 0;
+    return requests.has_more_than_its_own() ? (is_idle ? frame : lends_before_) - age : 0;
 }
 
 /// Begins new rounds; unused pages may be evicted after two rounds of both searches.
@@ -581,9 +582,9 @@ void ChunkCache::evict(std::uint32_t slot, WorkCounters& work) noexcept
     urgent_.forget(chunk);
     patient_.forget(chunk);
     pages_->evict(slot);
-    const bool freed = pool_->door.freed.try_push({ContentKind::chunk, slot});
+    const bool freed = pool_->queues.freed.try_push({ContentKind::chunk, slot});
     TACTUS_ASSERT(freed);
-    chunk_wishes_.give_back_slot();
+    chunk_requests_.give_back_slot();
     ++work.evictions;
     ++evictions_;
 }
@@ -601,7 +602,7 @@ bool ChunkCache::try_evict_index_page() noexcept
         }
         const ChunkCache& owner = *pool_->caches_[meta.owner];
         const std::uint32_t before =
-            &owner == this ? unused_since() : owner.lends_before(owner.index_wishes_, frame_, 0);
+            &owner == this ? unused_since() : owner.lends_before(owner.index_requests_, frame_, 0);
         oldest = meta.touched < before ? slot : oldest;
     }
     if (oldest == index_meta_.size())
@@ -618,9 +619,9 @@ void ChunkCache::evict_index_page(std::uint32_t slot) noexcept
     pool_->index_slot_of.erase(PagePool::first_key(pages_->owner()) + index_meta_[slot].page.value);
     --index_pages_used_;
     index_meta_[slot] = IndexMeta{};
-    const bool freed = pool_->door.freed.try_push({ContentKind::index_page, slot});
+    const bool freed = pool_->queues.freed.try_push({ContentKind::index_page, slot});
     TACTUS_ASSERT(freed);
-    index_wishes_.give_back_slot();
+    index_requests_.give_back_slot();
 }
 
 } // namespace tactus

@@ -5,7 +5,7 @@
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/cache/cache_pool.hpp"
 #include "rt_core/cache/index_search.hpp"
-#include "rt_core/cache/wish_list.hpp"
+#include "rt_core/cache/request_list.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_variant.hpp"
 #include "rt_core/records/region_ranking.hpp"
@@ -34,7 +34,7 @@ namespace tactus
 /// All models share one pool of slots. If it has no more for this model, the evicted page may be
 /// another model's that has more than its reservation.
 ///
-/// Haptic thread; the other end of the door is the courier.
+/// Haptic thread; the other end of the queues is the chunk loader's.
 class ChunkCache
 {
 public:
@@ -58,7 +58,7 @@ public:
     /// Sets the shortcuts of requests; without a call all are on.
     void set_variant(const FrameVariant& variant) noexcept { variant_ = variant; }
 
-    /// Requests what `regions` (of this model, most urgent first) lack.
+    /// Requests what `regions` (of this model, highest priority first) lack.
     void request_missing(std::span<const RankedRegion> regions, const Budgets& budgets,
                          std::uint32_t frame, WorkCounters& work,
                          FrameFault& faults) noexcept TACTUS_NONBLOCKING;
@@ -87,7 +87,7 @@ public:
     }
     [[nodiscard]] bool may_want_base(std::uint32_t frame) const noexcept
     {
-        return cells_back_ == 0 || frame - cells_back_ > pool_->wish_timeout_frames_;
+        return cells_back_ == 0 || frame - cells_back_ > pool_->request_timeout_frames_;
     }
     /// Returns all that a closed cache has, up to `most` slots per call, continuing where the last
     /// call ended: the pages, with no refined records, then the index pages, then the base mesh.
@@ -99,11 +99,11 @@ public:
     static constexpr std::uint32_t kFirstFrame = 4'096;
 
     /// Frames from the request of a chunk to its arrival.
-    [[nodiscard]] const LoadLatency& latency() const noexcept { return chunk_wishes_.latency(); }
+    [[nodiscard]] const LoadLatency& latency() const noexcept { return chunk_requests_.latency(); }
     /// Requests without an answer yet.
-    [[nodiscard]] std::uint32_t wishes_under_way() const noexcept
+    [[nodiscard]] std::uint32_t requests_under_way() const noexcept
     {
-        return chunk_wishes_.under_way() + index_wishes_.under_way();
+        return chunk_requests_.under_way() + index_requests_.under_way();
     }
     [[nodiscard]] std::uint64_t loads() const noexcept { return loads_; }
     [[nodiscard]] std::uint64_t evictions() const noexcept { return evictions_; }
@@ -126,16 +126,16 @@ private:
     struct Look
     {
         IndexSearch& search;
-        const BallLanes& lanes;
+        const SphereLanes& lanes;
         const Budgets& most;
     };
 
-    void take(const DoorEvent& event, std::uint32_t frame) noexcept TACTUS_NONBLOCKING;
-    void adopt(const DoorEvent& arrival, std::uint32_t frame) noexcept;
-    void send_back(const DoorEvent& arrival, std::uint32_t frame) noexcept;
+    void take(const QueueEvent& event, std::uint32_t frame) noexcept TACTUS_NONBLOCKING;
+    void adopt(const QueueEvent& arrival, std::uint32_t frame) noexcept;
+    void send_back(const QueueEvent& arrival, std::uint32_t frame) noexcept;
     void end_base(std::uint32_t frame) noexcept;
-    [[nodiscard]] IndexSearch::Balls to_quanta(std::span<const RankedRegion> regions,
-                                               bool are_urgent) const noexcept;
+    [[nodiscard]] IndexSearch::Spheres to_quanta(std::span<const RankedRegion> regions,
+                                                 bool are_urgent) const noexcept;
     [[nodiscard]] Want want_of(std::uint32_t level, std::uint32_t touch_level) const noexcept;
     void search(IndexSearch& search, const Budgets& most, WorkCounters& work,
                 FrameFault& faults) noexcept;
@@ -155,7 +155,7 @@ private:
     [[nodiscard]] std::uint32_t unused_since() const noexcept;
     void give_page_back(const Want& want, WorkCounters& work) noexcept;
     [[nodiscard]] std::uint32_t find_index_page(IndexPageId page) const noexcept TACTUS_NONBLOCKING;
-    [[nodiscard]] std::uint32_t lends_before(const WishList& wishes, std::uint32_t frame,
+    [[nodiscard]] std::uint32_t lends_before(const RequestList& requests, std::uint32_t frame,
                                              std::uint32_t age) const noexcept;
     void evict_index_page(std::uint32_t slot) noexcept;
     void evict(std::uint32_t slot, WorkCounters& work) noexcept;
@@ -166,7 +166,7 @@ private:
     static constexpr std::uint32_t kLevelAge = 64;
     static_assert(kLevelAge * kWantedLevels < kFirstFrame,
                   "a touch dated back is no frame before the first");
-    /// Share of the budgets that the less urgent spheres always get.
+    /// Share of the budgets that spheres of lower priority always get.
     static constexpr std::uint32_t kPatientShare = 4;
 
     CachePool* pool_;
@@ -180,8 +180,8 @@ private:
     const Kernels* kernels_;
     std::span<IndexMeta> index_meta_; ///< Slots of all models.
     std::uint32_t index_pages_used_{0};
-    WishList chunk_wishes_;
-    WishList index_wishes_;
+    RequestList chunk_requests_;
+    RequestList index_requests_;
     /// Others may take pages not touched since, beyond the reservation.
     std::uint32_t lends_before_{kFirstFrame};
     std::uint32_t fill_cursor_{0}; ///< Next chunk of request_everything().

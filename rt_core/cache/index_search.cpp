@@ -20,7 +20,7 @@ namespace
 constexpr double kRounding = 1e-12;
 
 /// Motion of a sphere's centre, plus the growth of the wider sphere.
-double way_between(const QuantumBall& before, const QuantumBall& now) noexcept
+double way_between(const QuantumSphere& before, const QuantumSphere& now) noexcept
 {
     double moved_sq = 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -40,18 +40,18 @@ std::int32_t in_range(double value) noexcept
 
 } // namespace
 
-BallLanes::BallLanes(std::span<const WantedBall> balls, double wider) noexcept
-    : around_(balls[0].ball.center)
+SphereLanes::SphereLanes(std::span<const WantedSphere> spheres, double wider) noexcept
+    : around_(spheres[0].sphere.center)
 {
     std::array<double, 4> most{};
-    for (const WantedBall& wanted : balls)
+    for (const WantedSphere& wanted : spheres)
     {
-        const double radius = wanted.ball.radius * wider;
-        KernelBall lane{{}, static_cast<float>(radius)};
+        const double radius = wanted.sphere.radius * wider;
+        KernelSphere lane{{}, static_cast<float>(radius)};
         most[3] = std::max(most[3], radius);
         for (std::size_t axis = 0; axis < 3; ++axis)
         {
-            const double at = wanted.ball.center[axis] - around_[axis];
+            const double at = wanted.sphere.center[axis] - around_[axis];
             lane.center[axis] = static_cast<float>(at);
             most[axis] = std::max(most[axis], std::abs(at));
         }
@@ -60,7 +60,7 @@ BallLanes::BallLanes(std::span<const WantedBall> balls, double wider) noexcept
     size_ = most[0] + most[1] + most[2] + most[3];
 }
 
-KernelPage BallLanes::page(const QuantumBox& box) const noexcept
+KernelPage SphereLanes::page(const QuantumBox& box) const noexcept
 {
     // A step has less than 18 bits. The gap is off by less than 8 x 2^-24 of the sum of all sizes.
     constexpr double kSlack = 0x1p-20;
@@ -81,13 +81,13 @@ KernelPage BallLanes::page(const QuantumBox& box) const noexcept
     return page;
 }
 
-void IndexSearch::aim(const Balls& balls, std::uint32_t pages, std::uint32_t frame,
+void IndexSearch::aim(const Spheres& spheres, std::uint32_t pages, std::uint32_t frame,
                       bool keeps_rounds) noexcept
 {
     pages_ = pages;
-    balls_ = balls.view();
+    spheres_ = spheres.view();
     wider_ = keeps_rounds ? kWider : 1.0;
-    if (balls.empty())
+    if (spheres.empty())
     {
         // Nothing touched before is in use any more.
         is_kept_ = false;
@@ -98,54 +98,54 @@ void IndexSearch::aim(const Balls& balls, std::uint32_t pages, std::uint32_t fra
         last_round_began_ = frame;
         return;
     }
-    const std::optional<double> way = keeps_rounds && is_kept_ ? way_of(balls) : std::nullopt;
+    const std::optional<double> way = keeps_rounds && is_kept_ ? way_of(spheres) : std::nullopt;
     way_ += way.value_or(0.0);
     if (!way || !(way_ <= margin_) || (pages_left_ == 0 && frame - ended_ > kRestFrames))
     {
-        is_kept_ = keeps_rounds && balls.size() <= kKeptBalls;
-        begin_round(balls, way.value_or(0.0), frame);
+        is_kept_ = keeps_rounds && spheres.size() <= kKeptSpheres;
+        begin_round(spheres, way.value_or(0.0), frame);
         kept_.clear();
     }
     if (is_kept_)
     {
-        keep(balls);
+        keep(spheres);
     }
     find_due();
 }
 
 /// Motion of the farthest sphere since the last frame; none if the spheres or their levels changed.
-std::optional<double> IndexSearch::way_of(const Balls& balls) const noexcept
+std::optional<double> IndexSearch::way_of(const Spheres& spheres) const noexcept
 {
-    if (balls.size() != kept_.size())
+    if (spheres.size() != kept_.size())
     {
         return std::nullopt;
     }
     double way = 0.0;
-    for (std::size_t i = 0; i < balls.size(); ++i)
+    for (std::size_t i = 0; i < spheres.size(); ++i)
     {
         const auto is_first = [i](const auto& of)
         { return i > 0 && of[i].level != of[i - 1].level; };
-        if (is_first(balls) != is_first(kept_))
+        if (is_first(spheres) != is_first(kept_))
         {
             return std::nullopt;
         }
-        way = std::max(way, way_between(kept_[i].ball, balls[i].ball));
+        way = std::max(way, way_between(kept_[i].sphere, spheres[i].sphere));
     }
     return way;
 }
 
-void IndexSearch::begin_round(const Balls& balls, double way, std::uint32_t frame) noexcept
+void IndexSearch::begin_round(const Spheres& spheres, double way, std::uint32_t frame) noexcept
 {
-    double smallest = balls[0].ball.radius;
-    std::array<double, 3> low = balls[0].ball.center;
+    double smallest = spheres[0].sphere.radius;
+    std::array<double, 3> low = spheres[0].sphere.center;
     std::array<double, 3> high = low;
-    for (const auto& [ball, level] : balls)
+    for (const auto& [sphere, level] : spheres)
     {
-        smallest = std::min(smallest, ball.radius);
+        smallest = std::min(smallest, sphere.radius);
         for (std::size_t axis = 0; axis < 3; ++axis)
         {
-            low[axis] = std::min(low[axis], ball.center[axis] - ball.radius * wider_);
-            high[axis] = std::max(high[axis], ball.center[axis] + ball.radius * wider_);
+            low[axis] = std::min(low[axis], sphere.center[axis] - sphere.radius * wider_);
+            high[axis] = std::max(high[axis], sphere.center[axis] + sphere.radius * wider_);
         }
     }
     margin_ = is_kept_
@@ -163,19 +163,19 @@ void IndexSearch::begin_round(const Balls& balls, double way, std::uint32_t fram
     ended_ = frame;
 }
 
-/// Keeps the frame's spheres, each with its most urgent level of the round. If one is more urgent
-/// than before, the pages that it meets must be touched again.
-void IndexSearch::keep(const Balls& balls) noexcept
+/// Keeps the frame's spheres, each with its level of highest priority in the round. If one has
+/// a higher priority than before, the pages that it meets must be touched again.
+void IndexSearch::keep(const Spheres& spheres) noexcept
 {
     bool is_more_urgent = false;
-    for (std::size_t i = 0; i < balls.size(); ++i)
+    for (std::size_t i = 0; i < spheres.size(); ++i)
     {
         if (i == kept_.size())
         {
-            kept_.push_back(balls[i]);
+            kept_.push_back(spheres[i]);
         }
-        is_more_urgent = is_more_urgent || balls[i].level < kept_[i].level;
-        kept_[i] = {balls[i].ball, std::min(balls[i].level, kept_[i].level)};
+        is_more_urgent = is_more_urgent || spheres[i].level < kept_[i].level;
+        kept_[i] = {spheres[i].sphere, std::min(spheres[i].level, kept_[i].level)};
     }
     for (NearPage& near : near_)
     {
@@ -243,9 +243,9 @@ bool IndexSearch::may_come_to(const QuantumBox& box) const noexcept
     }
     const double further = std::max(margin_ - way_, 0.0) * (1.0 + kRounding);
     return std::ranges::any_of(
-        balls_,
-        [&](const WantedBall& wanted) {
-            return meets({wanted.ball.center, wanted.ball.radius * wider_ + further}, box);
+        spheres_,
+        [&](const WantedSphere& wanted) {
+            return meets({wanted.sphere.center, wanted.sphere.radius * wider_ + further}, box);
         });
 }
 
@@ -264,10 +264,10 @@ IndexSearch::NearPage& IndexSearch::add(IndexPageId page) noexcept
 std::optional<double> IndexSearch::gap_to(const QuantumBox& box, double wider) const noexcept
 {
     double least = std::numeric_limits<double>::infinity();
-    for (const WantedBall& wanted : balls_)
+    for (const WantedSphere& wanted : spheres_)
     {
-        const double far_sq = distance_sq(wanted.ball.center, box);
-        const double radius = wanted.ball.radius * wider;
+        const double far_sq = distance_sq(wanted.sphere.center, box);
+        const double radius = wanted.sphere.radius * wider;
         if (far_sq <= radius * radius)
         {
             return std::nullopt;

@@ -6,7 +6,7 @@
 #include "rt_core/base/static_vector.hpp"
 #include "rt_core/kernels/kernels.hpp"
 #include "rt_core/limits.hpp"
-#include "rt_core/records/urgency.hpp"
+#include "rt_core/records/priority.hpp"
 #include "rt_core/spm/index_page.hpp"
 
 #include <array>
@@ -17,8 +17,9 @@
 namespace tactus
 {
 
-/// Level of a region, 0 being the most urgent: two for each UrgencyClass, at a tool and predicted.
-[[nodiscard]] constexpr std::uint32_t level_of(UrgencyClass of, bool is_present) noexcept
+/// Level of a region, 0 being the highest priority: two for each PriorityClass, at a tool and
+/// predicted.
+[[nodiscard]] constexpr std::uint32_t level_of(PriorityClass of, bool is_present) noexcept
 {
     return 2 * static_cast<std::uint32_t>(of) + (is_present ? 0 : 1);
 }
@@ -26,32 +27,35 @@ namespace tactus
 {
     return level % 2 == 0;
 }
-[[nodiscard]] constexpr UrgencyClass class_of(std::uint32_t level) noexcept
+[[nodiscard]] constexpr PriorityClass class_of(std::uint32_t level) noexcept
 {
-    return static_cast<UrgencyClass>(level / 2);
+    return static_cast<PriorityClass>(level / 2);
 }
-inline constexpr std::uint32_t kWantedLevels = 2 * kUrgencyClasses;
+inline constexpr std::uint32_t kWantedLevels = 2 * kPriorityClasses;
 
 /// A sphere in which chunks are wanted, in quanta.
-struct WantedBall
+struct WantedSphere
 {
-    QuantumBall ball;
+    QuantumSphere sphere;
     std::uint32_t level{0};
 };
 
 /// Spheres as the kernels use them, around the first one's centre.
-class BallLanes
+class SphereLanes
 {
 public:
     /// Multiplies each sphere's radius by `wider`.
-    BallLanes(std::span<const WantedBall> balls, double wider) noexcept;
+    SphereLanes(std::span<const WantedSphere> spheres, double wider) noexcept;
 
-    [[nodiscard]] const KernelBall* from(std::size_t ball) const noexcept { return &lanes_[ball]; }
+    [[nodiscard]] const KernelSphere* from(std::size_t sphere) const noexcept
+    {
+        return &lanes_[sphere];
+    }
     /// Kernel page of an index page with this box, around the same point.
     [[nodiscard]] KernelPage page(const QuantumBox& box) const noexcept;
 
 private:
-    StaticVector<KernelBall, kMaxRankedRegions> lanes_;
+    StaticVector<KernelSphere, kMaxRankedRegions> lanes_;
     std::array<double, 3> around_{};
     double size_{0.0}; ///< Share of the spheres in a page's slack.
 };
@@ -66,12 +70,12 @@ private:
 /// moved farther than the round's margin. A new round begins then, and also kRestFrames after the
 /// last one's end, so that all pages in use are touched again.
 ///
-/// A sphere of a more urgent level that reaches a box counts, too, and if a sphere becomes more
-/// urgent all groups are due. Haptic thread.
+/// A sphere of a higher-priority level that reaches a box counts, too, and if a sphere's priority
+/// rises, all groups are due. Haptic thread.
 class IndexSearch
 {
 public:
-    using Balls = StaticVector<WantedBall, kMaxRankedRegions>;
+    using Spheres = StaticVector<WantedSphere, kMaxRankedRegions>;
     static constexpr std::uint32_t kGroups = kChunksPerIndexPage / 8;
     static constexpr std::uint32_t kAllGroups = (1U << kGroups) - 1;
 
@@ -94,21 +98,21 @@ public:
     {
     }
 
-    /// Sets this frame's spheres, the most urgent first; they must stay until the frame's last
+    /// Sets this frame's spheres, the highest priority first; they must stay until the frame's last
     /// search. `pages` are all index pages of the model. Without `keeps_rounds` every frame begins
     /// a round.
-    void aim(const Balls& balls, std::uint32_t pages, std::uint32_t frame,
+    void aim(const Spheres& spheres, std::uint32_t pages, std::uint32_t frame,
              bool keeps_rounds) noexcept TACTUS_NONBLOCKING;
-    [[nodiscard]] std::span<const WantedBall> balls() const noexcept { return balls_; }
-    /// Factor of the wider spheres. Chunks that a wider sphere meets are in use, with its urgency;
+    [[nodiscard]] std::span<const WantedSphere> spheres() const noexcept { return spheres_; }
+    /// Factor of the wider spheres. Chunks that a wider sphere meets are in use, with its priority;
     /// only chunks that the sphere itself meets are requested. So chunks that a sphere has just
-    /// left stay, and those that it reaches next have its urgency.
+    /// left stay, and those that it reaches next have its priority.
     [[nodiscard]] double wider() const noexcept { return wider_; }
-    /// Most urgent level of a sphere in this round, with which it touches pages: a pair that
-    /// touches now and then counts as touching.
-    [[nodiscard]] std::uint32_t touch_level(std::size_t ball) const noexcept
+    /// Level of highest priority of a sphere in this round, with which it touches pages: a pair
+    /// that touches now and then counts as touching.
+    [[nodiscard]] std::uint32_t touch_level(std::size_t sphere) const noexcept
     {
-        return is_kept_ ? kept_[ball].level : balls_[ball].level;
+        return is_kept_ ? kept_[sphere].level : spheres_[sphere].level;
     }
 
     /// True if this frame has nothing to search.
@@ -155,22 +159,23 @@ public:
     static constexpr double kWider = 1.1;
     /// Spheres for which a round is kept: twelve moving tools with spheres. With more every frame
     /// begins one.
-    static constexpr std::size_t kKeptBalls = 64;
+    static constexpr std::size_t kKeptSpheres = 64;
     /// Capacity of the list.
     static constexpr std::size_t kMaxNear = 32;
 
 private:
-    [[nodiscard]] std::optional<double> way_of(const Balls& balls) const noexcept;
-    void begin_round(const Balls& balls, double way, std::uint32_t frame) noexcept;
-    void keep(const Balls& balls) noexcept;
+    [[nodiscard]] std::optional<double> way_of(const Spheres& spheres) const noexcept;
+    void begin_round(const Spheres& spheres, double way, std::uint32_t frame) noexcept;
+    void keep(const Spheres& spheres) noexcept;
     void find_due() noexcept;
     [[nodiscard]] NearPage* find(IndexPageId page) noexcept;
 
-    StaticVector<WantedBall, kKeptBalls> kept_; ///< The last frame's spheres, with touch levels.
+    StaticVector<WantedSphere, kKeptSpheres>
+        kept_; ///< The last frame's spheres, with touch levels.
     StaticVector<NearPage, kMaxNear> near_;
     NearPage unlisted_;
     QuantumBox region_; ///< Region that no sphere leaves during the round.
-    std::span<const WantedBall> balls_;
+    std::span<const WantedSphere> spheres_;
     bool is_kept_{false}; ///< The list and its certificates belong to kept_.
     bool has_due_{false};
     double wider_{1.0};

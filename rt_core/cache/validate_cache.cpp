@@ -16,12 +16,12 @@ public:
     {
         check_index();
         const PageTable& pages = *cache_.pages_;
-        check_wishes(cache_.chunk_wishes_, "chunk", pages.used(),
-                     [&](std::uint32_t number)
-                     { return pages.find(ChunkId{number}) == IdTable::kAbsent; });
-        check_wishes(cache_.index_wishes_, "index page", cache_.index_pages_used_,
-                     [&](std::uint32_t number)
-                     { return cache_.find_index_page({number}) == IdTable::kAbsent; });
+        check_requests(cache_.chunk_requests_, "chunk", pages.used(),
+                       [&](std::uint32_t number)
+                       { return pages.find(ChunkId{number}) == IdTable::kAbsent; });
+        check_requests(cache_.index_requests_, "index page", cache_.index_pages_used_,
+                       [&](std::uint32_t number)
+                       { return cache_.find_index_page({number}) == IdTable::kAbsent; });
         check_freed();
         const std::uint32_t chunks = cache_.header_.counts().chunks();
         finder_.expect(cache_.fill_cursor_ < chunks || cache_.fill_cursor_ == 0, "chunk",
@@ -40,7 +40,7 @@ private:
         const auto index_pages = static_cast<std::size_t>(
             std::ranges::count_if(pool.index_metas, [](const CachePool::IndexMeta& meta)
                                   { return meta.page.is_none(); }));
-        const std::size_t on_the_way = pool.door.freed.size();
+        const std::size_t on_the_way = pool.queues.freed.size();
         finder_.expect(on_the_way <= pages + index_pages + pool.caches_.size(), "cache",
                        static_cast<std::uint32_t>(on_the_way),
                        "slots are on their way back, more than are not its own");
@@ -74,30 +74,30 @@ private:
     }
 
     template <typename IsAway>
-    void check_wishes(const WishList& wishes, const char* thing, std::uint32_t resident,
-                      const IsAway& is_away) noexcept
+    void check_requests(const RequestList& requests, const char* thing, std::uint32_t resident,
+                        const IsAway& is_away) noexcept
     {
-        finder_.expect(resident == wishes.slots_had(), thing, resident,
+        finder_.expect(resident == requests.slots_had(), thing, resident,
                        "slots are used here, and its pool counts others");
-        std::uint32_t wished = 0;
-        const WishPool& pool = *wishes.pool_;
-        for (std::uint32_t place = 0; place < pool.wishes_.size(); ++place)
+        std::uint32_t requested = 0;
+        const RequestPool& pool = *requests.pool_;
+        for (std::uint32_t place = 0; place < pool.requests_.size(); ++place)
         {
-            const WishPool::Wish& wish = pool.wishes_[place];
-            if (wish.list != &wishes)
+            const RequestPool::Request& request = pool.requests_[place];
+            if (request.list != &requests)
             {
                 continue;
             }
-            ++wished;
-            const std::uint32_t number = wish.key - wishes.first_key_;
-            finder_.expect(pool.place_of_.find(wish.key) == place, thing, number,
-                           "is wished for twice, or is not known to be");
-            finder_.expect(is_away(number), thing, number, "is wished for and here");
-            finder_.expect(wish.asked <= cache_.frame_, thing, number,
-                           "was wished for in a later frame");
+            ++requested;
+            const std::uint32_t number = request.key - requests.first_key_;
+            finder_.expect(pool.place_of_.find(request.key) == place, thing, number,
+                           "is requested twice, or is not known to be");
+            finder_.expect(is_away(number), thing, number, "is requested and here");
+            finder_.expect(request.asked <= cache_.frame_, thing, number,
+                           "was requested in a later frame");
         }
-        finder_.expect(wished == wishes.under_way_, thing, wished,
-                       "wishes are under way, and the list counts others");
+        finder_.expect(requested == requests.under_way_, thing, requested,
+                       "requests are under way, and the list counts others");
     }
 
     const ChunkCache& cache_;

@@ -88,7 +88,7 @@ void BodyPlanes::begin(const Vec3& place_m, double arm_m, double size_m, double 
     turn_weight_ = ratio * ratio;
     radius_m_ = radius_m;
     gone_ = gone;
-    is_crowded_ = false;
+    exceeds_capacity_ = false;
 }
 
 Vec3 BodyPlanes::lever_m(std::uint32_t i) const noexcept
@@ -123,7 +123,7 @@ void BodyPlanes::add(const BodyTouch& touch, const BodyGrip& grip) noexcept
         grips_.push_back(grip);
         return;
     }
-    is_crowded_ = true;
+    exceeds_capacity_ = true;
     replace(least, space, touch, grip);
 }
 
@@ -258,7 +258,7 @@ BodyMotion BodyPlanes::nearest(const Motion<6>& wanted) noexcept
 {
     leave_out_seams();
     BodyMotion answer;
-    const NearestMotion<6> held = plain(wanted, answer.is_squeezed);
+    const NearestMotion<6> held = plain(wanted, answer.is_over_constrained);
     answer.motion = held.motion;
     bool rubs = false;
     for (std::size_t i = 0; i < held.held_by.size(); ++i)
@@ -267,7 +267,7 @@ BodyMotion BodyPlanes::nearest(const Motion<6>& wanted) noexcept
         answer.pushes.push_back({plane, spaces_[plane].normal, held.reactions[i]});
         rubs = rubs || grips_[plane].friction > 0.0;
     }
-    if (answer.is_squeezed)
+    if (answer.is_over_constrained)
     {
         return answer;
     }
@@ -287,14 +287,14 @@ BodyMotion BodyPlanes::nearest(const Motion<6>& wanted) noexcept
 }
 
 /// A gap that is too narrow for the tool holds it where it is.
-NearestMotion<6> BodyPlanes::plain(const Motion<6>& wanted, bool& is_squeezed) noexcept
+NearestMotion<6> BodyPlanes::plain(const Motion<6>& wanted, bool& is_over_constrained) noexcept
 {
     NearestMotion<6> nearest = nearest_motion<6>(spaces_.view(), wanted);
     if (nearest.is_feasible)
     {
         return nearest;
     }
-    is_squeezed = true;
+    is_over_constrained = true;
     for (HalfSpace<6>& space : spaces_)
     {
         space.offset = std::min(space.offset, 0.0);
@@ -431,7 +431,7 @@ BodyMotion BodyPlanes::stuck(const NearestMotion<6>& tilted) noexcept
         answer.pushes.push_back({touch, tilted_[plane].normal, tilted.reactions[i]});
     }
     // What found no room above, and what the tool is too near to.
-    const NearestMotion<6> free = plain(tilted.motion, answer.is_squeezed);
+    const NearestMotion<6> free = plain(tilted.motion, answer.is_over_constrained);
     answer.motion = free.motion;
     return answer;
 }
@@ -463,10 +463,10 @@ BodyMotion BodyPlanes::sliding(const NearestMotion<6>& tilted, const Motion<6>& 
     }
     BodyMotion answer;
     answer.slides = true;
-    NearestMotion<6> held = plain(wanted + drag, answer.is_squeezed);
+    NearestMotion<6> held = plain(wanted + drag, answer.is_over_constrained);
     if (share_of(held, most) < 1.0 - kSameFriction)
     {
-        held = plain(wanted + share_of(held, most) * drag, answer.is_squeezed);
+        held = plain(wanted + share_of(held, most) * drag, answer.is_over_constrained);
     }
     rub(held, wanted, share_of(held, most) * drag, answer);
     return answer;
@@ -541,7 +541,7 @@ BodyPlanes::viscosity_of(const NearestMotion<6>& held) const noexcept
         const double part = grips_[plane].viscous * held.reactions[i] / pressure;
         const Vec3 lever = lever_m(plane) / arm_m_;
         const Vec3& normal = touches_[plane].normal;
-        const auto held_back = [&](const Vec3& way)
+        const auto drag_of = [&](const Vec3& way)
         {
             const Vec3 along = part * (way - normal.dot(way) * normal);
             return to_motion(along, lever.cross(along));
@@ -549,10 +549,10 @@ BodyPlanes::viscosity_of(const NearestMotion<6>& held) const noexcept
         for (int column = 0; column < 6; ++column)
         {
             const Motion<6> unit = Motion<6>::Unit(column);
-            metric.col(column) += held_back(unit.head<3>() + unit.tail<3>().cross(lever));
+            metric.col(column) += drag_of(unit.head<3>() + unit.tail<3>().cross(lever));
         }
         viscosity.gone +=
-            held_back(gone_.head<3>() + gone_.tail<3>().cross(lever) - grips_[plane].frame_way_m);
+            drag_of(gone_.head<3>() + gone_.tail<3>().cross(lever) - grips_[plane].frame_way_m);
     }
     viscosity.factor = SymmetricFactor(metric);
     return viscosity;

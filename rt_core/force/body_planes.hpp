@@ -60,9 +60,9 @@ struct BodyMotion
 {
     Motion<6> motion{Motion<6>::Zero()};
     StaticVector<BodyPush, 6> pushes;
-    bool slides{false};      ///< Slides against friction.
-    bool sticks{false};      ///< Friction holds the tool where it pushes.
-    bool is_squeezed{false}; ///< No motion was allowed by all planes.
+    bool slides{false};              ///< Slides against friction.
+    bool sticks{false};              ///< Friction holds the tool where it pushes.
+    bool is_over_constrained{false}; ///< No motion was allowed by all planes.
 };
 
 /// Planes of one step of a rigid tool, and the motion that they and Coulomb's friction allow.
@@ -98,12 +98,12 @@ public:
     void begin(const Vec3& place_m, double arm_m, double size_m, double radius_m,
                const Motion<6>& gone) noexcept TACTUS_NONBLOCKING;
     /// Adds the planes of a touch. If full, the plane that restrains least is dropped, and the
-    /// planes are crowded.
+    /// planes are over capacity.
     void add(const BodyTouch& touch, const BodyGrip& grip) noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] BodyMotion nearest(const Motion<6>& wanted) noexcept TACTUS_NONBLOCKING;
 
-    [[nodiscard]] bool is_crowded() const noexcept { return is_crowded_; }
+    [[nodiscard]] bool exceeds_capacity() const noexcept { return exceeds_capacity_; }
     [[nodiscard]] const BodyTouch& touch(std::uint32_t i) const noexcept { return touches_[i]; }
     [[nodiscard]] const BodyGrip& grip(std::uint32_t i) const noexcept { return grips_[i]; }
     /// Lever of a touch: from the tool's place to the point where its outside meets the surface.
@@ -145,7 +145,8 @@ private:
     void replace(std::size_t plane, const HalfSpace<6>& space, const BodyTouch& touch,
                  const BodyGrip& grip) noexcept;
     [[nodiscard]] double apart_sq(const HalfSpace<6>& a, const HalfSpace<6>& b) const noexcept;
-    [[nodiscard]] NearestMotion<6> plain(const Motion<6>& wanted, bool& is_squeezed) noexcept;
+    [[nodiscard]] NearestMotion<6> plain(const Motion<6>& wanted,
+                                         bool& is_over_constrained) noexcept;
     [[nodiscard]] Chosen choose(const NearestMotion<6>& plain) const noexcept;
     void tilt(const Chosen& chosen, const Motion<6>& wanted) noexcept;
     void tilt(std::uint32_t touch, const Motion<6>& wanted) noexcept;
@@ -179,7 +180,7 @@ private:
     /// Weight of rotations when planes are compared: the tool's size is the arm.
     double turn_weight_{1.0};
     double radius_m_{0.0};
-    bool is_crowded_{false};
+    bool exceeds_capacity_{false};
 };
 
 } // namespace tactus

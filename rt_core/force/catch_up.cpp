@@ -5,25 +5,25 @@
 namespace tactus
 {
 
-Vec3 CatchUp::next(const Wish& wish) noexcept
+Vec3 CatchUp::next(const Command& commanded) noexcept
 {
-    double step = wish.rate_per_s * wish.elapsed_s;
-    if (wish.has_waited)
+    double step = commanded.rate_per_s * commanded.elapsed_s;
+    if (commanded.has_waited)
     {
-        lag_ = sent_ - wish.wanted;
-        step += wish.by_hand;
+        lag_ = sent_ - commanded.wanted;
+        step += commanded.by_hand;
     }
     const double lag = lag_.norm();
     if (!(lag > step))
     {
-        follow(wish.wanted);
+        follow(commanded.wanted);
         return sent_;
     }
     lag_ *= 1.0 - step / lag;
-    sent_ = wish.wanted + lag_;
+    sent_ = commanded.wanted + lag_;
     const double length = sent_.norm();
-    sent_ *= length > wish.longest ? wish.longest / length : 1.0;
-    lag_ = sent_ - wish.wanted;
+    sent_ *= length > commanded.longest ? commanded.longest / length : 1.0;
+    lag_ = sent_ - commanded.wanted;
     return sent_;
 }
 

@@ -27,7 +27,7 @@ public:
     /// Next force to send.
     /// - `wanted` is no longer than `longest`.
     /// - `rate_per_s` > 0.
-    struct Wish
+    struct Command
     {
         Vec3 wanted{0.0, 0.0, 0.0};
         /// Largest change by the device's displacement since the last frame.
@@ -37,7 +37,7 @@ public:
         double elapsed_s{0.0};
         bool has_waited{false}; ///< The last frame's proxy waited.
     };
-    [[nodiscard]] Vec3 next(const Wish& wish) noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] Vec3 next(const Command& commanded) noexcept TACTUS_NONBLOCKING;
 
     /// Continues from `sent`, which replaced the last result.
     void follow(const Vec3& sent) noexcept

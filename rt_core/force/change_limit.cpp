@@ -42,8 +42,8 @@ ChangeLimit::ChangeLimit(const ChangeRule& rule, const DeviceLimits& device,
     : rule_(rule)
     , period_s_(period_s)
     , slew_{rule.slew_share_per_ms * device.force_max_n * 1e3 * period_s,
-            rule.slew_share_per_ms * device.turn.torque_max_nm * 1e3 * period_s}
-    , most_{device.slew_max_n_per_s * period_s, device.turn.slew_max_nm_per_s * period_s}
+            rule.slew_share_per_ms * device.rotation.torque_max_nm * 1e3 * period_s}
+    , most_{device.slew_max_n_per_s * period_s, device.rotation.slew_max_nm_per_s * period_s}
 {
     TACTUS_ASSERT(rule.slew_share_per_ms >= kSlewShareMin_per_ms && rule.slew_share_per_ms <= 1.0);
     TACTUS_ASSERT(rule.hand_speed_max_m_per_s >= 0.0 && rule.object_speed_max_m_per_s >= 0.0);
@@ -74,7 +74,7 @@ ChangeLimit::Steps ChangeLimit::steps(const ToolForce& force, const ToolPeriod& 
     const double hand = own_way(period.hand_m - hand_m_, period.carried_m,
                                 rule_.hand_speed_max_m_per_s * period_s_);
     const double turned = own_way(period.turned_rad - turned_rad_, period.carried_rad,
-                                  kTurningMax_rad_per_s * period_s_);
+                                  kRotationMax_rad_per_s * period_s_);
     const double objects = std::min(rule_.object_speed_max_m_per_s * period_s_,
                                     period.object_way_m + arm * period.object_turn_rad);
     hand_m_ = period.hand_m;

@@ -31,7 +31,7 @@ struct ChangeRule
 ///     |M' - M| <= A turned + K x arm x (hand + objects) + slew of the torque x T
 ///
 /// K and A are the stiffnesses in use, `hand` and `turned` the device's measured motion in this
-/// period and `objects` the frame's believed displacement of those in reach, plus arm x their
+/// period and `objects` the frame's limited displacement of those in reach, plus arm x their
 /// rotation. A device that moves along with an object that carries its tool is counted by its
 /// motion relative to that, so that nothing is counted twice. A surface that stays as it is changes
 /// the force by no more, since a proxy among planes moves no farther than its device, in the metric
@@ -39,8 +39,8 @@ struct ChangeRule
 /// a program's force, and a contact that begins with a spring that is already stretched, which so
 /// rises from zero. It counts one period, even after a longer stall.
 ///
-/// Decreases are unlimited if the tool does not touch, down to the program's own force, and if a
-/// cause fades the force, down to zero. The result is bounded in its direction, too: a force that
+/// Decreases are unlimited if the tool does not touch, down to the program's external force, and if
+/// a cause fades the force, down to zero. The result is bounded in its direction, too: a force that
 /// reverses passes through its old value or zero.
 ///
 /// An active limit is reported as ForceAction::change_limited, and for longer than kChangeTold_s as

@@ -5,7 +5,7 @@
 namespace tactus
 {
 
-void Follower::see(const ToolGoal& goal) noexcept
+void Follower::see(const ProxyGoal& goal) noexcept
 {
     way_m_ = 0.0;
     if (goal.change == GoalChange::motion)
@@ -17,7 +17,7 @@ void Follower::see(const ToolGoal& goal) noexcept
     place_ = {goal.rotation, goal.position_m, 1.0};
 }
 
-ToolOutput Follower::respond(const ToolGoal& goal, std::span<const PlacedSurface> surfaces,
+ToolOutput Follower::respond(const ProxyGoal& goal, std::span<const PlacedSurface> surfaces,
                              double /*clear_m*/) const noexcept
 {
     ToolOutput output;

@@ -4,7 +4,7 @@
 
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/force/placed_surface.hpp"
-#include "rt_core/force/tool_goal.hpp"
+#include "rt_core/force/proxy_goal.hpp"
 #include "rt_core/geometry/placed_core.hpp"
 #include "rt_core/records/frame_output.hpp"
 
@@ -21,7 +21,7 @@ class Follower
 public:
     explicit Follower(const ToolSpec& spec) noexcept : radius_m_(spec.radius_m), core_(spec.core) {}
 
-    void see(const ToolGoal& goal) noexcept TACTUS_NONBLOCKING;
+    void see(const ProxyGoal& goal) noexcept TACTUS_NONBLOCKING;
     /// No effect: objects do not move the tool.
     void carry(std::span<const NearObject> /*objects*/,
                double /*elapsed_s*/) noexcept TACTUS_NONBLOCKING
@@ -31,10 +31,10 @@ public:
     [[nodiscard]] const Similarity& place() const noexcept { return place_; }
     [[nodiscard]] double radius_m() const noexcept { return radius_m_; }
     /// Displacement of the core's farthest point since the last frame.
-    [[nodiscard]] double way_to_m(const ToolGoal& /*goal*/) const noexcept { return way_m_; }
+    [[nodiscard]] double way_to_m(const ProxyGoal& /*goal*/) const noexcept { return way_m_; }
 
     /// Reports contact if an upper bound proves that the tool touches.
-    [[nodiscard]] ToolOutput respond(const ToolGoal& goal, std::span<const PlacedSurface> surfaces,
+    [[nodiscard]] ToolOutput respond(const ProxyGoal& goal, std::span<const PlacedSurface> surfaces,
                                      double clear_m) const noexcept TACTUS_NONBLOCKING;
 
 private:

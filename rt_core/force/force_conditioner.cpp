@@ -36,8 +36,8 @@ double spring_energy_j(double force_n, double stiffness_n_per_m, double stretch_
 ConditionerSetup in_angles(const ConditionerSetup& setup) noexcept
 {
     ConditionerSetup angles = setup;
-    angles.device = turning_of(setup.device);
-    angles.speed_max_m_per_s = kTurningMax_rad_per_s;
+    angles.device = rotational_limits_of(setup.device);
+    angles.speed_max_m_per_s = kRotationMax_rad_per_s;
     return angles;
 }
 
@@ -45,9 +45,9 @@ ConditionerSetup in_angles(const ConditionerSetup& setup) noexcept
 
 ForceConditioner::ForceConditioner(const ConditionerSetup& setup) noexcept
     : setup_(setup)
-    , cap_step_n_per_m_(stiffness_cap(setup.device, setup.period_s) * setup.period_s /
-                        kMaterialGlide_s)
-    , allowed_n_per_m_(stiffness_cap(setup.device, setup.period_s))
+    , cap_step_n_per_m_(stiffness_limit(setup.device, setup.period_s) * setup.period_s /
+                        kMaterialBlend_s)
+    , allowed_n_per_m_(stiffness_limit(setup.device, setup.period_s))
     , cap_n_per_m_(allowed_n_per_m_)
     , velocity_(setup.device.quantum_m)
     , sent_(setup.device.delay_s / setup.period_s)
@@ -80,7 +80,7 @@ void ForceConditioner::finish(SpringForce& force, double gain) noexcept
     }
     TACTUS_ASSERT(force.force_n.norm() <= setup_.device.force_max_n * kRoundedUp);
     force.work_j = observer_.work_j();
-    force.surplus_j = observer_.surplus_j();
+    force.observed_energy_j = observer_.observed_energy_j();
     sent_.send(force.force_n);
 }
 
@@ -132,7 +132,7 @@ void ForceConditioner::cap_for(const SpringForce& force, double surface_damping_
     {
         surface_damping_n_s_per_m_ = surface_damping_n_s_per_m;
         allowed_n_per_m_ =
-            stiffness_cap(setup_.device, setup_.period_s, surface_damping_n_s_per_m_);
+            stiffness_limit(setup_.device, setup_.period_s, surface_damping_n_s_per_m_);
     }
     if (cap_n_per_m_ != allowed_n_per_m_)
     {
@@ -160,7 +160,7 @@ double ForceConditioner::limit(SpringForce& force) const noexcept
     force.force_n = clamp_norm(capped_n, setup_.device.force_max_n);
     const bool is_clamped = force.force_n != capped_n;
     force.stiffness_n_per_m *= scale;
-    force.actions |= is_too_stiff ? ForceAction::stiffness_capped : ForceAction::none;
+    force.actions |= is_too_stiff ? ForceAction::stiffness_limited : ForceAction::none;
     force.actions |= is_clamped ? ForceAction::clamped : ForceAction::none;
     // By the largest coordinate: the square of what is huge is infinite.
     const double share =
@@ -209,10 +209,11 @@ void ForceConditioner::damp(SpringForce& force) const noexcept
 
 WrenchConditioner::WrenchConditioner(const ConditionerSetup& setup) noexcept
     : push_(setup)
-    , turn_(setup.device.turn.torque_max_nm > 0.0 ? in_angles(setup) : setup)
-    , has_torque_(setup.device.turn.torque_max_nm > 0.0)
+    , turn_(setup.device.rotation.torque_max_nm > 0.0 ? in_angles(setup) : setup)
+    , has_torque_(setup.device.rotation.torque_max_nm > 0.0)
     , lever_max_m_(setup.lever_max_m)
-    , turning_damping_max_nm_s_per_rad_(kDampingShare * turning_of(setup.device).damping_n_s_per_m)
+    , rotational_damping_max_nm_s_per_rad_(kDampingShare *
+                                           rotational_limits_of(setup.device).damping_n_s_per_m)
 {
 }
 
@@ -223,10 +224,10 @@ void WrenchConditioner::condition(ToolForce& force, const ToolPeriod& period) no
         push_.begin(force.push, {period.hand_m, period.elapsed_periods, damping, period.carried_m});
     if (has_torque_)
     {
-        const double turning_damping =
-            std::min(damping * lever_max_m_ * lever_max_m_, turning_damping_max_nm_s_per_rad_);
+        const double rotational_damping =
+            std::min(damping * lever_max_m_ * lever_max_m_, rotational_damping_max_nm_s_per_rad_);
         gain = std::min(gain, turn_.begin(force.turn, {period.turned_rad, period.elapsed_periods,
-                                                       turning_damping, period.carried_rad}));
+                                                       rotational_damping, period.carried_rad}));
         turn_.finish(force.turn, gain);
     }
     else

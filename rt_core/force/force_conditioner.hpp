@@ -50,7 +50,7 @@ struct DeviceStep
 ///
 ///     usable?   a force or stiffness that is no number: zero
 ///     cap       a wall stiffer than the device's limit at this rate: scaled down to the limit;
-///               under a force the limit moves within kMaterialGlide_s if a damping appears or
+///               under a force the limit moves within kMaterialBlend_s if a damping appears or
 ///               disappears
 ///     clamp     to the device's largest force
 ///
@@ -61,10 +61,10 @@ struct DeviceStep
 ///
 /// The first stage only shortens the force. The damping is bounded by the device's
 /// added_damping_max_n_s_per_m, acts only on a force, and never turns a push into a pull. The rate
-/// of change is limited by a ChangeLimit after this, and a SafeState fades the first force in.
+/// of change is limited by a ChangeLimit after this, and a ForceFader fades the first force in.
 /// docs/stability.md has the figures.
 ///
-/// Haptic thread, once a frame and tool: after Frame::run(), before the SafeState. Cost: about a
+/// Haptic thread, once a frame and tool: after Frame::run(), before the ForceFader. Cost: about a
 /// microsecond, most of it the velocity's.
 class ForceConditioner
 {
@@ -94,7 +94,7 @@ public:
     void follow(const SpringForce& sent, bool is_ramp) noexcept TACTUS_NONBLOCKING;
 
     /// The stiffest wall that is not scaled, with the surface damping of the last step.
-    [[nodiscard]] double stiffness_cap_n_per_m() const noexcept { return cap_n_per_m_; }
+    [[nodiscard]] double stiffness_limit_n_per_m() const noexcept { return cap_n_per_m_; }
 
 private:
     void cap_for(const SpringForce& force, double surface_damping_n_s_per_m) noexcept;
@@ -138,7 +138,7 @@ private:
     ForceConditioner turn_;
     bool has_torque_;
     double lever_max_m_;
-    double turning_damping_max_nm_s_per_rad_; ///< Limit of the counted surface damping.
+    double rotational_damping_max_nm_s_per_rad_; ///< Limit of the counted surface damping.
     Vec3 last_n_{0.0, 0.0, 0.0};
     Vec3 last_nm_{0.0, 0.0, 0.0};
 };

@@ -23,12 +23,12 @@ Vec3 clamp_norm(const Vec3& force_n, double norm_max_n) noexcept
     return is_inside ? force_n : Vec3(unit_of(force_n) * norm_max_n);
 }
 
-Vec3 limit_change(const Vec3& before_n, const Vec3& wished_n, double step_max_n) noexcept
+Vec3 limit_change(const Vec3& before_n, const Vec3& commanded_n, double step_max_n) noexcept
 {
     TACTUS_ASSERT(step_max_n >= 0.0);
-    const Vec3 change = wished_n - before_n;
+    const Vec3 change = commanded_n - before_n;
     const double norm = change.norm();
-    return norm <= step_max_n ? wished_n : Vec3(before_n + change * (step_max_n / norm));
+    return norm <= step_max_n ? commanded_n : Vec3(before_n + change * (step_max_n / norm));
 }
 
 Vec3 nearest_between(const Vec3& from, const Vec3& to, const Vec3& point) noexcept

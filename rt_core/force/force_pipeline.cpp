@@ -50,23 +50,23 @@ PipelineSetup pipeline_setup(const ToolSpec& tool, const DeviceLimits& device, d
     setup.conditioner.period_s = period_s;
     setup.conditioner.lever_max_m = angular_lever_m(tool);
     setup.limits = {speed_max_m_per_s, device.force_max_n,
-                    std::min(tool.stiffness_n_per_m, stiffness_cap(device, period_s)),
-                    kDampingShare * device.damping_n_s_per_m, device.turn.torque_max_nm};
-    if (device.turn.torque_max_nm > 0.0)
+                    std::min(tool.stiffness_n_per_m, stiffness_limit(device, period_s)),
+                    kDampingShare * device.damping_n_s_per_m, device.rotation.torque_max_nm};
+    if (device.rotation.torque_max_nm > 0.0)
     {
-        const DeviceLimits turning = turning_of(device);
+        const DeviceLimits turning = rotational_limits_of(device);
         setup.limits.stiffness_nm_per_rad =
-            std::min(angular_nm_per_rad, stiffness_cap(turning, period_s));
+            std::min(angular_nm_per_rad, stiffness_limit(turning, period_s));
         setup.limits.damping_nm_s_per_rad = kDampingShare * turning.damping_n_s_per_m;
     }
-    setup.limits.turning_max_rad_per_s = kTurningMax_rad_per_s;
+    setup.limits.rotation_max_rad_per_s = kRotationMax_rad_per_s;
     setup.angular_share_m2 = angular_nm_per_rad / tool.stiffness_n_per_m;
     return setup;
 }
 
 ForcePipeline::ForcePipeline(const PipelineSetup& setup) noexcept
     : conditioner_(setup.conditioner)
-    , safe_state_(setup.limits)
+    , force_fader_(setup.limits)
     , gravity_(setup.load, {setup.limits.force_max_n, setup.limits.torque_max_nm})
     , change_(rule_of(setup), setup.conditioner.device, setup.conditioner.period_s)
     , angular_share_m2_(setup.angular_share_m2)
@@ -74,16 +74,16 @@ ForcePipeline::ForcePipeline(const PipelineSetup& setup) noexcept
 }
 
 const ToolForce& ForcePipeline::step(const ToolState& tool, const ToolOutput& output,
-                                     const DeviceRecord& device, const OwnForce& own,
+                                     const DeviceRecord& device, const ExternalForce& own,
                                      const PeriodContext& context) noexcept
 {
     const SafetyState was = force_.state;
     const ForceOff was_off = force_.causes;
     look(tool, output, device, context);
     take_frame(tool, output);
-    add_own(force_, own);
-    const Vec3 wished_n = force_.push.force_n;
-    const Vec3 wished_nm = force_.turn.force_n;
+    add_external(force_, own);
+    const Vec3 commanded_n = force_.push.force_n;
+    const Vec3 commanded_nm = force_.turn.force_n;
 
     conditioner_.condition(force_, period_);
     const Vec3 conditioned_n = force_.push.force_n;
@@ -92,20 +92,20 @@ const ToolForce& ForcePipeline::step(const ToolState& tool, const ToolOutput& ou
         when(has_action(force_.push.actions | force_.turn.actions, ForceAction::refused) ||
                  !std::isfinite(own.gripper_n),
              ForceOff::garbage);
-    safe_state_.step(force_, period_);
+    force_fader_.step(force_, period_);
     gripper_n_ = force_.causes == ForceOff::none ? own.gripper_n : gripper_n_;
-    force_.gripper_n = safe_state_.gain() * gripper_n_;
+    force_.gripper_n = force_fader_.gain() * gripper_n_;
     gravity_.carry(force_, period_);
     const bool is_ramp =
         force_.push.force_n != conditioned_n || force_.turn.force_n != conditioned_nm;
     if (change_.hold(force_, period_))
     {
         gravity_.make_room(force_);
-        safe_state_.follow(force_);
+        force_fader_.follow(force_);
     }
     conditioner_.follow(force_, is_ramp);
-    change_.follow(force_, force_.push.force_n == wished_n ? own.force_n : kZero,
-                   force_.turn.force_n == wished_nm ? own.torque_nm : kZero);
+    change_.follow(force_, force_.push.force_n == commanded_n ? own.force_n : kZero,
+                   force_.turn.force_n == commanded_nm ? own.torque_nm : kZero);
     force_.has_changed = force_.state != was || force_.causes != was_off;
     return force_;
 }
@@ -114,8 +114,8 @@ const ToolForce& ForcePipeline::fade(double elapsed_s, ForceOff cause) noexcept
 {
     period_.elapsed_s = elapsed_s;
     period_.force_left = 1.0;
-    safe_state_.fade(force_, elapsed_s, cause);
-    force_.gripper_n = safe_state_.gain() * gripper_n_;
+    force_fader_.fade(force_, elapsed_s, cause);
+    force_.gripper_n = force_fader_.gain() * gripper_n_;
     gravity_.carry(force_, period_);
     change_.follow(force_, kZero, kZero);
     return force_;
@@ -144,7 +144,7 @@ void ForcePipeline::look(const ToolState& tool, const ToolOutput& output,
 /// Whether the hand is at a place. One that isn't where it says doesn't turn.
 bool ForcePipeline::look_at_device(const ToolState& tool, const DeviceRecord& device) noexcept
 {
-    const HandPlace hand = device.hand.value_or(HandPlace{tool.position_m, tool.rotation});
+    const DevicePose hand = device.hand.value_or(DevicePose{tool.position_m, tool.rotation});
     period_.hand_m = hand.position_m;
     const bool is_place =
         hand.position_m.allFinite() && is_rotation(hand.rotation, kRotationTolerance);
@@ -156,8 +156,8 @@ bool ForcePipeline::look_at_device(const ToolState& tool, const DeviceRecord& de
     }
     period_.has_velocity = device.velocity_m_per_s.has_value();
     period_.velocity_m_per_s = device.velocity_m_per_s.value_or(kZero);
-    period_.has_turning = device.angular_velocity_rad_per_s.has_value();
-    period_.turning_rad_per_s = device.angular_velocity_rad_per_s.value_or(kZero);
+    period_.has_rotation = device.angular_velocity_rad_per_s.has_value();
+    period_.rotation_rad_per_s = device.angular_velocity_rad_per_s.value_or(kZero);
     period_.sample_time_ns = tool.sample_time_ns;
     return is_place;
 }

@@ -4,10 +4,10 @@
 
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/force/change_limit.hpp"
+#include "rt_core/force/external_force.hpp"
 #include "rt_core/force/force_conditioner.hpp"
+#include "rt_core/force/force_fader.hpp"
 #include "rt_core/force/gravity_compensation.hpp"
-#include "rt_core/force/own_force.hpp"
-#include "rt_core/force/safe_state.hpp"
 #include "rt_core/records/device_record.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_output.hpp"
@@ -37,10 +37,10 @@ struct PipelineSetup
 /// All stages between the force of one tool's frame and its device. Only two other records carry
 /// the force: ToolOutput before it, and the device's command after it.
 ///
-///     force of the frame    the proxy's spring, and the program's own (OwnForce)
+///     force of the frame    the proxy's spring, and the program's own (ExternalForce)
 ///     limits of the device  WrenchConditioner: cap, clamp
 ///     passivity             WrenchConditioner: damping of energy without a source
-///     fade                  SafeState: out by a cause, and back in
+///     fade                  ForceFader: out by a cause, and back in
 ///     payload               GravityCompensation: the payload's force, in addition
 ///     change                ChangeLimit: no faster than device and objects move
 ///
@@ -57,7 +57,7 @@ public:
     /// device's other data, of which the sent forces are ignored. Any value of it that is no number
     /// removes the force (ForceOff::garbage).
     const ToolForce& step(const ToolState& tool, const ToolOutput& output,
-                          const DeviceRecord& device, const OwnForce& own,
+                          const DeviceRecord& device, const ExternalForce& own,
                           const PeriodContext& context) noexcept TACTUS_NONBLOCKING;
 
     /// Replaces step() if there is no frame: the last force continues to fade.
@@ -67,7 +67,7 @@ public:
     /// Last result.
     [[nodiscard]] const ToolForce& force() const noexcept { return force_; }
     /// Share of the force that is sent, 0 .. 1.
-    [[nodiscard]] double gain() const noexcept { return safe_state_.gain(); }
+    [[nodiscard]] double gain() const noexcept { return force_fader_.gain(); }
 
 private:
     void look(const ToolState& tool, const ToolOutput& output, const DeviceRecord& device,
@@ -76,7 +76,7 @@ private:
     void take_frame(const ToolState& tool, const ToolOutput& output) noexcept;
 
     WrenchConditioner conditioner_;
-    SafeState safe_state_;
+    ForceFader force_fader_;
     GravityCompensation gravity_;
     ChangeLimit change_;
     double angular_share_m2_;

@@ -17,11 +17,11 @@ namespace
 
 /// Of the scene and of time, not of the device.
 constexpr ForceOff kOfTheScene = ForceOff::host | ForceOff::stall | ForceOff::jump |
-                                 ForceOff::frozen | ForceOff::squeezed | ForceOff::clutch |
+                                 ForceOff::halted | ForceOff::over_constrained | ForceOff::clutch |
                                  ForceOff::starved | ForceOff::growth;
 
 /// The largest share of `wall` that with `load` is no longer than `most`: where the line from
-/// `load` along `wall` leaves the ball.
+/// `load` along `wall` leaves the sphere.
 double share_beside(const Vec3& wall, const Vec3& load, double most) noexcept
 {
     if ((wall + load).norm() <= most)
@@ -88,7 +88,7 @@ void GravityCompensation::make_room(ToolForce& force) const noexcept
 void GravityCompensation::turn_lever(const Mat3& rotation, double elapsed_s) noexcept
 {
     const Vec3 way = rotation * load_.centre_m - lever_m_;
-    const double most_m = kTurningMax_rad_per_s * load_.centre_m.norm() * elapsed_s;
+    const double most_m = kRotationMax_rad_per_s * load_.centre_m.norm() * elapsed_s;
     lever_m_ += gain_ > 0.0 ? clamp_norm(way, most_m) : way;
 }
 

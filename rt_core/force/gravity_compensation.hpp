@@ -20,21 +20,21 @@ struct WrenchLimits
 
 /// Compensates the weight of a device's payload, so that the user does not feel it. The
 /// compensation is no force of the model: it bypasses the conditioner, which is for walls, and the
-/// SafeState, whose fading would drop the payload if data is late.
+/// ForceFader, whose fading would drop the payload if data is late.
 ///
 ///     load = gain x weight, upwards;  its torque = lever x load
 ///
 /// The gain has its own ramp, down in kFadeTime_s and up in kRiseTime_s. It falls for every cause
 /// in the device: gone, let go, cut off, garbage, stale, too fast, end of the run. Causes in the
-/// scene alone (frozen, squeezed, jump, host, stall, clutch, starved, growth) don't change it. The
-/// lever follows the tool's rotation only without such a cause, and no faster than a user can
-/// rotate (kTurningMax_rad_per_s). So no sample changes the force's length or direction, raises the
-/// torque above weight x lever, or makes it jump.
+/// scene alone (halted, over-constrained, jump, host, stall, clutch, starved, growth) don't change
+/// it. The lever follows the tool's rotation only without such a cause, and no faster than a user
+/// can rotate (kRotationMax_rad_per_s). So no sample changes the force's length or direction,
+/// raises the torque above weight x lever, or makes it jump.
 ///
 /// The payload's force is sent whole; if both together exceed the device's largest force or torque,
 /// the other one is shortened, force and torque by one gain.
 ///
-/// Haptic thread, once a frame, after the SafeState. About 50 ns.
+/// Haptic thread, once a frame, after the ForceFader. About 50 ns.
 class GravityCompensation
 {
 public:
@@ -42,7 +42,7 @@ public:
     /// such a device gets the force alone.
     GravityCompensation(const ToolLoad& load, const WrenchLimits& limits) noexcept;
 
-    /// Sets the payload's part of `force`, which the SafeState has passed, and shortens the rest
+    /// Sets the payload's part of `force`, which the ForceFader has passed, and shortens the rest
     /// accordingly. Uses the device's rotation in `period`, only while it is trusted.
     void carry(ToolForce& force, const ToolPeriod& period) noexcept TACTUS_NONBLOCKING;
 

@@ -59,27 +59,27 @@ void PassivityObserver::observe(const Vec3& force_n, const Vec3& displacement_m,
     // By Cauchy's inequality b v^2 over the time is no less than this, whatever the motion.
     const double viscous_loss = damping_n_s_per_m_ * displacement_m.squaredNorm() / elapsed_s;
     work_j_ += work;
-    surplus_j_ +=
+    observed_energy_j_ +=
         work - force_n.dot(carried_m) - viscous_loss - friction_n_ * displacement_m.norm();
 }
 
 void PassivityObserver::hold(double energy_j) noexcept
 {
-    unheld_j_ = surplus_j_ - held_j_;
+    unheld_j_ = observed_energy_j_ - held_j_;
     hold_instead(energy_j);
 }
 
 void PassivityObserver::hold_instead(double energy_j) noexcept
 {
     TACTUS_ASSERT(!(energy_j < 0.0));
-    surplus_j_ = std::max(0.0, unheld_j_ + energy_j);
+    observed_energy_j_ = std::max(0.0, unheld_j_ + energy_j);
     held_j_ = energy_j;
 }
 
 void PassivityObserver::hold_nothing() noexcept
 {
     held_j_ = 0.0;
-    surplus_j_ = 0.0;
+    observed_energy_j_ = 0.0;
     unheld_j_ = 0.0;
 }
 
@@ -87,9 +87,10 @@ double PassivityObserver::damping_for(double speed_m_per_s) const noexcept
 {
     TACTUS_ASSERT(speed_m_per_s >= 0.0);
     const double lost_by_one = period_s_ * speed_m_per_s * speed_m_per_s;
-    return surplus_j_ < lost_by_one * added_damping_max_n_s_per_m_ ? surplus_j_ / lost_by_one
-           : lost_by_one > 0.0                                     ? added_damping_max_n_s_per_m_
-                                                                   : 0.0;
+    return observed_energy_j_ < lost_by_one * added_damping_max_n_s_per_m_
+               ? observed_energy_j_ / lost_by_one
+           : lost_by_one > 0.0 ? added_damping_max_n_s_per_m_
+                               : 0.0;
 }
 
 } // namespace tactus

@@ -45,19 +45,18 @@ private:
 /// Ryu 2002), in contact and across contacts.
 ///
 /// A held force does F . (x[k] - x[k-1]) of work, exactly, for any motion in between. A passive
-/// wall gives back no more than it holds: the energy of its spring. The *surplus*, the observed
-/// energy, is the energy that the wall gave or holds beyond its input, less the device's own losses
-/// meanwhile:
+/// wall gives back no more than it holds: the energy of its spring. The observed energy E is
+/// what the wall gave or holds beyond its input, less the device's own losses meanwhile:
 ///
-///     surplus[k] = surplus[k-1] + work + (held[k] - held[k-1]) - b dx^2 / dt - f |dx|, at least 0
+///     E[k] = max(0, E[k-1] + work + held[k] - held[k-1] - b dx^2 / dt - f |dx|)
 ///
 /// If a wall is moved, its work is F . (dx - its own displacement): the rest is done by those who
 /// move it.
 ///
 /// Each sampled wall generates some of it: K (v T)^2 / 2 when it is entered between two samples,
-/// and K dx^2 / 2 in each period, which a wall within stiffness_cap() loses in b again. Any further
-/// growth is removed by the controller. The surplus is at least 0, so that energy lost long ago
-/// hides nothing; unlike Hannaford and Ryu's sum, which a long contact makes large.
+/// and K dx^2 / 2 in each period, which a wall within stiffness_limit() loses in b again. Any
+/// further growth is removed by the controller. The observed energy is at least 0, so that energy
+/// lost long ago hides nothing; unlike Hannaford and Ryu's sum, which a long contact makes large.
 ///
 /// Work and losses are of measured positions. A position that toggles between two quanta adds the
 /// same square to the energy that the wall generates and that b dissipates, so it doesn't
@@ -76,18 +75,18 @@ public:
     void hold(double energy_j) noexcept TACTUS_NONBLOCKING;
     /// Replaces the energy of the last hold().
     void hold_instead(double energy_j) noexcept TACTUS_NONBLOCKING;
-    /// Clears the surplus: the spring's energy came from elsewhere.
-    void forgive() noexcept { surplus_j_ = 0.0; }
-    /// Clears the surplus for a force that comes from no wall.
+    /// Clears the observed energy: the spring's energy came from elsewhere.
+    void forgive() noexcept { observed_energy_j_ = 0.0; }
+    /// Clears the observed energy for a force that comes from no wall.
     void hold_nothing() noexcept TACTUS_NONBLOCKING;
 
     /// Work done on user and device since the start.
     [[nodiscard]] double work_j() const noexcept { return work_j_; }
-    [[nodiscard]] double surplus_j() const noexcept { return surplus_j_; }
+    [[nodiscard]] double observed_energy_j() const noexcept { return observed_energy_j_; }
 
-    /// Damping of the passivity controller, one period late: it would lose the surplus in one
-    /// period at this speed, within the device's limit. So the surplus is bounded, not zero. N s/m;
-    /// 0 at rest.
+    /// Damping of the passivity controller, one period late: it would lose the observed energy in
+    /// one period at this speed, within the device's limit. So the observed energy is bounded, not
+    /// zero. N s/m; 0 at rest.
     [[nodiscard]] double damping_for(double speed_m_per_s) const noexcept TACTUS_NONBLOCKING;
 
 private:
@@ -97,8 +96,8 @@ private:
     double period_s_;
     double work_j_{0.0};
     double held_j_{0.0};
-    double surplus_j_{0.0};
-    double unheld_j_{0.0}; ///< Surplus before the last hold(), minus the energy held then.
+    double observed_energy_j_{0.0};
+    double unheld_j_{0.0}; ///< Observed energy before the last hold(), minus the energy held then.
 };
 
 } // namespace tactus

@@ -145,14 +145,14 @@ struct Proxy::Touch
 {
     Hold hold;
     StepPlanes planes;        ///< Of what touches.
-    Vec3 wanted;              ///< The way: to the hand, or to where smooth normals raise it.
+    Vec3 wanted;              ///< The way: to the hand, or to where force shading raises it.
     NearestMotion<3> held;    ///< What the planes let go of it.
     Vec3 kept{0.0, 0.0, 0.0}; ///< What friction and bumps keep of the slip.
 };
 
 Proxy::Proxy(ToolSpec spec) noexcept : spec_(std::move(spec)), radius_(spec_.radius_m) {}
 
-ToolOutput Proxy::respond(const ToolGoal& goal, std::span<const PlacedSurface> surfaces,
+ToolOutput Proxy::respond(const ProxyGoal& goal, std::span<const PlacedSurface> surfaces,
                           double clear_m, std::uint32_t planes) noexcept
 {
     anchor_ = position_;
@@ -160,25 +160,25 @@ ToolOutput Proxy::respond(const ToolGoal& goal, std::span<const PlacedSurface> s
     elapsed_s_ = goal.elapsed_s;
     radius_ = find_radius(surfaces);
     const double travel = free_travel(surfaces, clear_m);
-    const bool frozen = !(travel > 0.0);
+    const bool halted = !(travel > 0.0);
     goes_on_ = false;
     if (!is_on_)
     {
         begin_frame();
     }
-    else if (frozen)
+    else if (halted)
     {
         is_on_ = false;
         ToolOutput nothing;
-        nothing.frozen = true;
+        nothing.halted = true;
         return nothing;
     }
     is_on_ = false;
     catch_up_ = catch_up_before_;
     ++lists_;
     planes_left_ = planes;
-    Motion motion = Motion::held_back;
-    if (frozen)
+    Motion motion = Motion::data_limited;
+    if (halted)
     {
         keep_clearances(surfaces, nullptr);
     }
@@ -191,16 +191,17 @@ ToolOutput Proxy::respond(const ToolGoal& goal, std::span<const PlacedSurface> s
     output.proxy_m = position_;
     output.proxy_rotation = goal.rotation;
     output.in_contact = in_contact_;
-    output.frozen = frozen;
-    output.squeezed = motion == Motion::squeezed || was_overrun_;
-    output.crowded = is_crowded_;
-    output.held_back = motion == Motion::held_back && !frozen && is_short_of(surfaces, travel);
-    output.under_way = !frozen && motion != Motion::at_rest && motion != Motion::squeezed;
+    output.halted = halted;
+    output.over_constrained = motion == Motion::over_constrained || was_overrun_;
+    output.capacity_exceeded = exceeds_capacity_;
+    output.data_limited =
+        motion == Motion::data_limited && !halted && is_short_of(surfaces, travel);
+    output.under_way = !halted && motion != Motion::at_rest && motion != Motion::over_constrained;
     output.cut_short = motion == Motion::out_of_planes;
-    output.lag_m = frozen || output.under_way ? way_to_m(goal) : 0.0;
+    output.lag_m = halted || output.under_way ? way_to_m(goal) : 0.0;
     output.stiffness_n_per_m =
         in_contact_ ? hold_.stiffness / hold_.depth_m * (hold_.stiffening / hold_.depth_m) : 0.0;
-    const bool is_held = frozen || output.squeezed;
+    const bool is_held = halted || output.over_constrained;
     if (in_contact_ && !is_held)
     {
         output.force_n = caught_up(goal);
@@ -210,7 +211,7 @@ ToolOutput Proxy::respond(const ToolGoal& goal, std::span<const PlacedSurface> s
         output.force_n = in_contact_ ? held_force(goal.position_m) : Vec3(0.0, 0.0, 0.0);
         catch_up_.follow(output.force_n);
     }
-    waits_ = is_held || output.held_back || output.cut_short;
+    waits_ = is_held || output.data_limited || output.cut_short;
     return output;
 }
 
@@ -218,7 +219,7 @@ void Proxy::begin_frame() noexcept
 {
     catch_up_before_ = catch_up_;
     has_waited_ = waits_;
-    is_crowded_ = false;
+    exceeds_capacity_ = false;
     has_slid_ = false;
     rubbed_m_ = 0.0;
     lists_ = 0;
@@ -231,14 +232,14 @@ void Proxy::begin_frame() noexcept
 bool Proxy::is_worth_going_on(Motion motion, std::span<const PlacedSurface> surfaces) const noexcept
 {
     const bool is_cut =
-        motion == Motion::ran_out || (motion == Motion::held_back &&
+        motion == Motion::ran_out || (motion == Motion::data_limited &&
                                       std::ranges::any_of(surfaces, [](const PlacedSurface& placed)
                                                           { return placed.surface->is_cut; }));
     return is_cut && lists_ < kListsPerFrame && steps_ < kProxySteps &&
            went_m() > kWorthAList * radius_;
 }
 
-void Proxy::see(const ToolGoal& goal) noexcept
+void Proxy::see(const ProxyGoal& goal) noexcept
 {
     rotation_ = goal.rotation;
     is_on_ = false; // The last frame may have had no budget left for another list.
@@ -248,7 +249,7 @@ void Proxy::see(const ToolGoal& goal) noexcept
     }
 }
 
-double Proxy::way_to_m(const ToolGoal& goal) const noexcept
+double Proxy::way_to_m(const ProxyGoal& goal) const noexcept
 {
     const Vec3 way = goal.position_m - position_;
     const double inward = -way.dot(normal_);
@@ -306,12 +307,12 @@ Proxy::Motion Proxy::follow(const Vec3& goal, double travel,
     }
     go_straight_on(goal, clear);
     Vicinity near(surfaces, anchor_, radius_ + travel, planes_left_);
-    if (spec_.smooth_m > 0.0)
+    if (spec_.shading_m > 0.0)
     {
-        normals_ = SmoothNormals(spec_.smooth_m, surfaces, radius_ + travel);
+        normals_ = ForceShading(spec_.shading_m, surfaces, radius_ + travel);
     }
     const Motion motion = follow_among(near, surfaces, goal, travel);
-    if (motion != Motion::at_rest && motion != Motion::squeezed)
+    if (motion != Motion::at_rest && motion != Motion::over_constrained)
     {
         near.stand_at(position_ - anchor_, normal_);
         hold_ = feel_at(near, surfaces, goal - position_, kNearlyTouching * radius_).hold;
@@ -352,9 +353,9 @@ Proxy::Motion Proxy::follow_among(Vicinity& near, std::span<const PlacedSurface>
         const double room = std::min(near.reach_m() - radius_, travel) - moved;
         hold_ = hold_at(near, surfaces, goal - position_, room);
         const double length = hold_.motion.norm();
-        if (hold_.is_squeezed)
+        if (hold_.is_over_constrained)
         {
-            return Motion::squeezed;
+            return Motion::over_constrained;
         }
         if (length <= (hold_.rubs || hold_.is_smooth ? kSlipShare * radius_ : least_step))
         {
@@ -366,7 +367,7 @@ Proxy::Motion Proxy::follow_among(Vicinity& near, std::span<const PlacedSurface>
         }
         if (room <= least_step)
         {
-            return travel - moved <= least_step ? Motion::held_back : Motion::ran_out;
+            return travel - moved <= least_step ? Motion::data_limited : Motion::ran_out;
         }
         position_ += hold_.motion;
         rubbed_m_ += hold_.touches ? length : 0.0;
@@ -402,7 +403,7 @@ Proxy::Hold Proxy::hold_at(Vicinity& near, std::span<const PlacedSurface> surfac
         held_by_.push_back(step.faces[plane]);
     }
     hold.motion = found.motion;
-    hold.is_squeezed = !found.is_feasible;
+    hold.is_over_constrained = !found.is_feasible;
     if (may_go && !hold.touches &&
         std::ranges::any_of(surfaces,
                             [](const PlacedSurface& placed) { return rubs(*placed.material); }))
@@ -418,7 +419,7 @@ Proxy::Touch Proxy::feel_at(Vicinity& near, std::span<const PlacedSurface> surfa
 {
     std::array<std::uint32_t, kMaxHalfSpaces> faces; // NOLINT(*-member-init): it is written first.
     const Vicinity::Listed listed = near.list_within(radius_ + gap_m, faces);
-    is_crowded_ = is_crowded_ || !listed.is_all;
+    exceeds_capacity_ = exceeds_capacity_ || !listed.is_all;
     Touch touch;
     for (const std::uint32_t face : std::span(faces).first(listed.count))
     {
@@ -427,8 +428,8 @@ Proxy::Touch Proxy::feel_at(Vicinity& near, std::span<const PlacedSurface> surfa
     touch.wanted = wanted;
     touch.held = search(near, touch.planes, wanted);
     const Vec3 pressed = touch.held.motion - wanted;
-    const SmoothNormals::Felt felt =
-        normals_.are_on() ? hold_smoothly(near, touch, pressed) : SmoothNormals::Felt{};
+    const ForceShading::Felt felt =
+        normals_.are_on() ? hold_smoothly(near, touch, pressed) : ForceShading::Felt{};
     const NearestMotion<3>& held = touch.held;
     Hold& hold = touch.hold;
     const auto surface_of = [&](std::size_t i) -> const PlacedSurface&
@@ -465,8 +466,8 @@ Proxy::Touch Proxy::feel_at(Vicinity& near, std::span<const PlacedSurface> surfa
 }
 
 /// The planes hold a hand that is raised towards the surface, along its smooth normal.
-SmoothNormals::Felt Proxy::hold_smoothly(Vicinity& near, Touch& touch,
-                                         const Vec3& pressed) const noexcept
+ForceShading::Felt Proxy::hold_smoothly(Vicinity& near, Touch& touch,
+                                        const Vec3& pressed) const noexcept
 {
     const double depth_m = pressed.norm();
     if (!touch.held.is_feasible || !(depth_m > 0.0))
@@ -474,7 +475,7 @@ SmoothNormals::Felt Proxy::hold_smoothly(Vicinity& near, Touch& touch,
         return {};
     }
     const double moved_m = (position_ - anchor_).norm();
-    SmoothNormals::Felt felt =
+    ForceShading::Felt felt =
         normals_.at({position_, pressed / depth_m, radius_, moved_m}, depth_m);
     near.use(felt.looks);
     const Vec3 raised = touch.wanted + felt.raise_m;
@@ -489,8 +490,7 @@ SmoothNormals::Felt Proxy::hold_smoothly(Vicinity& near, Touch& touch,
 }
 
 /// What the raise took from the push comes back along the smooth normal, and so does its energy.
-void Proxy::press_smoothly(Hold& hold, const SmoothNormals::Felt& felt,
-                           const Vec3& pressed) noexcept
+void Proxy::press_smoothly(Hold& hold, const ForceShading::Felt& felt, const Vec3& pressed) noexcept
 {
     const double depth_m = pressed.norm();
     const double whole = depth_m / (depth_m - felt.raised_m);
@@ -656,7 +656,7 @@ bool Proxy::is_overrun(const Vec3& target, std::span<const NearObject> objects) 
 }
 
 /// The spring's, and what damps the motion across the surface; together they never pull.
-Vec3 Proxy::force(const ToolGoal& goal) const noexcept
+Vec3 Proxy::force(const ProxyGoal& goal) const noexcept
 {
     const double inward = (hold_.velocity / hold_.depth_m - goal.velocity_m_per_s).dot(normal_);
     const double push = hold_.push_n.norm();
@@ -665,7 +665,7 @@ Vec3 Proxy::force(const ToolGoal& goal) const noexcept
 }
 
 /// The hand's way across the object may change a spring's force by stiffness x way.
-Vec3 Proxy::caught_up(const ToolGoal& goal) noexcept
+Vec3 Proxy::caught_up(const ProxyGoal& goal) noexcept
 {
     const Vec3 velocity = goal.velocity_m_per_s - hold_.velocity / hold_.depth_m;
     const double by_hand_n = hold_.stiffness / hold_.depth_m * velocity.norm() * goal.elapsed_s;

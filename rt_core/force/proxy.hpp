@@ -6,9 +6,9 @@
 #include "rt_core/base/static_vector.hpp"
 #include "rt_core/force/carried.hpp"
 #include "rt_core/force/catch_up.hpp"
+#include "rt_core/force/force_shading.hpp"
 #include "rt_core/force/near_object.hpp"
-#include "rt_core/force/smooth_normals.hpp"
-#include "rt_core/force/tool_goal.hpp"
+#include "rt_core/force/proxy_goal.hpp"
 #include "rt_core/force/vicinity.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/records/frame_input.hpp"
@@ -34,11 +34,11 @@ namespace tactus
 ///
 /// The force is the spring between goal and proxy, with the softer stiffness of tool and object;
 /// never a penalty on a distance. Friction, viscosity, a texture (texture.hpp) and force shading
-/// (smooth_normals.hpp) determine where along the surface the proxy comes to rest, so their only
-/// effect is to stretch that spring. Without a certified surface the proxy is frozen, and if
-/// objects leave no room it is squeezed, both of which it reports: SafeState fades the force, which
-/// is along the last normal and never pulls. After a frame in which the proxy waited for data the
-/// force catches up by kCatchUp_n_per_s, besides the device's motion.
+/// (force_shading.hpp) determine where along the surface the proxy comes to rest, so their only
+/// effect is to stretch that spring. Without a certified surface the proxy is halted, and if
+/// objects leave no room it is over-constrained, both of which it reports: ForceFader fades the
+/// force, which is along the last normal and never pulls. After a frame in which the proxy waited
+/// for data the force catches up by kCatchUp_n_per_s, besides the device's motion.
 ///
 /// A fast device needs more triangles than fit in a list. The proxy goes as far as the listed ones
 /// prove, then on from there with another list in the same frame, kListsPerFrame at most.
@@ -59,7 +59,7 @@ public:
     explicit Proxy(ToolSpec spec) noexcept TACTUS_NONBLOCKING;
 
     /// Starts the proxy at the first goal; later goals take effect in respond().
-    void see(const ToolGoal& goal) noexcept TACTUS_NONBLOCKING;
+    void see(const ProxyGoal& goal) noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] const Vec3& position_m() const noexcept { return position_; }
     /// Pose of the tool in the world: at the proxy, with the device's rotation.
     [[nodiscard]] Similarity place() const noexcept { return {rotation_, position_, 1.0}; }
@@ -68,20 +68,20 @@ public:
     /// Distance beyond the radius within which surfaces affect the force.
     [[nodiscard]] double feels_beyond_m() const noexcept
     {
-        return spec_.smooth_m > 0.0 ? SmoothNormals::reach_beyond_m(radius_, spec_.smooth_m) : 0.0;
+        return spec_.shading_m > 0.0 ? ForceShading::reach_beyond_m(radius_, spec_.shading_m) : 0.0;
     }
     /// Distance to the goal along the surface. The normal component of a pressed contact does not
     /// count.
-    [[nodiscard]] double way_to_m(const ToolGoal& goal) const noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] double way_to_m(const ProxyGoal& goal) const noexcept TACTUS_NONBLOCKING;
     /// Corners of its path in this frame, including both ends: straight lines.
     [[nodiscard]] std::span<const Vec3> path_m() const noexcept { return path_.view(); }
     [[nodiscard]] bool is_in_contact() const noexcept { return in_contact_; }
     /// True if more triangles touched in the last frame than planes fit: the force may lack some.
-    [[nodiscard]] bool is_crowded() const noexcept { return is_crowded_; }
+    [[nodiscard]] bool exceeds_capacity() const noexcept { return exceeds_capacity_; }
 
     /// Moves the proxy with the objects: along with the one that it touches, or that would pass
-    /// over it; otherwise it stays. If one of them passes over it in each case, it is squeezed.
-    /// Once a frame, before the surfaces are queried.
+    /// over it; otherwise it stays. If one of them passes over it in each case, it is
+    /// over-constrained. Once a frame, before the surfaces are queried.
     void carry(std::span<const NearObject> objects, double elapsed_s) noexcept TACTUS_NONBLOCKING;
     /// Drops an object that was replaced or removed.
     void forget(std::uint32_t object) noexcept TACTUS_NONBLOCKING;
@@ -90,7 +90,7 @@ public:
     /// others are at least `clear_m` away there. `planes` are the rest of Budgets::planes: with
     /// none left the proxy stops, with the contacts at its place.
     [[nodiscard]] ToolOutput
-    respond(const ToolGoal& goal, std::span<const PlacedSurface> surfaces, double clear_m,
+    respond(const ProxyGoal& goal, std::span<const PlacedSurface> surfaces, double clear_m,
             std::uint32_t planes = Vicinity::kUnlimited) noexcept TACTUS_NONBLOCKING;
     /// Rest of `planes` after respond().
     [[nodiscard]] std::uint32_t planes_left() const noexcept { return planes_left_; }
@@ -100,7 +100,7 @@ public:
     /// Distance of the last respond(), at most.
     [[nodiscard]] double went_m() const noexcept { return (position_ - anchor_).norm(); }
     /// Makes the next respond() a continuation of the same frame, whose force replaces the last
-    /// one. A frozen continuation changes nothing.
+    /// one. A halted continuation changes nothing.
     void go_on() noexcept { is_on_ = true; }
 
 private:
@@ -109,10 +109,10 @@ private:
         at_rest, ///< Reached the goal, or held by the surface.
         /// More triangles are near than fit: unlisted ones may be here.
         ran_out,
-        held_back, ///< The certified sphere ends here.
+        data_limited, ///< The certified sphere ends here.
         out_of_steps,
-        out_of_planes, ///< No checks are left.
-        squeezed,      ///< No place near is free.
+        out_of_planes,    ///< No checks are left.
+        over_constrained, ///< No place near is free.
     };
 
     /// Effect of the surfaces at one place. Sums are over the touching planes, each weighted by the
@@ -137,7 +137,7 @@ private:
         bool rubs{false};        ///< Friction or damping acts along the surface.
         bool has_texture{false}; ///< A pressing surface has a texture.
         bool is_smooth{false};   ///< Held with force shading.
-        bool is_squeezed{false};
+        bool is_over_constrained{false};
     };
 
     struct Touch;
@@ -160,9 +160,9 @@ private:
     [[nodiscard]] Touch feel_at(Vicinity& near, std::span<const PlacedSurface> surfaces,
                                 const Vec3& wanted, double gap_m) noexcept;
     void press(Hold& hold, const PlacedSurface& placed, const Vec3& depth) const noexcept;
-    [[nodiscard]] SmoothNormals::Felt hold_smoothly(Vicinity& near, Touch& touch,
-                                                    const Vec3& pressed) const noexcept;
-    static void press_smoothly(Hold& hold, const SmoothNormals::Felt& felt,
+    [[nodiscard]] ForceShading::Felt hold_smoothly(Vicinity& near, Touch& touch,
+                                                   const Vec3& pressed) const noexcept;
+    static void press_smoothly(Hold& hold, const ForceShading::Felt& felt,
                                const Vec3& pressed) noexcept;
     void press_into_texture(Hold& hold, const PlacedSurface& placed, const Vec3& pressed,
                             double share) const noexcept;
@@ -172,8 +172,8 @@ private:
     void keep_clearances(std::span<const PlacedSurface> surfaces, const Vicinity* near) noexcept;
     [[nodiscard]] bool is_overrun(const Vec3& target,
                                   std::span<const NearObject> objects) const noexcept;
-    [[nodiscard]] Vec3 force(const ToolGoal& goal) const noexcept;
-    [[nodiscard]] Vec3 caught_up(const ToolGoal& goal) noexcept;
+    [[nodiscard]] Vec3 force(const ProxyGoal& goal) const noexcept;
+    [[nodiscard]] Vec3 caught_up(const ProxyGoal& goal) noexcept;
     [[nodiscard]] Vec3 held_force(const Vec3& goal) const noexcept;
     [[nodiscard]] Vec3 clamped(const Vec3& force) const noexcept;
 
@@ -184,13 +184,13 @@ private:
     Vec3 anchor_{0.0, 0.0, 0.0};             ///< Place of the last query.
     double clear_m_{kInfinity};              ///< Clearance there, of all others.
     Vec3 normal_{0.0, 0.0, 1.0};             ///< Normal of the last contact.
-    SmoothNormals normals_;                  ///< Valid while the proxy moves.
+    ForceShading normals_;                   ///< Valid while the proxy moves.
     StaticVector<std::uint32_t, 3> held_by_; ///< Faces at the last stop of this frame.
     Hold hold_;
     CatchUp catch_up_;
     CatchUp catch_up_before_; ///< State at the frame's beginning.
     bool has_waited_{false};  ///< waits_ at the frame's beginning.
-    /// Frozen, squeezed, held back or cut short in the last frame.
+    /// Halted, over-constrained, data-limited or cut short in the last frame.
     bool waits_{false};
     bool is_on_{false}; ///< Continues in the same frame.
     bool goes_on_{false};
@@ -203,7 +203,7 @@ private:
     double rubbed_m_{0.0};  ///< Displacement in contact in this frame.
     double elapsed_s_{0.0}; ///< Duration of the frame.
     bool was_overrun_{false};
-    bool is_crowded_{false};
+    bool exceeds_capacity_{false};
     StaticVector<Vec3, kProxySteps + kListsPerFrame + 1> path_;
 };
 

@@ -60,7 +60,7 @@ bool is_measured(const BodyTouch& touch, std::span<const Contact> contacts, doub
 
 bool turns(const ToolSpec& spec) noexcept
 {
-    return !spec.passes_through && !std::holds_alternative<PointCore>(spec.core);
+    return !spec.query_only && !std::holds_alternative<PointCore>(spec.core);
 }
 
 /// What it has to slide with, never nothing.
@@ -69,7 +69,7 @@ double skin_of(const ToolSpec& spec, double core_m) noexcept
     return std::max({spec.radius_m, kLeastSkin * core_m, kLeastSkin_m});
 }
 
-/// The core's ball and the radius.
+/// The core's sphere and the radius.
 double size_of(const ToolSpec& spec) noexcept
 {
     const double core_m = PlacedCore(spec.core, Similarity{}).radius();
@@ -110,9 +110,9 @@ RigidProxy::RigidProxy(const ToolSpec& spec, Planes& planes) noexcept
     radius_m_ = skin_of(spec, core_radius_m_);
 }
 
-void RigidProxy::see(const ToolGoal& goal) noexcept
+void RigidProxy::see(const ProxyGoal& goal) noexcept
 {
-    frame_ = {force_, torque_, frozen_s_, is_squeezed_};
+    frame_ = {force_, torque_, halted_s_, is_over_constrained_};
     gone_ = Motion<6>::Zero();
     carried_m_per_s_ = Vec3(0.0, 0.0, 0.0);
     carried_rad_per_s_ = Vec3(0.0, 0.0, 0.0);
@@ -164,7 +164,7 @@ Similarity RigidProxy::along(const NearObject& object) const noexcept
     const ObjectPose& now = *object.now;
     const Mat3 rotation =
         orthonormalised(now.rotation * (before.rotation.transpose() * place_.rotation));
-    const Vec3 center_m = to_world(now, to_model(before, place_.to_there(center_m_)));
+    const Vec3 center_m = to_world(now, to_model(before, place_.local_to_world(center_m_)));
     return {rotation, center_m - rotation * center_m_, 1.0};
 }
 
@@ -175,7 +175,7 @@ double RigidProxy::way_m(const Similarity& from, const Similarity& to) const noe
 {
     constexpr double kOverSqrt2 = 0.7071067811865476;
     const double turned = (to.scale * to.rotation - from.scale * from.rotation).norm();
-    return (to.to_there(center_m_) - from.to_there(center_m_)).norm() +
+    return (to.local_to_world(center_m_) - from.local_to_world(center_m_)).norm() +
            kOverSqrt2 * turned * core_radius_m_;
 }
 
@@ -197,7 +197,7 @@ bool RigidProxy::is_overrun(const Similarity& target,
                 way_m(in_frame(*object.before, place_), in_frame(*object.now, target));
             const double relative_m = way * std::max(object.before->scale, object.now->scale);
             const double rounding_m =
-                pose_rounding_m(*object.now, target.to_there(center_m_), core_radius_m_);
+                pose_rounding_m(*object.now, target.local_to_world(center_m_), core_radius_m_);
             return relative_m > 4.0 * rounding_m &&
                    relative_m * (1.0 + kContactTolerance) >= object.memory->clearance_m;
         });
@@ -237,7 +237,7 @@ void RigidProxy::go_on() noexcept
     is_on_ = true;
 }
 
-double RigidProxy::way_to_m(const ToolGoal& goal) const noexcept
+double RigidProxy::way_to_m(const ProxyGoal& goal) const noexcept
 {
     return way_of(way_to(goal)).length_m();
 }
@@ -256,7 +256,7 @@ BodyWay RigidProxy::way_of(const Motion<6>& motion) const noexcept
             core_radius_m_};
 }
 
-Motion<6> RigidProxy::way_to(const ToolGoal& goal) const noexcept
+Motion<6> RigidProxy::way_to(const ProxyGoal& goal) const noexcept
 {
     const Vec3 turn = rotation_vector(goal.rotation * place_.rotation.transpose());
     Motion<6> way;
@@ -265,13 +265,13 @@ Motion<6> RigidProxy::way_to(const ToolGoal& goal) const noexcept
     return way;
 }
 
-ToolOutput RigidProxy::respond(const ToolGoal& goal, std::span<const PlacedSurface> surfaces,
+ToolOutput RigidProxy::respond(const ProxyGoal& goal, std::span<const PlacedSurface> surfaces,
                                double clear_m) noexcept
 {
     ToolOutput output;
     const BodyRoom room(surfaces, clear_m, radius_m_);
-    is_squeezed_ = false;
-    is_crowded_ = false;
+    is_over_constrained_ = false;
+    exceeds_capacity_ = false;
     goes_on_ = false;
     was_still_ = went_m_ <= kLeastMotion * radius_m_;
     went_m_ = 0.0;
@@ -282,25 +282,25 @@ ToolOutput RigidProxy::respond(const ToolGoal& goal, std::span<const PlacedSurfa
     }
     else if (room.is_free())
     {
-        frozen_s_ = 0.0;
+        halted_s_ = 0.0;
         step(goal, surfaces, room, output);
     }
     else
     {
-        frozen_s_ += is_on_ ? 0.0 : goal.elapsed_s;
+        halted_s_ += is_on_ ? 0.0 : goal.elapsed_s;
         freeze(goal, room.is_crossed(), output);
     }
-    is_squeezed_ = is_squeezed_ || was_overrun_;
+    is_over_constrained_ = is_over_constrained_ || was_overrun_;
     catch_up(goal, output);
     keep_clearances(surfaces, clear_m);
-    output.squeezed = is_squeezed_;
-    output.crowded = is_crowded_;
+    output.over_constrained = is_over_constrained_;
+    output.capacity_exceeded = exceeds_capacity_;
     output.proxy_m = place_.translation_m;
     output.proxy_rotation = place_.rotation;
     return output;
 }
 
-void RigidProxy::step(const ToolGoal& goal, std::span<const PlacedSurface> surfaces,
+void RigidProxy::step(const ProxyGoal& goal, std::span<const PlacedSurface> surfaces,
                       const BodyRoom& room, ToolOutput& output) noexcept
 {
     gather(goal, surfaces);
@@ -311,9 +311,9 @@ void RigidProxy::step(const ToolGoal& goal, std::span<const PlacedSurface> surfa
     {
         found = planes_->nearest(wanted - bumps.aside);
     }
-    is_crowded_ = is_crowded_ || planes_->is_crowded();
+    exceeds_capacity_ = exceeds_capacity_ || planes_->exceeds_capacity();
     // Contacts that were left out would have to hold what uses up the last of the radius.
-    is_squeezed_ = found.is_squeezed || (is_crowded_ && room.is_scarce());
+    is_over_constrained_ = found.is_over_constrained || (exceeds_capacity_ && room.is_scarce());
     sticks_ = found.sticks;
     slides_ = found.slides;
     output.in_contact = !found.pushes.empty();
@@ -325,7 +325,7 @@ void RigidProxy::step(const ToolGoal& goal, std::span<const PlacedSurface> surfa
 }
 
 /// What sticks stays to the last bit, or it would creep. Returns what is left of the way.
-double RigidProxy::advance(const ToolGoal& goal, const BodyMotion& found,
+double RigidProxy::advance(const ProxyGoal& goal, const BodyMotion& found,
                            const BodyRoom& room) noexcept
 {
     const BodyWay way = way_of(found.motion);
@@ -353,7 +353,7 @@ double RigidProxy::advance(const ToolGoal& goal, const BodyMotion& found,
 
 /// Where the proxy is the last planes hold what pushes against them. A core that an object came
 /// over has no way out that is known to be clear: when its force has faded it is given up.
-void RigidProxy::freeze(const ToolGoal& goal, bool is_crossed, ToolOutput& output) noexcept
+void RigidProxy::freeze(const ProxyGoal& goal, bool is_crossed, ToolOutput& output) noexcept
 {
     StaticVector<HalfSpace<6>, 6> spaces;
     for (const LastPush& push : last_pushes_)
@@ -361,7 +361,7 @@ void RigidProxy::freeze(const ToolGoal& goal, bool is_crossed, ToolOutput& outpu
         spaces.push_back({push.normal, 0.0});
     }
     const NearestMotion<6> nearest = nearest_motion<6>(spaces.view(), way_to(goal));
-    output.frozen = true;
+    output.halted = true;
     output.lag_m = way_of(nearest.motion).length_m();
     output.in_contact = !nearest.held_by.empty();
     double reactions = 0.0;
@@ -376,20 +376,20 @@ void RigidProxy::freeze(const ToolGoal& goal, bool is_crossed, ToolOutput& outpu
     }
     output.stiffness_n_per_m = reactions > 0.0 ? output.stiffness_n_per_m / reactions : 0.0;
     clamp(output);
-    if (is_crossed && frozen_s_ >= kFadeTime_s)
+    if (is_crossed && halted_s_ >= kFadeTime_s)
     {
         is_joined_ = false;
-        frozen_s_ = 0.0;
+        halted_s_ = 0.0;
         holds_.clear();
         last_pushes_.clear();
     }
 }
 
-/// What the hand's way may change is told only where the tool was squeezed: one that was frozen
-/// goes on from a force that the hand's way has made already.
-void RigidProxy::catch_up(const ToolGoal& goal, ToolOutput& output) noexcept
+/// What the hand's way may change is told only where the tool was over-constrained: one that was
+/// halted goes on from a force that the hand's way has made already.
+void RigidProxy::catch_up(const ProxyGoal& goal, ToolOutput& output) noexcept
 {
-    if (output.frozen || !output.in_contact)
+    if (output.halted || !output.in_contact)
     {
         force_.follow(output.force_n);
         torque_.follow(output.torque_nm);
@@ -397,8 +397,8 @@ void RigidProxy::catch_up(const ToolGoal& goal, ToolOutput& output) noexcept
     }
     const double rate_n = std::min(kCatchUp_n_per_s, kCatchUpShare_per_s * spec_.force_max_n);
     const double rate_nm = kCatchUpShare_per_s * spec_.torque_max_nm;
-    const bool has_no_room = is_squeezed_ || frame_.was_squeezed;
-    const bool has_waited = frame_.frozen_s > 0.0 || has_no_room;
+    const bool has_no_room = is_over_constrained_ || frame_.was_over_constrained;
+    const bool has_waited = frame_.halted_s > 0.0 || has_no_room;
     const double way_m =
         goal.elapsed_s * (goal.velocity_m_per_s.norm() + arm_m_ * goal.spin_rad_per_s.norm());
     const double by_hand_n = has_no_room ? spec_.stiffness_n_per_m * way_m : 0.0;
@@ -408,13 +408,13 @@ void RigidProxy::catch_up(const ToolGoal& goal, ToolOutput& output) noexcept
                                      rate_nm, goal.elapsed_s, has_waited});
 }
 
-void RigidProxy::gather(const ToolGoal& goal, std::span<const PlacedSurface> surfaces) noexcept
+void RigidProxy::gather(const ProxyGoal& goal, std::span<const PlacedSurface> surfaces) noexcept
 {
     planes_->begin(place_.translation_m, arm_m_, size_m_, radius_m_, gone_);
     for (std::uint32_t i = 0; i < surfaces.size(); ++i)
     {
         const TouchReport& touches = *surfaces[i].touches;
-        is_crowded_ = is_crowded_ || touches.is_truncated;
+        exceeds_capacity_ = exceeds_capacity_ || touches.is_truncated;
         add(i, touches.corners.view(), surfaces[i], goal.elapsed_s);
         if (!touches.ends.is_empty)
         {
@@ -523,7 +523,7 @@ void RigidProxy::keep(const Hold& hold) noexcept
         holds_.push_back(hold);
         return;
     }
-    is_crowded_ = is_crowded_ || old == holds_.end();
+    exceeds_capacity_ = exceeds_capacity_ || old == holds_.end();
     old = old == holds_.end() ? holds_.begin() : old;
     std::move(old + 1, holds_.end(), old);
     holds_[holds_.size() - 1] = hold;
@@ -548,7 +548,7 @@ RigidProxy::Bumps RigidProxy::bumps_of(const BodyMotion& held,
             bumps.are_there || surfaces[touch.surface].material->texture_height_m > 0.0;
     }
     const double depth_m = pressed.norm();
-    bumps.are_there = bumps.are_there && depth_m > 0.0 && !held.is_squeezed;
+    bumps.are_there = bumps.are_there && depth_m > 0.0 && !held.is_over_constrained;
     if (!bumps.are_there)
     {
         return bumps;
@@ -575,7 +575,7 @@ RigidProxy::Bumps RigidProxy::bumps_of(const BodyMotion& held,
 }
 
 /// Each push by the spring of its own object; what they make together keeps its line of action.
-void RigidProxy::add_forces(const ToolGoal& goal, const BodyMotion& found, const Bumps& bumps,
+void RigidProxy::add_forces(const ProxyGoal& goal, const BodyMotion& found, const Bumps& bumps,
                             ToolOutput& output) noexcept
 {
     double reactions = 0.0;
@@ -603,7 +603,7 @@ void RigidProxy::add_forces(const ToolGoal& goal, const BodyMotion& found, const
 
 /// Across the surface at each contact that pushes, each for its part of what pushes; never more
 /// than it pushes, so that nothing pulls.
-void RigidProxy::damp(const ToolGoal& goal, const BodyMotion& found, double reactions,
+void RigidProxy::damp(const ProxyGoal& goal, const BodyMotion& found, double reactions,
                       ToolOutput& output) const noexcept
 {
     for (const BodyPush& push : found.pushes)

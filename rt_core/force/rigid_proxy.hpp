@@ -10,7 +10,7 @@
 #include "rt_core/force/catch_up.hpp"
 #include "rt_core/force/near_object.hpp"
 #include "rt_core/force/placed_surface.hpp"
-#include "rt_core/force/tool_goal.hpp"
+#include "rt_core/force/proxy_goal.hpp"
 #include "rt_core/geometry/placed_core.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/records/frame_output.hpp"
@@ -46,8 +46,8 @@ namespace tactus
 /// objects relative to one another counts.
 ///
 /// If the distance is not exact, the proxy moves no farther than its proven distance from every
-/// surface, minus the radius. If that is nothing it is frozen and reports it: the last planes hold
-/// against pressure, and SafeState fades that force; afterwards force and torque catch up by
+/// surface, minus the radius. If that is nothing it is halted and reports it: the last planes hold
+/// against pressure, and ForceFader fades that force; afterwards force and torque catch up by
 /// kCatchUpShare_per_s. They do the same, besides the device's motion, while objects leave it no
 /// room and in the frame after that, since planes then hold motions that were free before. A proxy
 /// about which nothing is known yet, or whose core an object has crossed for kFadeTime_s, is at the
@@ -70,12 +70,12 @@ public:
     /// Pose of the tool in the world.
     [[nodiscard]] const Similarity& place() const noexcept { return place_; }
     /// Bound on the displacement of the tool's points from here to the device pose.
-    [[nodiscard]] double way_to_m(const ToolGoal& goal) const noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] double way_to_m(const ProxyGoal& goal) const noexcept TACTUS_NONBLOCKING;
     /// True if no motion was allowed by all planes in the last step, or an object may have passed
     /// over it.
-    [[nodiscard]] bool is_squeezed() const noexcept { return is_squeezed_; }
+    [[nodiscard]] bool is_over_constrained() const noexcept { return is_over_constrained_; }
     /// True if a possible contact was left out in the last step for lack of capacity.
-    [[nodiscard]] bool is_crowded() const noexcept { return is_crowded_; }
+    [[nodiscard]] bool exceeds_capacity() const noexcept { return exceeds_capacity_; }
     /// True if friction holds it, or it slides against it.
     [[nodiscard]] bool sticks() const noexcept { return sticks_; }
     [[nodiscard]] bool slides() const noexcept { return slides_; }
@@ -90,7 +90,7 @@ public:
     [[nodiscard]] double went_m() const noexcept { return went_m_; }
 
     /// Starts the proxy at the device pose; later goals take effect in respond().
-    void see(const ToolGoal& goal) noexcept TACTUS_NONBLOCKING;
+    void see(const ProxyGoal& goal) noexcept TACTUS_NONBLOCKING;
     /// Moves the proxy with the objects. Once a frame, before the surfaces are queried.
     void carry(std::span<const NearObject> objects, double elapsed_s) noexcept TACTUS_NONBLOCKING;
     /// Drops an object that was replaced or removed.
@@ -98,7 +98,7 @@ public:
 
     /// One step towards the device pose, and its force. `surfaces` were queried at the proxy; the
     /// core is at least `clear_m` away from all others there.
-    [[nodiscard]] ToolOutput respond(const ToolGoal& goal, std::span<const PlacedSurface> surfaces,
+    [[nodiscard]] ToolOutput respond(const ProxyGoal& goal, std::span<const PlacedSurface> surfaces,
                                      double clear_m) noexcept TACTUS_NONBLOCKING;
     /// Makes the next respond() another step of the same frame, whose force replaces the last one.
     void go_on() noexcept TACTUS_NONBLOCKING;
@@ -133,8 +133,8 @@ private:
     {
         CatchUp force;
         CatchUp torque;
-        double frozen_s{0.0};
-        bool was_squeezed{false};
+        double halted_s{0.0};
+        bool was_over_constrained{false};
     };
 
     [[nodiscard]] Similarity along(const NearObject& object) const noexcept;
@@ -142,26 +142,26 @@ private:
                                   std::span<const NearObject> objects) const noexcept;
     [[nodiscard]] double way_m(const Similarity& from, const Similarity& to) const noexcept;
     void keep_clearances(std::span<const PlacedSurface> surfaces, double clear_m) noexcept;
-    [[nodiscard]] Motion<6> way_to(const ToolGoal& goal) const noexcept;
+    [[nodiscard]] Motion<6> way_to(const ProxyGoal& goal) const noexcept;
     [[nodiscard]] BodyWay way_of(const Motion<6>& motion) const noexcept;
-    void step(const ToolGoal& goal, std::span<const PlacedSurface> surfaces, const BodyRoom& room,
+    void step(const ProxyGoal& goal, std::span<const PlacedSurface> surfaces, const BodyRoom& room,
               ToolOutput& output) noexcept;
-    [[nodiscard]] double advance(const ToolGoal& goal, const BodyMotion& found,
+    [[nodiscard]] double advance(const ProxyGoal& goal, const BodyMotion& found,
                                  const BodyRoom& room) noexcept;
-    void freeze(const ToolGoal& goal, bool is_crossed, ToolOutput& output) noexcept;
-    void gather(const ToolGoal& goal, std::span<const PlacedSurface> surfaces) noexcept;
+    void freeze(const ProxyGoal& goal, bool is_crossed, ToolOutput& output) noexcept;
+    void gather(const ProxyGoal& goal, std::span<const PlacedSurface> surfaces) noexcept;
     void add(std::uint32_t surface, std::span<const Contact> contacts, const PlacedSurface& placed,
              double elapsed_s) noexcept;
     void add(const BodyTouch& touch, const PlacedSurface& placed, double elapsed_s) noexcept;
     void add_holds(std::span<const PlacedSurface> surfaces, double elapsed_s) noexcept;
     void keep_holds(const BodyMotion& found, std::span<const PlacedSurface> surfaces) noexcept;
     void keep(const Hold& hold) noexcept;
-    void catch_up(const ToolGoal& goal, ToolOutput& output) noexcept;
+    void catch_up(const ProxyGoal& goal, ToolOutput& output) noexcept;
     [[nodiscard]] Bumps bumps_of(const BodyMotion& held,
                                  std::span<const PlacedSurface> surfaces) const noexcept;
-    void add_forces(const ToolGoal& goal, const BodyMotion& found, const Bumps& bumps,
+    void add_forces(const ProxyGoal& goal, const BodyMotion& found, const Bumps& bumps,
                     ToolOutput& output) noexcept;
-    void damp(const ToolGoal& goal, const BodyMotion& found, double reactions,
+    void damp(const ProxyGoal& goal, const BodyMotion& found, double reactions,
               ToolOutput& output) const noexcept;
     void clamp(ToolOutput& output) const noexcept;
 
@@ -173,8 +173,8 @@ private:
     double core_radius_m_{0.0};
     Similarity place_; ///< Pose of the tool in the world.
     bool is_joined_{false};
-    bool is_squeezed_{false};
-    bool is_crowded_{false};
+    bool is_over_constrained_{false};
+    bool exceeds_capacity_{false};
     bool sticks_{false};
     bool slides_{false};
     bool goes_on_{false};
@@ -189,7 +189,7 @@ private:
     double clear_m_{kInfinity};
     Vec3 carried_m_per_s_{0.0, 0.0, 0.0};   ///< Carried velocity at the frame's beginning.
     Vec3 carried_rad_per_s_{0.0, 0.0, 0.0}; ///< Its angular velocity.
-    double frozen_s_{0.0};
+    double halted_s_{0.0};
     CatchUp force_;
     CatchUp torque_;
     Frame frame_;

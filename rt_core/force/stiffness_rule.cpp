@@ -33,8 +33,8 @@ StiffnessLimits stiffness_limits(const DeviceLimits& device, double period_s,
     return limits;
 }
 
-double stiffness_cap(const DeviceLimits& device, double period_s,
-                     double surface_damping_n_s_per_m) noexcept
+double stiffness_limit(const DeviceLimits& device, double period_s,
+                       double surface_damping_n_s_per_m) noexcept
 {
     return stiffness_limits(device, period_s, surface_damping_n_s_per_m).cap_n_per_m;
 }
@@ -77,10 +77,10 @@ const char* find_fault(const DeviceLimits& device) noexcept
     {
         return "device: added_damping_max_n_s_per_m must be finite and >= 0";
     }
-    return find_fault(device.turn);
+    return find_fault(device.rotation);
 }
 
-const char* find_fault(const TurnLimits& turn) noexcept
+const char* find_fault(const RotationLimits& turn) noexcept
 {
     if (!is_not_negative(turn.torque_max_nm))
     {

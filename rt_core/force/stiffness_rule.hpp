@@ -38,15 +38,15 @@ stiffness_limits(const DeviceLimits& device, double period_s,
 
 /// stiffness_limits().cap_n_per_m, with which callers limit a wall's stiffness.
 [[nodiscard]] double
-stiffness_cap(const DeviceLimits& device, double period_s,
-              double surface_damping_n_s_per_m = 0.0) noexcept TACTUS_NONBLOCKING;
+stiffness_limit(const DeviceLimits& device, double period_s,
+                double surface_damping_n_s_per_m = 0.0) noexcept TACTUS_NONBLOCKING;
 
 /// The rotation of a device that produces torques, as a device of the same law: kg m^2 for kg, N m
 /// s/rad for N s/m, N m for N, rad for m. So all statements about K hold for a rotational spring,
 /// in N m/rad. The result has no rotation itself.
-[[nodiscard]] inline DeviceLimits turning_of(const DeviceLimits& device) noexcept
+[[nodiscard]] inline DeviceLimits rotational_limits_of(const DeviceLimits& device) noexcept
 {
-    const TurnLimits& turn = device.turn;
+    const RotationLimits& turn = device.rotation;
     return {.mass_kg = turn.inertia_kg_m2,
             .damping_n_s_per_m = turn.damping_nm_s_per_rad,
             .friction_n = turn.friction_nm,
@@ -60,6 +60,6 @@ stiffness_cap(const DeviceLimits& device, double period_s,
 
 /// Null, or one line that names the value out of its range.
 [[nodiscard]] const char* find_fault(const DeviceLimits& device) noexcept TACTUS_NONBLOCKING;
-[[nodiscard]] const char* find_fault(const TurnLimits& turn) noexcept TACTUS_NONBLOCKING;
+[[nodiscard]] const char* find_fault(const RotationLimits& turn) noexcept TACTUS_NONBLOCKING;
 
 } // namespace tactus

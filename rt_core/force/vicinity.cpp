@@ -29,7 +29,7 @@ constexpr std::size_t kMostBatches =
 constexpr double kFloatRounding = 0x1p-22;
 /// A proposed direction is not longer than 1 by more than this share (docs/accuracy.md).
 constexpr double kDirectionRounding = 0x1p-20;
-/// A ball that is deeper in a face than to this share of its radius goes by what double says.
+/// A sphere that is deeper in a face than to this share of its radius goes by what double says.
 constexpr double kDeepest = 0x1p-6;
 
 std::uint32_t batches_of(const LocalSurface& surface) noexcept
@@ -186,13 +186,13 @@ PlaneQuestion Vicinity::question(const Part& part, const Vec3& place) const noex
             0.0F};
 }
 
-/// What is this high at the stand does not hold back a ball on its way out of others.
+/// What is this high at the stand does not hold back a sphere on its way out of others.
 double Vicinity::least_here_m(double radius_m) const noexcept
 {
     return std::min(radius_m, std::max(clear_m_, kDeepest * radius_m));
 }
 
-/// The batches with faces that a ball of radius `least_m` may enter between here and the place.
+/// The batches with faces that a sphere of radius `least_m` may enter between here and the place.
 Vicinity::Hits Vicinity::find_below(Part& part, const Vec3& place, double least_m) noexcept
 {
     if (part.table.count == 0)
@@ -362,7 +362,7 @@ std::optional<std::uint32_t> Vicinity::find_entered(const Vec3& motion, double r
     return entered;
 }
 
-/// How much of the motion the face's plane in single precision lets a ball go, or a smaller share
+/// How much of the motion the face's plane in single precision lets a sphere go, or a smaller share
 /// of what double would say. `here` and `way` are the stand and the motion as the model has them,
 /// in double: nothing of a way along the face is rounded to one towards it.
 double Vicinity::proven_share(std::uint32_t face, const Vec3& here, const Vec3& way,
@@ -425,7 +425,7 @@ double Vicinity::free_share(const Vec3& motion, double radius_m) noexcept
     return share;
 }
 
-/// The distance along the way is convex, so the plane from each place lets the ball go no farther
+/// The distance along the way is convex, so the plane from each place lets the sphere go no farther
 /// than the face does.
 double Vicinity::share_before(std::uint32_t face, const Vec3& motion, double radius_m) noexcept
 {

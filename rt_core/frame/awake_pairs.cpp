@@ -39,14 +39,14 @@ void AwakePairs::order() noexcept
     sort_without_recursion(order_,
                            [](const Pair* a, const Pair* b)
                            {
-                               return a->urgency() == b->urgency()
+                               return a->priority() == b->priority()
                                           ? place_of(a->parts()) < place_of(b->parts())
-                                          : a->urgency() < b->urgency();
+                                          : a->priority() < b->priority();
                            });
     lend_fronts();
 }
 
-/// To the most urgent pairs of tools that are meshes; what comes from another pair is empty.
+/// To the highest-priority pairs of tools that are meshes; what comes from another pair is empty.
 void AwakePairs::lend_fronts() noexcept
 {
     StaticVector<Pair*, PairFront::kFronts> first;

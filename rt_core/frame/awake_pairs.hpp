@@ -34,8 +34,8 @@ public:
     {
         return all().subspan(first_of_tool_[tool], first_of_tool_[tool + 1] - first_of_tool_[tool]);
     }
-    /// The pairs as order() sorted them, the most urgent first.
-    [[nodiscard]] std::span<Pair* const> by_urgency() const noexcept { return order_.view(); }
+    /// The pairs as order() sorted them, the highest priority first.
+    [[nodiscard]] std::span<Pair* const> by_priority() const noexcept { return order_.view(); }
     /// Sorts the pairs; called after Pair::place() of each.
     void order() noexcept TACTUS_NONBLOCKING;
 

@@ -38,13 +38,13 @@ ToolOutput respond(FrameParts& parts, std::uint32_t index, NarrowPhase& narrow,
     ToolOutput output = step(parts, index, clear_m, planes_left, work.budget);
     for (std::uint32_t i = 1; i < RigidProxy::kStepsPerFrame; ++i)
     {
-        if (output.squeezed || !tool.try_go_on(clear_left_m) ||
+        if (output.over_constrained || !tool.try_go_on(clear_left_m) ||
             !narrow.try_again(parts, index, account))
         {
             break;
         }
         const ToolOutput next = step(parts, index, clear_left_m, planes_left, work.budget);
-        if (next.frozen)
+        if (next.halted)
         {
             break; // The last one's force is of a place that is known.
         }
@@ -58,8 +58,8 @@ ToolOutput respond(FrameParts& parts, std::uint32_t index, NarrowPhase& narrow,
 /// Whether the tool waits before what has no pair, or before a model that isn't resident.
 bool is_walled(const FrameParts& parts, std::uint32_t tool, const ToolOutput& output) noexcept
 {
-    return (output.frozen || output.under_way) &&
-           (parts.tools.status(tool).is_crowded ||
+    return (output.halted || output.under_way) &&
+           (parts.tools.status(tool).exceeds_capacity ||
             std::ranges::any_of(parts.pairs.of(tool),
                                 [](const Pair* pair) { return pair->is_wall(); }));
 }
@@ -72,7 +72,7 @@ void render_forces(FrameParts& parts, NarrowPhase& narrow, FrameAccount& account
     {
         const ToolStatus& status = parts.tools.status(i);
         ToolOutput& output = parts.tools.outputs()[i];
-        if (!status.is_here)
+        if (!status.is_resident)
         {
             output = ToolOutput{};
             output.is_gone = true;

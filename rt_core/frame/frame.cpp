@@ -91,9 +91,9 @@ FrameOutput Frame::run(const FrameInput& input, StageMark mark) noexcept
     return output();
 }
 
-void Frame::rehearse() noexcept
+void Frame::warm_caches() noexcept
 {
-    narrow_.rehearse(parts_, account_);
+    narrow_.warm_caches(parts_, account_);
 }
 
 void Frame::begin(const FrameInput& input) noexcept
@@ -105,7 +105,8 @@ void Frame::begin(const FrameInput& input) noexcept
     parts_.pools.cache.forget_taken();
 }
 
-/// Each pair where its tool and its object are in this frame, and the most urgent ones first.
+/// Each pair where its tool and its object are in this frame, and the ones of highest priority
+/// first.
 void Frame::place_pairs() noexcept
 {
     for (Pair* pair : parts_.pairs.all())
@@ -113,7 +114,7 @@ void Frame::place_pairs() noexcept
         pair->place(account_.budgets);
     }
     parts_.pairs.order();
-    const bool is_shed = shedding_.shed(parts_.pairs.by_urgency());
+    const bool is_shed = shedding_.shed(parts_.pairs.by_priority());
     account_.faults |= is_shed ? FrameFault::pair_shed : FrameFault::none;
 }
 

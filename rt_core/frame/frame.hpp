@@ -53,7 +53,7 @@ public:
 
     /// Warms caches: repeats the last frame's queries, into scratch memory, with the same machine
     /// code. Called in the wait before the deadline. No effect on any result.
-    void rehearse() noexcept TACTUS_NONBLOCKING;
+    void warm_caches() noexcept TACTUS_NONBLOCKING;
 
     /// Tool, in set-up order; it must exist, which is not checked. The same holds for models.
     [[nodiscard]] const Tool& tool(std::uint32_t index) const noexcept
@@ -62,7 +62,7 @@ public:
     }
     /// The scene's objects by their numbers, after the last frame.
     [[nodiscard]] const ObjectTable& objects() const noexcept { return parts_.objects; }
-    /// Regions that tools may touch, most urgent first: the last ones searched for pages.
+    /// Regions that tools may touch, highest priority first: the last ones searched for pages.
     [[nodiscard]] std::span<const RankedRegion> regions() const noexcept
     {
         return loading_.regions();
@@ -71,7 +71,7 @@ public:
     [[nodiscard]] Model& model(ModelId id) noexcept { return parts_.models[id]; }
     [[nodiscard]] const Model& model(ModelId id) const noexcept { return parts_.models[id]; }
     [[nodiscard]] std::uint32_t model_count() const noexcept { return parts_.models.size(); }
-    /// Shared data of the models; slots, door and links are used by the transport thread, too.
+    /// Shared data of the models; slots, queues and links are used by the transport thread, too.
     [[nodiscard]] ModelPools& pools() noexcept { return parts_.pools; }
 
     struct PassKey

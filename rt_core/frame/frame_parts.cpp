@@ -42,7 +42,7 @@ bool is_too_fine(const FrameSetup& setup, ModelId id, const ModelHeader& header)
         setup.tools,
         [&](const ToolSpec& tool)
         {
-            if (is_mesh(tool) || tool.passes_through)
+            if (is_mesh(tool) || tool.query_only)
             {
                 return false;
             }
@@ -67,7 +67,7 @@ bool is_too_fine(const FrameSetup& setup, ModelId id, const ModelHeader& header)
         kept = header_bytes;
     }
     const ModelHeader header = ModelHeader::parse(kept).value();
-    const bool comes_later = is_guest(setup, id.value);
+    const bool comes_later = is_streamed_model(setup, id.value);
     const PageSlots slots =
         comes_later ? pools.slots.without_base() : pools.slots.of_model(arena, header.counts());
     if (!comes_later && !arena.is_measuring() && !parse_base_mesh(source.base, header, slots.base))

@@ -36,7 +36,7 @@ const char* refusal_text(FrameRefusal refusal) noexcept
 
 ModelCapacities pool_capacities(const FrameSetup& setup) noexcept
 {
-    ModelCapacities sum = setup.for_guests;
+    ModelCapacities sum = setup.for_streamed_models;
     for (const ModelSource& model : setup.models)
     {
         sum = sum_of(std::array{sum, model.capacities});
@@ -72,7 +72,7 @@ std::optional<FrameRefusal> find_refusal(const FrameSetup& setup) noexcept
     {
         return FrameRefusal::bad_tolerance;
     }
-    std::uint64_t faces = setup.for_guests.faces;
+    std::uint64_t faces = setup.for_streamed_models.faces;
     for (const ModelSource& source : setup.models)
     {
         faces += source.capacities.faces;
@@ -91,8 +91,8 @@ std::optional<FrameRefusal> find_refusal(const FrameSetup& setup) noexcept
     for (const ToolSpec& tool : setup.tools)
     {
         const auto* mesh = std::get_if<MeshCore>(&tool.core);
-        if (mesh != nullptr &&
-            (mesh->model.value >= setup.models.size() || is_guest(setup, mesh->model.value)))
+        if (mesh != nullptr && (mesh->model.value >= setup.models.size() ||
+                                is_streamed_model(setup, mesh->model.value)))
         {
             return FrameRefusal::unknown_model;
         }

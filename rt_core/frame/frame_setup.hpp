@@ -22,7 +22,7 @@ struct ModelSource
 {
     std::span<const std::byte> header; ///< Copied; hashes are not verified.
     /// Coded; read once. Empty for a streamed model, which is loaded when a tool is near and
-    /// removed again; needs `for_guests`.
+    /// removed again; needs `for_streamed_models`.
     std::span<const std::byte> base;
     ModelCapacities capacities; ///< Unused for a streamed model.
 };
@@ -50,7 +50,7 @@ struct FrameSetup
     std::span<const ToolSpec> tools; ///< All tools that can exist; all are present at start.
     SceneCapacities capacities;
     /// Additional pool capacities, for streamed models.
-    ModelCapacities for_guests;
+    ModelCapacities for_streamed_models;
     std::int64_t period_ns{1'000'000};         ///< Above 0, asserted by run().
     std::int64_t pose_age_max_ns{100'000'000}; ///< Older poses make answers stale.
     /// Load and refine a model fully, once, if it fits its pools (static mode).
@@ -83,9 +83,9 @@ enum class FrameRefusal : std::uint8_t
 [[nodiscard]] const char* refusal_text(FrameRefusal refusal) noexcept;
 
 /// True if a model of the set-up is streamed.
-[[nodiscard]] inline bool is_guest(const FrameSetup& setup, std::size_t model) noexcept
+[[nodiscard]] inline bool is_streamed_model(const FrameSetup& setup, std::size_t model) noexcept
 {
-    return setup.models[model].base.empty() && setup.for_guests.base_cells > 0;
+    return setup.models[model].base.empty() && setup.for_streamed_models.base_cells > 0;
 }
 
 /// Sum of all models' capacities and those for streamed models.

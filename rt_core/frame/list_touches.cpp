@@ -8,7 +8,7 @@ namespace tactus
 {
 
 void list_touches(const Frame& frame, std::span<const PairOutput> pairs,
-                  const BelievedSpeed& belief, ObjectTouches& touches) noexcept
+                  const ObjectSpeedLimit& belief, ObjectTouches& touches) noexcept
 {
     touches.clear();
     for (const bool is_near : {true, false})
@@ -18,10 +18,10 @@ void list_touches(const Frame& frame, std::span<const PairOutput> pairs,
             const Tool& tool = frame.tool(pair.tool);
             const double radius_m = tool.spec().radius_m;
             const double soon_m = std::max(belief.soon_m(tool.speed_m_per_s()), tool.leap_m());
-            if (!tool.spec().passes_through && pair.lower_m <= radius_m + kTouchSlack_m + soon_m &&
+            if (!tool.spec().query_only && pair.lower_m <= radius_m + kTouchSlack_m + soon_m &&
                 is_in_reach(pair, radius_m) == is_near)
             {
-                const Ball reach = tool.reach_ball();
+                const Sphere reach = tool.reach_sphere();
                 touches.push_back({pair.object, pair.tool, reach.center, reach.radius, is_near});
             }
         }

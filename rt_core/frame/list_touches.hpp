@@ -4,7 +4,7 @@
 
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/frame/frame.hpp"
-#include "rt_core/geometry/believed_motion.hpp"
+#include "rt_core/geometry/object_speed_limit.hpp"
 #include "rt_core/records/object_touch.hpp"
 
 #include <span>
@@ -12,10 +12,12 @@
 namespace tactus
 {
 
-/// Lists objects that tools may touch within BelievedSpeed::kPatience_s, or by a displacement that
-/// is not yet a jump (Tool::leap_m()), as the last frame left both, objects in reach first. Tools
-/// without a force are skipped. `pairs` are that frame's output. Haptic thread, between frames.
+/// Lists objects that tools may touch within ObjectSpeedLimit::kPatience_s, or by a displacement
+/// that is not yet a jump (Tool::leap_m()), as the last frame left both, objects in reach first.
+/// Tools without a force are skipped. `pairs` are that frame's output. Haptic thread, between
+/// frames.
 void list_touches(const Frame& frame, std::span<const PairOutput> pairs,
-                  const BelievedSpeed& belief, ObjectTouches& touches) noexcept TACTUS_NONBLOCKING;
+                  const ObjectSpeedLimit& belief,
+                  ObjectTouches& touches) noexcept TACTUS_NONBLOCKING;
 
 } // namespace tactus

@@ -28,7 +28,7 @@ void wake_models(FrameParts& parts, WorkCounters& work) noexcept
 
 Loading::Loading(const FrameSetup& setup) noexcept
 {
-    if (setup.for_guests.base_cells > 0)
+    if (setup.for_streamed_models.base_cells > 0)
     {
         life_.emplace(setup.period_ns);
     }
@@ -40,12 +40,12 @@ void Loading::run(FrameParts& parts, FrameAccount& account) noexcept
     ModelSet& models = parts.models;
     const std::uint32_t frame = parts.rules.frame;
     wake_models(parts, work);
-    rank(parts.pairs.by_urgency());
+    rank(parts.pairs.by_priority());
     faults |= ranking_.lacks_present ? FrameFault::ranking_full : FrameFault::none;
     parts.pools.cache.adopt_arrivals(budgets.pages, frame, work);
     if (life_)
     {
-        life_->go_on(models, parts.pairs.by_urgency(), frame, work);
+        life_->go_on(models, parts.pairs.by_priority(), frame, work);
     }
     for (std::uint32_t i = 0; i < models.busy().size(); ++i)
     {

@@ -23,7 +23,7 @@ public:
     /// Runs the stage; the pairs must be placed and ordered.
     void run(FrameParts& parts, FrameAccount& account) noexcept TACTUS_NONBLOCKING;
 
-    /// The regions of the last run, most urgent first.
+    /// The regions of the last run, highest priority first.
     [[nodiscard]] std::span<const RankedRegion> regions() const noexcept { return ranking_.view(); }
 
 private:

@@ -30,7 +30,7 @@ constexpr double kLeastOfReach = 0.25;
 constexpr std::uint32_t kCoverFrames = 8;
 constexpr double kCoverMoved = 0.1;
 constexpr double kCoverShrunk = 0.8;
-/// How far ahead in time faces are asked for, in units of Outlook::approach_m().
+/// How far ahead in time faces are asked for, in units of RegionOfInterest::approach_m().
 constexpr double kPrefetchAhead = 4.0;
 
 WalkBudget budget_of(const Budgets& budgets, WorkBudget& frame, std::uint32_t factor,
@@ -42,66 +42,66 @@ WalkBudget budget_of(const Budgets& budgets, WorkBudget& frame, std::uint32_t fa
     return budget;
 }
 
-/// As many balls as a cover may have; when there are too many, one grows.
+/// As many spheres as a cover may have; when there are too many, one grows.
 class Cover
 {
 public:
-    void add(const Ball& ball) noexcept
+    void add(const Sphere& sphere) noexcept
     {
-        if (balls_.size() < kMaxCoverBalls)
+        if (spheres_.size() < kMaxCoverSpheres)
         {
-            balls_.push_back(ball);
+            spheres_.push_back(sphere);
             return;
         }
-        Ball* best = balls_.begin();
-        for (Ball& other : balls_)
+        Sphere* best = spheres_.begin();
+        for (Sphere& other : spheres_)
         {
-            best = growth(other, ball) < growth(*best, ball) ? &other : best;
+            best = growth(other, sphere) < growth(*best, sphere) ? &other : best;
         }
-        best->radius += std::max(growth(*best, ball), 0.0);
+        best->radius += std::max(growth(*best, sphere), 0.0);
     }
-    [[nodiscard]] const CoreCover& balls() const noexcept { return balls_; }
+    [[nodiscard]] const CoreCover& spheres() const noexcept { return spheres_; }
 
 private:
-    /// By how much a ball has to grow to hold another one.
-    [[nodiscard]] static double growth(const Ball& grown, const Ball& added) noexcept
+    /// By how much a sphere has to grow to hold another one.
+    [[nodiscard]] static double growth(const Sphere& grown, const Sphere& added) noexcept
     {
         return (grown.center - added.center).norm() + added.radius - grown.radius;
     }
 
-    CoreCover balls_;
+    CoreCover spheres_;
 };
 
-/// Balls of a model's frame that hold all its faces within `near_m` of another surface.
+/// Spheres of a model's frame that hold all its faces within `near_m` of another surface.
 CoreCover cover_near(const AbTree& tree, OtherSurface& other, double near_m) noexcept
 {
     Cover cover;
     SurfaceWalk walk(tree, other);
     while (walk.next_block(near_m) != kNoNode)
     {
-        cover.add(walk.ball());
+        cover.add(walk.sphere());
     }
     for (const SurfaceWalk::Item& item : walk.left())
     {
-        cover.add(item.ball);
+        cover.add(item.sphere);
     }
-    return cover.balls();
+    return cover.spheres();
 }
 
 } // namespace
 
-void MeshPair::place(const Outlook& outlook, const MeshCore& core, const Model& tool_model,
-                     const Model& object_model, const Similarity& tool, const Budgets& budgets,
-                     WorkBudget& frame) noexcept
+void MeshPair::place(const RegionOfInterest& region_of_interest, const MeshCore& core,
+                     const Model& tool_model, const Model& object_model, const Similarity& tool,
+                     const Budgets& budgets, WorkBudget& frame) noexcept
 {
     tool_model_ = &tool_model;
     object_model_ = &object_model;
     moved_on_m_ = 0.0;
-    own_ball_ = {0.5 * core.extent_m, 0.5 * core.extent_m.norm() * kRoundedUp};
+    own_sphere_ = {0.5 * core.extent_m, 0.5 * core.extent_m.norm() * kRoundedUp};
     for (std::size_t i = 0; i < kPlaces; ++i)
     {
         Similarity placed = tool;
-        placed.translation_m += static_cast<double>(i) * outlook.approach_m();
+        placed.translation_m += static_cast<double>(i) * region_of_interest.approach_m();
         placements_[i] = {placed, core.origin_m};
         const PlacedCore now(core, placed);
         moved_m_[i] = now.motion_since(cores_[i]);
@@ -120,7 +120,7 @@ void MeshPair::move(const Similarity& tool, const Budgets& budgets, WorkBudget& 
 {
     const MeshPlacement before = placements_[0];
     placements_[0].place = tool;
-    moved_on_m_ += motion_between(before, placements_[0], own_ball_);
+    moved_on_m_ += motion_between(before, placements_[0], own_sphere_);
     note_use();
     see_surfaces(budgets, frame);
 }
@@ -170,18 +170,18 @@ void MeshPair::see_surfaces(const Budgets& budgets, WorkBudget& frame) noexcept
                             budget_of(budgets, frame, kMeshBudgetFactor));
 }
 
-void MeshPair::rank(const Outlook& outlook, ModelId tool_model, ModelId object_model,
-                    const RegionPredictor& predictor, Prediction prediction,
+void MeshPair::rank(const RegionOfInterest& region_of_interest, ModelId tool_model,
+                    ModelId object_model, const RegionPredictor& predictor, Prediction prediction,
                     RegionRanking& ranking) noexcept
 {
     const double scale = placements_[0].place.scale;
-    const double reach_m = Outlook::kKeepFactor * refine_reach_m(outlook);
-    const double near_m = reach_m + kPrefetchAhead * outlook.approach_m().norm();
+    const double reach_m = RegionOfInterest::kKeepFactor * refine_reach_m(region_of_interest);
+    const double near_m = reach_m + kPrefetchAhead * region_of_interest.approach_m().norm();
     find_cover(near_m);
     CoreCover of_object;
-    for (const Ball& ball : cover_)
+    for (const Sphere& sphere : cover_)
     {
-        of_object.push_back({placements_[0].to_there(ball.center), scale * ball.radius});
+        of_object.push_back({placements_[0].local_to_world(sphere.center), scale * sphere.radius});
     }
     predictor.rank(prediction, object_model, of_object, reach_m, ranking);
     RegionPredictor::rank_present(tool_model, cover_, reach_m / scale, ranking);
@@ -201,24 +201,28 @@ void MeshPair::find_cover(double near_m) noexcept
     frames_until_cover_ -= frames_until_cover_ > 0 ? 1U : 0U;
 }
 
-double MeshPair::refine_reach_m(const Outlook& outlook) noexcept
+double MeshPair::refine_reach_m(const RegionOfInterest& region_of_interest) noexcept
 {
-    return std::max(outlook.reach_m(), kLeastReach * outlook.core().radius());
+    return std::max(region_of_interest.reach_m(), kLeastReach * region_of_interest.core().radius());
 }
 
-bool MeshPair::goes_along(const Outlook& outlook) noexcept
+bool MeshPair::goes_along(const RegionOfInterest& region_of_interest) noexcept
 {
-    return outlook.is_near_surface() && outlook.approach_m().norm() <= refine_reach_m(outlook);
+    return region_of_interest.is_near_surface() &&
+           region_of_interest.approach_m().norm() <= refine_reach_m(region_of_interest);
 }
 
-double MeshPair::ahead_m(std::size_t place, const Outlook& outlook) const noexcept
+double MeshPair::ahead_m(std::size_t place,
+                         const RegionOfInterest& region_of_interest) const noexcept
 {
-    const double way_m = goes_along(outlook) ? outlook.approach_m().norm() : 0.0;
-    return std::min(std::max(kFramesAhead * moved_m_[place], way_m), refine_reach_m(outlook));
+    const double way_m =
+        goes_along(region_of_interest) ? region_of_interest.approach_m().norm() : 0.0;
+    return std::min(std::max(kFramesAhead * moved_m_[place], way_m),
+                    refine_reach_m(region_of_interest));
 }
 
 /// About the place where two faces meet, for what comes there in some frames. All that is exact
-/// already in the tool's ball stays; `scale` is of lengths here in the object's frame.
+/// already in the tool's sphere stays; `scale` is of lengths here in the object's frame.
 RefineQuestion MeshPair::about_meeting(const Vec3& center_m, double radius_m, double scale,
                                        RefineMemory& memory) const noexcept
 {
@@ -226,7 +230,7 @@ RefineQuestion MeshPair::about_meeting(const Vec3& center_m, double radius_m, do
     return {center_m, reach_m, 2.0 * radius_m + reach_m, &memory};
 }
 
-RefineQuestion MeshPair::ask_object(std::size_t place, const Outlook& outlook,
+RefineQuestion MeshPair::ask_object(std::size_t place, const RegionOfInterest& region_of_interest,
                                     RefineMemory& memory) noexcept
 {
     memory.is_known = memory.is_known && !asks_otherwise_;
@@ -234,37 +238,39 @@ RefineQuestion MeshPair::ask_object(std::size_t place, const Outlook& outlook,
     {
         return about_meeting(meeting_m_, cores_[0].radius(), 1.0, memory);
     }
-    return question({cores_[place].center(), cores_[place].radius()}, refine_reach_m(outlook),
-                    moved_m_[place], ahead_m(place, outlook), tools_[place], memory,
+    return question({cores_[place].center(), cores_[place].radius()},
+                    refine_reach_m(region_of_interest), moved_m_[place],
+                    ahead_m(place, region_of_interest), tools_[place], memory,
                     place == 0 ? &of_object_ : nullptr);
 }
 
-RefineQuestion MeshPair::ask_tool(std::size_t place, const Outlook& outlook) noexcept
+RefineQuestion MeshPair::ask_tool(std::size_t place,
+                                  const RegionOfInterest& region_of_interest) noexcept
 {
     const double scale = placements_[place].place.scale;
     RefineMemory& memory = tool_memories_[place];
     memory.is_known = memory.is_known && !asks_otherwise_;
     if (asks_about_meeting_)
     {
-        const Vec3 meeting_m = placements_[0].inverse().to_there(meeting_m_);
-        return about_meeting(meeting_m, own_ball_.radius, scale, memory);
+        const Vec3 meeting_m = placements_[0].inverse().local_to_world(meeting_m_);
+        return about_meeting(meeting_m, own_sphere_.radius, scale, memory);
     }
-    return question(own_ball_, refine_reach_m(outlook) / scale, moved_m_[place] / scale,
-                    ahead_m(place, outlook) / scale, objects_[place], memory,
-                    place == 0 ? &of_tool_ : nullptr);
+    return question(own_sphere_, refine_reach_m(region_of_interest) / scale,
+                    moved_m_[place] / scale, ahead_m(place, region_of_interest) / scale,
+                    objects_[place], memory, place == 0 ? &of_tool_ : nullptr);
 }
 
-/// For the faces within `reach_m` of a surface that is in a ball, in that ball's frame.
-RefineQuestion MeshPair::question(const Ball& ball, double reach_m, double moved_m, double ahead_m,
-                                  OtherSurface& surface, RefineMemory& memory,
+/// For the faces within `reach_m` of a surface that is in a sphere, in that sphere's frame.
+RefineQuestion MeshPair::question(const Sphere& sphere, double reach_m, double moved_m,
+                                  double ahead_m, OtherSurface& surface, RefineMemory& memory,
                                   UnfinishedSearch* unfinished) noexcept
 {
-    return {.center_m = ball.center,
-            .reach_m = ball.radius + reach_m,
-            .keep_m = ball.radius + Outlook::kKeepFactor * (reach_m + ahead_m),
+    return {.center_m = sphere.center,
+            .reach_m = sphere.radius + reach_m,
+            .keep_m = sphere.radius + RegionOfInterest::kKeepFactor * (reach_m + ahead_m),
             .memory = &memory,
             .surface = &surface,
-            .span_m = ball.radius,
+            .span_m = sphere.radius,
             .moved_m = moved_m,
             .ahead_m = ahead_m,
             .unfinished = unfinished};
@@ -283,7 +289,7 @@ double MeshPair::certified_m(const RefineMemory& of_object) const noexcept
                                    : 0.0;
     };
     const double object_m = beyond_m(*object_model_, of_object, cores_[0].radius());
-    const double tool_m = beyond_m(*tool_model_, tool_memories_[0], own_ball_.radius);
+    const double tool_m = beyond_m(*tool_model_, tool_memories_[0], own_sphere_.radius);
     const double near_m = std::min(object_m, tool_m * placements_[0].place.scale / kRoundedUp);
     return std::max(0.0, near_m / kRoundedUp - moved_on_m_ * kRoundedUp);
 }
@@ -294,14 +300,14 @@ double MeshPair::touch_m(double radius_m, double reach_m) const noexcept
     return share < 1.0 ? radius_m + share * (reach_m - radius_m) : reach_m;
 }
 
-void MeshPair::query(const Outlook& outlook, double certified_m, double contact_m,
-                     std::uint32_t enough, ContactEnds* ends, DistanceAnswer& answer,
-                     ContactReport& contacts) noexcept
+void MeshPair::query(const RegionOfInterest& region_of_interest, double certified_m,
+                     double contact_m, std::uint32_t enough, ContactEnds* ends,
+                     DistanceAnswer& answer, ContactReport& contacts) noexcept
 {
     const MeshQuestion question{tool_model_->tree,
                                 object_model_->tree,
                                 placements_[0],
-                                outlook.reach_m(),
+                                region_of_interest.reach_m(),
                                 contact_m,
                                 ends,
                                 certified_m,
@@ -310,7 +316,7 @@ void MeshPair::query(const Outlook& outlook, double certified_m, double contact_
     query_meshes(question, queried_, memory_, answer, report_, contacts);
     if (answer.nearest_face.is_none())
     {
-        answer.tool_point_m = outlook.core().center();
+        answer.tool_point_m = region_of_interest.core().center();
     }
     is_meeting_ = enough == 1 && report_.intersection == Intersection::proven &&
                   !answer.nearest_face.is_none();
@@ -337,7 +343,7 @@ void MeshPair::rest(ContactReport& contacts) noexcept
     contacts.is_complete = true;
 }
 
-/// A cover that is cut short is of larger balls.
+/// A cover that is cut short is of larger spheres.
 void MeshPair::add_work(WorkCounters& work, FrameFault& faults) noexcept
 {
     const auto add = [&](OtherSurface& surface, bool lacks_some)

@@ -8,7 +8,7 @@
 #include "rt_core/query/mesh_query.hpp"
 #include "rt_core/records/mesh_report.hpp"
 #include "rt_core/refine/refine_question.hpp"
-#include "rt_core/scene/outlook.hpp"
+#include "rt_core/scene/region_of_interest.hpp"
 
 #include <array>
 #include <utility>
@@ -28,16 +28,16 @@ public:
 
     /// Updates the pair for this frame: both models' boxes must be right, and `tool` is the tool's
     /// pose in the object's frame. Searches draw on the frame's work.
-    void place(const Outlook& outlook, const MeshCore& core, const Model& tool_model,
-               const Model& object_model, const Similarity& tool, const Budgets& budgets,
-               WorkBudget& frame) noexcept TACTUS_NONBLOCKING;
+    void place(const RegionOfInterest& region_of_interest, const MeshCore& core,
+               const Model& tool_model, const Model& object_model, const Similarity& tool,
+               const Budgets& budgets, WorkBudget& frame) noexcept TACTUS_NONBLOCKING;
 
     /// Moves the tool on in the same frame, for another query.
     void move(const Similarity& tool, const Budgets& budgets,
               WorkBudget& frame) noexcept TACTUS_NONBLOCKING;
 
     /// Adds the regions of both models where the surfaces are near.
-    void rank(const Outlook& outlook, ModelId tool_model, ModelId object_model,
+    void rank(const RegionOfInterest& region_of_interest, ModelId tool_model, ModelId object_model,
               const RegionPredictor& predictor, Prediction prediction,
               RegionRanking& ranking) noexcept TACTUS_NONBLOCKING;
 
@@ -46,12 +46,15 @@ public:
     [[nodiscard]] bool is_meeting() const noexcept { return is_meeting_; }
     /// True if the tool is at a surface and approaches by no more than is refined beyond the reach
     /// there: its future place needs no questions.
-    [[nodiscard]] static bool goes_along(const Outlook& outlook) noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] static bool
+    goes_along(const RegionOfInterest& region_of_interest) noexcept TACTUS_NONBLOCKING;
     /// Question to the object's model for one of the places; below, to the tool's.
-    [[nodiscard]] RefineQuestion ask_object(std::size_t place, const Outlook& outlook,
+    [[nodiscard]] RefineQuestion ask_object(std::size_t place,
+                                            const RegionOfInterest& region_of_interest,
                                             RefineMemory& memory) noexcept TACTUS_NONBLOCKING;
-    [[nodiscard]] RefineQuestion ask_tool(std::size_t place,
-                                          const Outlook& outlook) noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] RefineQuestion
+    ask_tool(std::size_t place,
+             const RegionOfInterest& region_of_interest) noexcept TACTUS_NONBLOCKING;
 
     /// Distance from the other surface that this frame's refinement proves for all inexact faces,
     /// from the first place's questions; `of_object` is the object's memory. In the object's frame;
@@ -67,8 +70,8 @@ public:
     [[nodiscard]] double touch_m(double radius_m, double reach_m) const noexcept TACTUS_NONBLOCKING;
     /// Queries in the object's frame; contacts within `contact_m`, none if negative. `enough`
     /// meeting pairs end the search. `ends` may be null, and `certified_m` is as above.
-    void query(const Outlook& outlook, double certified_m, double contact_m, std::uint32_t enough,
-               ContactEnds* ends, DistanceAnswer& answer,
+    void query(const RegionOfInterest& region_of_interest, double certified_m, double contact_m,
+               std::uint32_t enough, ContactEnds* ends, DistanceAnswer& answer,
                ContactReport& contacts) noexcept TACTUS_NONBLOCKING;
 
     /// Records a lower bound on the distance from the last query and those before it.
@@ -94,11 +97,12 @@ private:
     [[nodiscard]] RefineQuestion about_meeting(const Vec3& center_m, double radius_m, double scale,
                                                RefineMemory& memory) const noexcept;
     void find_cover(double near_m) noexcept;
-    [[nodiscard]] static double refine_reach_m(const Outlook& outlook) noexcept;
-    [[nodiscard]] double ahead_m(std::size_t place, const Outlook& outlook) const noexcept;
-    [[nodiscard]] static RefineQuestion question(const Ball& ball, double reach_m, double moved_m,
-                                                 double ahead_m, OtherSurface& surface,
-                                                 RefineMemory& memory,
+    [[nodiscard]] static double refine_reach_m(const RegionOfInterest& region_of_interest) noexcept;
+    [[nodiscard]] double ahead_m(std::size_t place,
+                                 const RegionOfInterest& region_of_interest) const noexcept;
+    [[nodiscard]] static RefineQuestion question(const Sphere& sphere, double reach_m,
+                                                 double moved_m, double ahead_m,
+                                                 OtherSurface& surface, RefineMemory& memory,
                                                  UnfinishedSearch* unfinished) noexcept;
 
     const Model* tool_model_{nullptr};
@@ -119,7 +123,7 @@ private:
     std::array<RefineMemory, kPlaces> tool_memories_{};
     UnfinishedSearch of_object_; ///< Search for the first place, which is needed now.
     UnfinishedSearch of_tool_;
-    Ball own_ball_; ///< Sphere round the tool's model, in its frame.
+    Sphere own_sphere_; ///< Sphere round the tool's model, in its frame.
     /// Last cover of the tool's model near the object.
     CoreCover cover_;
     double cover_moved_m_{0.0}; ///< Motion of the tool since then.
@@ -130,7 +134,7 @@ private:
     bool asks_about_meeting_{false};
     bool asks_otherwise_{false};    ///< Differs from the last frame.
     Vec3 meeting_m_{0.0, 0.0, 0.0}; ///< Meeting point in the object's frame.
-    PairFront* front_{nullptr};     ///< Null while other pairs are more urgent.
+    PairFront* front_{nullptr};     ///< Null while other pairs have higher priority.
     MeshReport report_;
     /// Divisor of the allowance of refining searches.
     std::uint32_t search_parts_{kSearchParts};

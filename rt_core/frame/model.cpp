@@ -22,7 +22,7 @@ constexpr std::uint32_t kMinFaces = 256;
 /// is asked for has to be here this much before the tool is.
 constexpr double kRefineTime_s = 0.008;
 /// No hand can be predicted for longer.
-constexpr double kLongestLead_s = 0.15;
+constexpr double kLongestHorizon_s = 0.15;
 
 /// Blocks are about two thirds full, so 11 faces; twice that many for thin cuts.
 std::uint32_t blocks_for(std::uint32_t faces) noexcept
@@ -59,7 +59,7 @@ ModelCapacities kept_for(const ModelHeader& header, const ModelCapacities& capac
     const ModelCounts counts = header.counts();
     if (capacities.faces == 0)
     {
-        return {}; // A guest: its room is kept from when it is wanted.
+        return {}; // A streamed model: its room is kept from when it is wanted.
     }
     if (brings_all(counts, capacities))
     {
@@ -143,8 +143,8 @@ std::size_t required_bytes(std::span<const ModelHeader> headers,
     return arena.used() - scratch.used();
 }
 
-ModelCapacities guest_room(std::uint32_t meshes, std::uint32_t cells, std::uint32_t pages,
-                           std::uint32_t index_pages) noexcept
+ModelCapacities streamed_model_room(std::uint32_t meshes, std::uint32_t cells, std::uint32_t pages,
+                                    std::uint32_t index_pages) noexcept
 {
     ModelCapacities room = with_faces({}, 2 * cells + kMinFaces);
     // Each tree has its own reserve of blocks, and of nodes half as many and one more.
@@ -246,11 +246,11 @@ Model::Model(Arena& arena, ModelPools& shared, ModelId id, const ModelHeader& mo
     , forest(arena, shared.faces, id, kept_for(header, capacities).faces, header.counts(), slots,
              pages, tree)
     , refiner(forest, pages, tree, shared.scratch, header.quantum_m())
-    , is_guest(model_slots.base.faces.empty())
-    , stage(is_guest ? ModelStage::known : ModelStage::resident)
+    , is_streamed_model(model_slots.base.faces.empty())
+    , stage(is_streamed_model ? ModelStage::known : ModelStage::resident)
     , shared_(&shared)
 {
-    if (is_guest)
+    if (is_streamed_model)
     {
         cache.close();
     }
@@ -316,8 +316,8 @@ void Model::go_on(std::uint32_t& entering, std::uint32_t& leaving, std::uint32_t
 
 void Model::leave() noexcept
 {
-    TACTUS_ASSERT(is_guest);
-    TACTUS_ASSERT(is_here());
+    TACTUS_ASSERT(is_streamed_model);
+    TACTUS_ASSERT(is_resident());
     cache.close();
     stage = ModelStage::leaving;
     residence = Residence::partial;
@@ -351,17 +351,17 @@ void Model::end_stay() noexcept
     stage = ModelStage::known;
 }
 
-double Model::lead_s(std::int64_t period_ns) const noexcept
+double Model::horizon_s(std::int64_t period_ns) const noexcept
 {
     const double latency_s = cache.latency().most_frames() * static_cast<double>(period_ns) * 1e-9;
-    return std::min(latency_s + kRefineTime_s, kLongestLead_s);
+    return std::min(latency_s + kRefineTime_s, kLongestHorizon_s);
 }
 
 void Model::load(ModelId id, const RegionRanking& ranking, const Budgets& budgets,
                  std::uint32_t frame, WorkCounters& work, FrameFault& faults) noexcept
 {
     pages_used_max = std::max(pages_used_max, pages.used());
-    if (is_complete() || !is_here())
+    if (is_complete() || !is_resident())
     {
         return;
     }
@@ -382,7 +382,7 @@ void Model::load(ModelId id, const RegionRanking& ranking, const Budgets& budget
 
 bool Model::may_ask_for(const RankedRegion& region) const noexcept
 {
-    return !capacities.cache_off || (region.lead_ns == 0 && !is_refined);
+    return !capacities.cache_off || (region.horizon_ns == 0 && !is_refined);
 }
 
 bool Model::fits() const noexcept
@@ -393,7 +393,7 @@ bool Model::fits() const noexcept
 void Model::begin_refinement(std::span<const RefineRequest> requests, const Budgets& budgets,
                              WorkCounters& work) noexcept
 {
-    if (!is_here() || (is_complete() && requests.empty()))
+    if (!is_resident() || (is_complete() && requests.empty()))
     {
         return;
     }

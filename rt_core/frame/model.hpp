@@ -39,7 +39,7 @@ struct ModelCapacities
     /// the benefit of a cache.
     bool cache_off{false};
     /// Memory for base meshes of streamed models, in cells of a face and a vertex each. Only in
-    /// capacities for all models: FrameSetup::for_guests.
+    /// capacities for all models: FrameSetup::for_streamed_models.
     std::uint32_t base_cells{0};
 
     constexpr bool operator==(const ModelCapacities&) const noexcept = default;
@@ -59,7 +59,7 @@ struct ModelPools
     PageSlots slots;    ///< The base mesh is the memory for streamed models.
     BaseRoom base_room; ///< Taken cells of that memory.
     CachePool cache;
-    /// Used by the transport thread, like the other ends of the cache's door.
+    /// Used by the transport thread, like the other ends of the cache's queues.
     LinkPool links;
 };
 
@@ -73,8 +73,9 @@ struct ModelPools
 
 /// Pool capacities for streamed models: base meshes of `cells` in all, `meshes` of them at once,
 /// half of all faces for those, and pages for their touched parts.
-[[nodiscard]] ModelCapacities guest_room(std::uint32_t meshes, std::uint32_t cells,
-                                         std::uint32_t pages, std::uint32_t index_pages) noexcept;
+[[nodiscard]] ModelCapacities streamed_model_room(std::uint32_t meshes, std::uint32_t cells,
+                                                  std::uint32_t pages,
+                                                  std::uint32_t index_pages) noexcept;
 
 /// Plans the capacities of up to kMaxModels models that fit into `bytes`: `cache_bytes` of them for
 /// pages (0: the default share), the rest for active faces and the tree. All models get the same
@@ -128,7 +129,7 @@ struct Model
     void load(ModelId id, const RegionRanking& ranking, const Budgets& budgets, std::uint32_t frame,
               WorkCounters& work, FrameFault& faults) noexcept TACTUS_NONBLOCKING;
     /// Present prediction horizon of chunk requests, in seconds > 0.
-    [[nodiscard]] double lead_s(std::int64_t period_ns) const noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] double horizon_s(std::int64_t period_ns) const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] bool is_complete() const noexcept { return residence == Residence::complete; }
     /// True if the model is resident as a whole or loading towards that.
     [[nodiscard]] bool is_whole() const noexcept { return residence != Residence::partial; }
@@ -138,11 +139,11 @@ struct Model
     [[nodiscard]] bool is_at_rest() const noexcept
     {
         return is_complete() || stage == ModelStage::known ||
-               (is_here() && residence == Residence::partial && forest.refined_records() == 0 &&
-                tree.is_complete() && cache.wishes_under_way() == 0);
+               (is_resident() && residence == Residence::partial && forest.refined_records() == 0 &&
+                tree.is_complete() && cache.requests_under_way() == 0);
     }
     /// True if its surface answers queries.
-    [[nodiscard]] bool is_here() const noexcept { return stage == ModelStage::resident; }
+    [[nodiscard]] bool is_resident() const noexcept { return stage == ModelStage::resident; }
     /// True if it is known and may be requested; after a failed request it waits a while.
     [[nodiscard]] bool may_come(std::uint32_t frame) const noexcept
     {
@@ -191,7 +192,7 @@ struct Model
     Residence residence{Residence::partial};
     bool is_refined{false};    ///< The last refinement left nothing to do.
     std::uint32_t revision{0}; ///< Changes with each refit that changed something.
-    bool is_guest{false};
+    bool is_streamed_model{false};
     ModelStage stage{ModelStage::resident};
 
 private:

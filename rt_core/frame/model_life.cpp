@@ -59,7 +59,7 @@ void ModelLife::go_on(Model& model, Turn& turn, std::uint32_t frame, WorkCounter
 void ModelLife::want(ModelSet& models, const Pair& pair, std::uint32_t frame, Turn& turn) noexcept
 {
     Model& model = models[pair.parts().model.id];
-    // One that is less urgent doesn't take what there is.
+    // One of lower priority doesn't take what there is.
     if (model.may_come(frame) && turn.waits == nullptr && !model.try_want())
     {
         turn.waits = &pair;
@@ -70,7 +70,7 @@ void ModelLife::want(ModelSet& models, const Pair& pair, std::uint32_t frame, Tu
 void ModelLife::let_go(ModelSet& models, std::uint32_t frame) const noexcept
 {
     const ModelId turn{frame % models.size()};
-    if (Model& model = models[turn]; model.is_guest && model.is_here() &&
+    if (Model& model = models[turn]; model.is_streamed_model && model.is_resident() &&
                                      frame - models.slot(turn).paired_frame > linger_frames_)
     {
         model.leave();
@@ -116,7 +116,7 @@ std::optional<ModelId> ModelLife::find_left(const ModelSet& models, std::uint32_
     {
         const Model& model = models[{i}];
         const std::uint32_t since = frame - models.slot({i}).paired_frame;
-        if (model.is_guest && model.is_here() && since > longest)
+        if (model.is_streamed_model && model.is_resident() && since > longest)
         {
             longest = since;
             left = ModelId{i};
@@ -125,8 +125,8 @@ std::optional<ModelId> ModelLife::find_left(const ModelSet& models, std::uint32_
     return left;
 }
 
-/// The one whose most urgent pair comes last, if all its pairs can spare it and that one is so much
-/// less urgent that the two won't change places the next moment.
+/// The one whose highest-priority pair comes last, if all its pairs can spare it and that one is so
+/// much lower in priority that the two won't change places the next moment.
 std::optional<ModelId> ModelLife::find_spare(const ModelSet& models, std::span<Pair* const> pairs,
                                              const Pair& waits) noexcept
 {
@@ -136,12 +136,12 @@ std::optional<ModelId> ModelLife::find_spare(const ModelSet& models, std::span<P
         const ModelId id = pairs[i]->parts().model.id;
         const auto is_of_it = [id](const Pair* pair) { return pair->parts().model.id == id; };
         const bool is_less_urgent =
-            pairs[i]->urgency().contact_s > kLessUrgent * waits.urgency().contact_s;
+            pairs[i]->priority().contact_s > kLessUrgent * waits.priority().contact_s;
         if (!is_less_urgent)
         {
             return std::nullopt; // Nor are those before it.
         }
-        if (models[id].is_guest && models[id].is_here() &&
+        if (models[id].is_streamed_model && models[id].is_resident() &&
             std::ranges::none_of(pairs.first(i), is_of_it) &&
             std::ranges::all_of(pairs.subspan(i), [&](const Pair* pair)
                                 { return !is_of_it(pair) || pair->can_spare_model(); }))

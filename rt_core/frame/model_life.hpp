@@ -21,17 +21,18 @@ namespace tactus
 /// cells. While it has a pair it is wanted again after a while.
 ///
 /// A model is wanted as soon as it has a pair, which is as far ahead as the device moves in 150 ms,
-/// or kGuestLead_m. Memory for its base mesh is then reserved, the mesh is requested, and its faces
-/// enter in slices, those of the most urgent pair first. Until it is resident its pairs answer from
-/// its box. It leaves after 2 s without a pair, or earlier if a wanted model has no room: then the
-/// model that has been without a pair for longest leaves, or else, of those whose pairs can spare
-/// them, that of the least urgent pair, if it is twice as far from contact. Haptic thread.
+/// or kStreamedHorizon_m. Memory for its base mesh is then reserved, the mesh is requested, and its
+/// faces enter in slices, those of the pair of highest priority first. Until it is resident its
+/// pairs answer from its box. It leaves after 2 s without a pair, or earlier if a wanted model has
+/// no room: then the model that has been without a pair for longest leaves, or else, of those whose
+/// pairs can spare them, that of the lowest-priority pair, if it is twice as far from contact.
+/// Haptic thread.
 class ModelLife
 {
 public:
     explicit ModelLife(std::int64_t period_ns) noexcept;
 
-    /// Runs one frame, after arrivals were adopted; `pairs` by urgency. Pairs see the changes in
+    /// Runs one frame, after arrivals were adopted; `pairs` by priority. Pairs see the changes in
     /// the next frame.
     void go_on(ModelSet& models, std::span<Pair* const> pairs, std::uint32_t frame,
                WorkCounters& work) noexcept TACTUS_NONBLOCKING;
@@ -42,7 +43,7 @@ private:
     {
         std::uint32_t entering{0}; ///< Faces that may still enter in this frame.
         std::uint32_t leaving{0};  ///< Faces that may still leave.
-        /// Most urgent pair whose model has no room; null if none.
+        /// Highest-priority pair whose model has no room; null if none.
         const Pair* waits{nullptr};
         /// A model returned its room, which the waiting pair finds in the next frame; no other
         /// model has to leave before that.

@@ -20,7 +20,7 @@ void NarrowPhase::run(FrameParts& parts, FrameAccount& account) noexcept
     walked_ = {};
     room_left_ = room_;
     query_work_.fill(0);
-    const std::span<Pair* const> order = parts.pairs.by_urgency();
+    const std::span<Pair* const> order = parts.pairs.by_priority();
     for (std::size_t i = 0; i < order.size(); ++i)
     {
         Pair* const pair = order[i];
@@ -64,12 +64,12 @@ bool NarrowPhase::try_again(FrameParts& parts, std::uint32_t tool, FrameAccount&
     return true;
 }
 
-void NarrowPhase::rehearse(const FrameParts& parts, const FrameAccount& account) const noexcept
+void NarrowPhase::warm_caches(const FrameParts& parts, const FrameAccount& account) const noexcept
 {
-    WorkBudget work = account.shares.for_rehearsal();
+    WorkBudget work = account.shares.for_warming();
     for (const Pair* pair : parts.pairs.all())
     {
-        pair->rehearse(room_, account.budgets, work);
+        pair->warm_caches(room_, account.budgets, work);
     }
 }
 

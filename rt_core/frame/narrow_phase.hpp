@@ -15,9 +15,9 @@ namespace tactus
 
 /// Query stage of a frame: each pair's distance, and the surface that its tool may touch.
 ///
-/// The most urgent pairs come first; the others share the rest of the frame's walks and of the room
-/// for triangles. Pairs of tools that are meshes have a separate allowance (kMeshBudgetFactor) and
-/// use none of that. Haptic thread.
+/// The highest-priority pairs come first; the others share the rest of the frame's walks and of the
+/// room for triangles. Pairs of tools that are meshes have a separate allowance (kMeshBudgetFactor)
+/// and use none of that. Haptic thread.
 class NarrowPhase
 {
 public:
@@ -32,10 +32,10 @@ public:
     [[nodiscard]] bool try_again(FrameParts& parts, std::uint32_t tool,
                                  FrameAccount& account) noexcept TACTUS_NONBLOCKING;
 
-    /// Frame::rehearse(), in the memory of the last frame's surfaces, which are not needed any
+    /// Frame::warm_caches(), in the memory of the last frame's surfaces, which are not needed any
     /// more.
-    void rehearse(const FrameParts& parts,
-                  const FrameAccount& account) const noexcept TACTUS_NONBLOCKING;
+    void warm_caches(const FrameParts& parts,
+                     const FrameAccount& account) const noexcept TACTUS_NONBLOCKING;
 
 private:
     /// Nodes visited and triangles tested by queries.

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/frame/neighbours.hpp"
 
-#include "rt_core/geometry/believed_motion.hpp"
+#include "rt_core/geometry/object_speed_limit.hpp"
 
 #include <algorithm>
 
@@ -12,12 +12,12 @@ namespace tactus
 namespace
 {
 
-/// Guests are brought as far ahead of a tool, however slow: what a hand at 2 m/s comes to in 80 ms,
-/// a round trip of 20 ms and what asking, sending and entering take beside it.
-constexpr double kGuestLead_m = 0.16;
+/// Streamed models are brought as far ahead of a tool, however slow: what a hand at 2 m/s comes to
+/// in 80 ms, a round trip of 20 ms and what asking, sending and entering take beside it.
+constexpr double kStreamedHorizon_m = 0.16;
 
 /// Round a model's box, in its frame.
-Ball model_ball(const ModelHeader& header) noexcept
+Sphere model_sphere(const ModelHeader& header) noexcept
 {
     const auto& extent = header.fields().extent_quanta;
     const auto quantum_m = static_cast<double>(header.quantum_m());
@@ -52,18 +52,18 @@ void end_pairs(FrameParts& parts, const auto& ends) noexcept
 
 Neighbours::Neighbours(Arena& arena, const FrameSetup& setup) noexcept
     : broad_(arena, capacities_of(setup).objects, static_cast<std::uint32_t>(setup.tools.size()))
-    , has_guests_(setup.for_guests.base_cells > 0)
+    , has_streamed_models_(setup.for_streamed_models.base_cells > 0)
 {
 }
 
-/// The object's ball holds its model's box, and what it may be off by there.
+/// The object's sphere holds its model's box, and what it may be off by there.
 void Neighbours::place(const FrameParts& parts, std::uint32_t object) noexcept
 {
     const ObjectPose& pose = parts.objects[object].pose;
     const ModelHeader& header = header_of(parts, object);
-    const Ball ball = model_ball(header);
-    const Vec3 center_m = to_world(pose, ball.center);
-    const double radius_m = pose.scale * ball.radius;
+    const Sphere sphere = model_sphere(header);
+    const Vec3 center_m = to_world(pose, sphere.center);
+    const double radius_m = pose.scale * sphere.radius;
     const double off_m = pose_rounding_m(pose, center_m, radius_m) +
                          kOriginRounding * header.origin_m().norm() * pose.scale;
     broad_.place(object, {center_m, radius_m + off_m});
@@ -73,15 +73,15 @@ void Neighbours::look_for_leap(FrameParts& parts, std::uint32_t object,
                                const ObjectPose& before) noexcept
 {
     const ObjectPose& now = parts.objects[object].pose;
-    const Ball ball = model_ball(header_of(parts, object));
+    const Sphere sphere = model_sphere(header_of(parts, object));
     for (std::uint32_t i = 0; i < parts.tools.size(); ++i)
     {
-        if (parts.tools.status(i).is_here && !are_paired(parts, i, object))
+        if (parts.tools.status(i).is_resident && !are_paired(parts, i, object))
         {
-            parts.tools[i].look_for_leap(before, now, ball);
-            const Ball reach = parts.tools[i].reach_ball();
+            parts.tools[i].look_for_leap(before, now, sphere);
+            const Sphere reach = parts.tools[i].reach_sphere();
             leap_m_[i] =
-                std::max(leap_m_[i], way_in_ball_m(before, now, reach.center, reach.radius));
+                std::max(leap_m_[i], way_in_sphere_m(before, now, reach.center, reach.radius));
         }
     }
 }
@@ -122,22 +122,23 @@ void Neighbours::find(FrameParts& parts, FrameAccount& account) noexcept
     find_clearances(parts, first_out, account);
 }
 
-/// Each tool looks as far as a surface may matter to it soon, or a guest should be on its way.
+/// Each tool looks as far as a surface may matter to it soon, or a streamed model should be on its
+/// way.
 void Neighbours::look(const FrameParts& parts) noexcept
 {
     for (std::uint32_t i = 0; i < parts.tools.size(); ++i)
     {
-        if (parts.tools.status(i).is_here)
+        if (parts.tools.status(i).is_resident)
         {
             const Tool& tool = parts.tools[i];
             const bool is_far_of_use =
                 tool.spec().wants_distance || !parts.rules.variant.finds_neighbours;
             double near_m = is_far_of_use ? kInfinity : tool.near_m();
-            near_m =
-                has_guests_
-                    ? std::max(near_m, tool.ball().radius + tool.stance().reach_m + kGuestLead_m)
-                    : near_m;
-            broad_.look(i, tool.ball().center, near_m);
+            near_m = has_streamed_models_
+                         ? std::max(near_m, tool.sphere().radius + tool.placement().reach_m +
+                                                kStreamedHorizon_m)
+                         : near_m;
+            broad_.look(i, tool.sphere().center, near_m);
         }
     }
 }
@@ -171,8 +172,8 @@ Neighbours::Nearness Neighbours::first_left_out(const FrameParts& parts) const n
 Neighbours::Nearness Neighbours::nearness(const FrameParts& parts, std::uint32_t tool,
                                           std::uint32_t object) const noexcept
 {
-    const double gap_m = broad_.gap_m(tool, object) - parts.tools[tool].ball().radius -
-                         parts.tools[tool].stance().reach_m;
+    const double gap_m = broad_.gap_m(tool, object) - parts.tools[tool].sphere().radius -
+                         parts.tools[tool].placement().reach_m;
     return {gap_m, tool * kMaxObjects + object};
 }
 
@@ -233,13 +234,13 @@ bool Neighbours::begins_apart(const FrameParts& parts, std::uint32_t tool,
 void Neighbours::find_clearances(FrameParts& parts, const Nearness& first_out,
                                  FrameAccount& account) noexcept
 {
-    account.scene.crowded_tools = 0;
+    account.scene.tools_over_capacity = 0;
     account.scene.walled_tools = 0;
     for (std::uint32_t tool = 0; tool < parts.tools.size(); ++tool)
     {
         ToolStatus& status = parts.tools.status(tool);
         leap_m_[tool] = 0.0;
-        if (!status.is_here)
+        if (!status.is_resident)
         {
             continue;
         }
@@ -249,10 +250,11 @@ void Neighbours::find_clearances(FrameParts& parts, const Nearness& first_out,
             const bool is_pair = first_out == kNothing || nearness(parts, tool, object) < first_out;
             clear_m = is_pair ? clear_m : std::min(clear_m, broad_.gap_m(tool, object));
         }
-        status.clear_m = clear_m - parts.tools[tool].ball().radius;
-        status.is_crowded = status.clear_m < parts.tools[tool].stance().reach_m;
-        account.scene.crowded_tools += status.is_crowded ? 1U : 0U;
-        account.faults |= status.is_crowded ? FrameFault::scene_crowded : FrameFault::none;
+        status.clear_m = clear_m - parts.tools[tool].sphere().radius;
+        status.exceeds_capacity = status.clear_m < parts.tools[tool].placement().reach_m;
+        account.scene.tools_over_capacity += status.exceeds_capacity ? 1U : 0U;
+        account.faults |=
+            status.exceeds_capacity ? FrameFault::scene_over_capacity : FrameFault::none;
         const auto pairs = static_cast<std::uint32_t>(parts.pairs.of(tool).size());
         account.work.skipped.add(Skip::objects, account.scene.objects - pairs);
     }

@@ -65,7 +65,7 @@ private:
                                     ///< missing.
     /// Largest displacement in this frame of an object without a pair of the tool.
     std::array<double, kMaxTools> leap_m_{};
-    bool has_guests_{false};
+    bool has_streamed_models_{false};
 };
 
 } // namespace tactus

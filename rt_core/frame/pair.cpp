@@ -124,42 +124,43 @@ Pair::Pair(const PairParts& parts, const PairMemory& memory, std::size_t index) 
 
 void Pair::place(const Budgets& budgets) noexcept
 {
-    const ToolStance& stance = parts_.tool->stance();
-    is_model_here_ = parts_.model.model->is_here();
+    const ToolPlacement& placement = parts_.tool->placement();
+    is_model_here_ = parts_.model.model->is_resident();
     feels_otherwise_ =
         feel_.step(parts_.object->spec.material, parts_.tool->spec().stiffness_n_per_m,
                    static_cast<double>(parts_.rules->period_ns) * 1e-9);
     look();
-    find_urgency();
+    find_priority();
     if (mesh_ != nullptr && is_model_here_)
     {
-        mesh_->place(outlook_, mesh_core_of(*parts_.tool), *parts_.tool_model.model,
-                     *parts_.model.model, in_frame(parts_.object->pose, stance.place), budgets,
+        mesh_->place(region_of_interest_, mesh_core_of(*parts_.tool), *parts_.tool_model.model,
+                     *parts_.model.model, in_frame(parts_.object->pose, placement.place), budgets,
                      *parts_.rules->work);
     }
 }
 
 void Pair::look() noexcept
 {
-    outlook_.look(parts_.tool->spec(), parts_.tool->stance(), parts_.object->pose);
+    region_of_interest_.look(parts_.tool->spec(), parts_.tool->placement(), parts_.object->pose);
     if (!parts_.rules->variant.lets_pairs_rest || tells_distance())
     {
-        outlook_.wake();
+        region_of_interest_.wake();
     }
 }
 
-void Pair::find_urgency() noexcept
+void Pair::find_priority() noexcept
 {
     const Tool& tool = *parts_.tool;
     const ObjectPose& pose = parts_.object->pose;
     const Vec3 before_m = hand_m_;
     hand_m_ = to_model(pose, tool.goal().position_m);
-    urgency_ = Urgency::at(0.0, 0.0, tool.spec().passes_through);
-    if (outlook_.has_known())
+    priority_ = Priority::at(0.0, 0.0, tool.spec().query_only);
+    if (region_of_interest_.has_known())
     {
-        const double gap_m = outlook_.from_motion().lower_m * pose.scale - tool.radius_m();
+        const double gap_m =
+            region_of_interest_.from_motion().lower_m * pose.scale - tool.radius_m();
         const double speed = (hand_m_ - before_m).norm() * pose.scale / tool.goal().elapsed_s;
-        urgency_ = Urgency::at(std::max(gap_m, 0.0), speed, tool.spec().passes_through);
+        priority_ = Priority::at(std::max(gap_m, 0.0), speed, tool.spec().query_only);
     }
 }
 
@@ -169,14 +170,15 @@ PairMotion Pair::motion() const noexcept
     const Tool& tool = *parts_.tool;
     const ObjectPose& pose = parts_.object->pose;
     PairMotion motion;
-    motion.center_m = outlook_.core().center();
-    motion.way_m =
-        to_model(pose, tool.goal().position_m) - to_model(pose, tool.stance().place.translation_m);
+    motion.center_m = region_of_interest_.core().center();
+    motion.way_m = to_model(pose, tool.goal().position_m) -
+                   to_model(pose, tool.placement().place.translation_m);
     motion.speed_max_m_per_s = tool.spec().speed_max_m_per_s / pose.scale;
     motion.elapsed_s = tool.goal().elapsed_s;
-    if (outlook_.has_known() && !outlook_.known().nearest_face.is_none())
+    if (region_of_interest_.has_known() && !region_of_interest_.known().nearest_face.is_none())
     {
-        const Vec3 apart = outlook_.known().tool_point_m - outlook_.known().nearest_point_m;
+        const Vec3 apart =
+            region_of_interest_.known().tool_point_m - region_of_interest_.known().nearest_point_m;
         const double distance = apart.norm();
         if (distance > 0.0)
         {
@@ -200,25 +202,25 @@ void Pair::rank(RegionRanking& ranking) noexcept
     }
     const PairRules& rules = *parts_.rules;
     const std::size_t before = ranking.size();
-    predictor_.observe(motion(), parts_.model.model->lead_s(rules.period_ns));
+    predictor_.observe(motion(), parts_.model.model->horizon_s(rules.period_ns));
     if (mesh_ != nullptr)
     {
-        mesh_->rank(outlook_, parts_.tool_model.id, parts_.model.id, predictor_, rules.prediction,
-                    ranking);
+        mesh_->rank(region_of_interest_, parts_.tool_model.id, parts_.model.id, predictor_,
+                    rules.prediction, ranking);
     }
     else if (rules.variant.asks_ahead && !measures_from_afar())
     {
-        predictor_.rank(rules.prediction, parts_.model.id, outlook_.cover(), outlook_.reach_m(),
-                        ranking);
+        predictor_.rank(rules.prediction, parts_.model.id, region_of_interest_.cover(),
+                        region_of_interest_.reach_m(), ranking);
     }
     else
     {
-        RegionPredictor::rank_present(parts_.model.id, outlook_.cover(), outlook_.reach_m(),
-                                      ranking);
+        RegionPredictor::rank_present(parts_.model.id, region_of_interest_.cover(),
+                                      region_of_interest_.reach_m(), ranking);
     }
     for (std::size_t i = before; i < ranking.size(); ++i)
     {
-        ranking[i].of = urgency_.of;
+        ranking[i].of = priority_.of;
     }
 }
 
@@ -226,19 +228,20 @@ void Pair::rank(RegionRanking& ranking) noexcept
 /// is not wanted or nothing is known.
 double Pair::distance_reach_m() const noexcept
 {
-    if (!tells_distance() || !outlook_.has_known())
+    if (!tells_distance() || !region_of_interest_.has_known())
     {
         return 0.0;
     }
-    const double upper_m = outlook_.from_motion().upper_m;
-    return upper_m > outlook_.reach_m() && upper_m < kInfinity ? outlook_.core().radius() + upper_m
-                                                               : 0.0;
+    const double upper_m = region_of_interest_.from_motion().upper_m;
+    return upper_m > region_of_interest_.reach_m() && upper_m < kInfinity
+               ? region_of_interest_.core().radius() + upper_m
+               : 0.0;
 }
 
 /// Then what its distance needs is all that lies ahead: the ranking has room for many such pairs.
 bool Pair::measures_from_afar() const noexcept
 {
-    return parts_.tool->spec().passes_through && distance_reach_m() > 0.0;
+    return parts_.tool->spec().query_only && distance_reach_m() > 0.0;
 }
 
 /// What has no room only waits.
@@ -247,8 +250,8 @@ void Pair::rank_distance(RegionRanking& ranking) const noexcept
     const double reach_m = distance_reach_m();
     if (reach_m > 0.0 && !is_shed_ && is_model_here_ && !parts_.model.model->is_complete())
     {
-        (void)ranking.try_push_back(
-            {parts_.model.id, outlook_.core().center(), reach_m, 0, UrgencyClass::last});
+        (void)ranking.try_push_back({parts_.model.id, region_of_interest_.core().center(), reach_m,
+                                     0, PriorityClass::last});
     }
 }
 
@@ -268,7 +271,7 @@ void Pair::ask(RefineRequests& requests) noexcept
     else
     {
         fit_tolerance();
-        ask_for_balls();
+        ask_for_spheres();
     }
     request(parts_.model, of_object_, requests);
 }
@@ -329,19 +332,20 @@ SurfaceTolerance::Room Pair::surface_room() const noexcept
     return has_room ? SurfaceTolerance::Room::enough : SurfaceTolerance::Room::fitting;
 }
 
-/// What has no ball has nothing to know.
-void Pair::ask_for_balls() noexcept
+/// What has no sphere has nothing to know.
+void Pair::ask_for_spheres() noexcept
 {
     const double fixed_radius = parts_.rules->variant.fixed_radius;
     const Model& model = *parts_.model.model;
-    const bool looks_ahead = outlook_.looks_ahead() && !model.is_complete();
+    const bool looks_ahead = region_of_interest_.looks_ahead() && !model.is_complete();
     auto* memory = refine_memories_.data();
-    for (const Ball& here : outlook_.cover())
+    for (const Sphere& here : region_of_interest_.cover())
     {
-        const double reach_m =
-            (here.radius + outlook_.reach_m()) * (fixed_radius > 0.0 ? fixed_radius : 1.0);
-        RefineQuestion question{here.center, reach_m, Outlook::kKeepFactor * reach_m, memory++};
-        ask(!outlook_.is_asleep(), model, question, of_object_);
+        const double reach_m = (here.radius + region_of_interest_.reach_m()) *
+                               (fixed_radius > 0.0 ? fixed_radius : 1.0);
+        RefineQuestion question{here.center, reach_m, RegionOfInterest::kKeepFactor * reach_m,
+                                memory++};
+        ask(!region_of_interest_.is_asleep(), model, question, of_object_);
         question.memory = memory++;
         ask(looks_ahead, model, looks_ahead ? ahead_of(question) : question, of_object_);
     }
@@ -359,10 +363,12 @@ void Pair::ask_for_balls() noexcept
 /// far tool would keep all that it ever passed by.
 void Pair::ask_for_distance() noexcept
 {
-    RefineQuestion question{outlook_.core().center(), distance_reach_m(), 0.0,
+    RefineQuestion question{region_of_interest_.core().center(), distance_reach_m(), 0.0,
                             &refine_memories_.back()};
-    question.later_m = question.reach_m - outlook_.core().radius() - outlook_.reach_m();
-    question.keep_m = question.reach_m + (Outlook::kKeepFactor - 1.0) * outlook_.reach_m();
+    question.later_m =
+        question.reach_m - region_of_interest_.core().radius() - region_of_interest_.reach_m();
+    question.keep_m =
+        question.reach_m + (RegionOfInterest::kKeepFactor - 1.0) * region_of_interest_.reach_m();
     ask(question.reach_m > 0.0 && question.later_m > 0.0, *parts_.model.model, question,
         of_object_);
 }
@@ -371,8 +377,8 @@ void Pair::ask_for_distance() noexcept
 /// wait; it is looked for at once for some frames.
 RefineQuestion Pair::ahead_of(RefineQuestion question) const noexcept
 {
-    Vec3 way_m = outlook_.approach_m();
-    if (outlook_.is_near_surface())
+    Vec3 way_m = region_of_interest_.approach_m();
+    if (region_of_interest_.is_near_surface())
     {
         way_m *= std::min(1.0, question.reach_m / way_m.norm());
         question.later_m = way_m.norm();
@@ -386,15 +392,17 @@ RefineQuestion Pair::ahead_of(RefineQuestion question) const noexcept
 void Pair::ask_for_mesh() noexcept
 {
     MeshPair& mesh = *mesh_;
-    const bool may_meet = outlook_.has_known() && !(outlook_.known().lower_m > 0.0);
+    const bool may_meet =
+        region_of_interest_.has_known() && !(region_of_interest_.known().lower_m > 0.0);
     for (std::size_t place = 0; place < MeshPair::kPlaces; ++place)
     {
-        const bool is_asked =
-            place == 0 ? !outlook_.is_asleep()
-                       : outlook_.looks_ahead() && !may_meet && !MeshPair::goes_along(outlook_);
+        const bool is_asked = place == 0 ? !region_of_interest_.is_asleep()
+                                         : region_of_interest_.looks_ahead() && !may_meet &&
+                                               !MeshPair::goes_along(region_of_interest_);
         ask(is_asked, *parts_.model.model,
-            mesh.ask_object(place, outlook_, refine_memories_[place]), of_object_);
-        ask(is_asked, *parts_.tool_model.model, mesh.ask_tool(place, outlook_), of_tool_);
+            mesh.ask_object(place, region_of_interest_, refine_memories_[place]), of_object_);
+        ask(is_asked, *parts_.tool_model.model, mesh.ask_tool(place, region_of_interest_),
+            of_tool_);
     }
 }
 
@@ -428,7 +436,7 @@ void Pair::request(const NamedModel& model, Inquiry<Capacity>& inquiry,
     inquiry.closure.late_for = FrameFault::none;
     if (!inquiry.questions.empty() || !inquiry.closure.target.is_none())
     {
-        requests.push_back({model.id, inquiry.questions.view(), &inquiry.closure, urgency_});
+        requests.push_back({model.id, inquiry.questions.view(), &inquiry.closure, priority_});
     }
 }
 
@@ -438,10 +446,10 @@ SurfaceRoom Pair::query(const SurfaceRoom& room, const Budgets& budgets, WorkCou
     LocalSurface& surface = surface_;
     surface = room.surface();
     const ObjectPose& pose = parts_.object->pose;
-    asked_ = parts_.tool->stance().place;
-    if (outlook_.is_asleep())
+    asked_ = parts_.tool->placement().place;
+    if (region_of_interest_.is_asleep())
     {
-        surface.answer = outlook_.from_motion();
+        surface.answer = region_of_interest_.from_motion();
         work.skipped.add(Skip::pairs);
     }
     FrameFault found = FrameFault::none;
@@ -475,12 +483,12 @@ SurfaceRoom Pair::query(const SurfaceRoom& room, const Budgets& budgets, WorkCou
 SurfaceRoom Pair::query_again(const SurfaceRoom& room, const Budgets& budgets, WorkCounters& work,
                               FrameFault& faults) noexcept
 {
-    const ToolStance& stance = parts_.tool->stance();
+    const ToolPlacement& placement = parts_.tool->placement();
     const ObjectPose& pose = parts_.object->pose;
     look();
     if (mesh_ != nullptr && is_model_here_)
     {
-        mesh_->move(in_frame(pose, stance.place), budgets, *parts_.rules->work);
+        mesh_->move(in_frame(pose, placement.place), budgets, *parts_.rules->work);
     }
     if (touches_ != nullptr)
     {
@@ -513,8 +521,8 @@ bool Pair::is_unchanged() const noexcept
 
 bool Pair::can_spare_model() const noexcept
 {
-    return mesh_ == nullptr && urgency_.of >= UrgencyClass::later &&
-           gap_to_box().lower_m > outlook_.reach_m();
+    return mesh_ == nullptr && priority_.of >= PriorityClass::later &&
+           gap_to_box().lower_m > region_of_interest_.reach_m();
 }
 
 void Pair::lose_model() noexcept
@@ -534,7 +542,7 @@ Pair::BoxGap Pair::gap_to_box() const noexcept
     const ModelHeader& header = parts_.model.model->header;
     const auto quantum_m = static_cast<double>(header.quantum_m());
     const auto& extent = header.fields().extent_quanta;
-    const Vec3 center_m = outlook_.core().center();
+    const Vec3 center_m = region_of_interest_.core().center();
     Vec3 outside_m(0.0, 0.0, 0.0);
     Vec3 farthest_m(0.0, 0.0, 0.0);
     for (int axis = 0; axis < 3; ++axis)
@@ -544,23 +552,23 @@ Pair::BoxGap Pair::gap_to_box() const noexcept
         outside_m[axis] = std::max({0.0, -here_m, here_m - high_m});
         farthest_m[axis] = std::max(std::abs(here_m), std::abs(high_m - here_m));
     }
-    return {std::max(0.0, outside_m.norm() * kBoxRoundedDown - outlook_.core().radius()),
-            farthest_m.norm() / kBoxRoundedDown + outlook_.core().radius()};
+    return {std::max(0.0, outside_m.norm() * kBoxRoundedDown - region_of_interest_.core().radius()),
+            farthest_m.norm() / kBoxRoundedDown + region_of_interest_.core().radius()};
 }
 
 void Pair::query_box() noexcept
 {
-    const Vec3 center_m = outlook_.core().center();
+    const Vec3 center_m = region_of_interest_.core().center();
     DistanceAnswer& answer = surface_.answer;
-    if (!outlook_.is_asleep())
+    if (!region_of_interest_.is_asleep())
     {
         const BoxGap gap = gap_to_box();
         answer.lower_m = gap.lower_m;
         answer.upper_m = gap.upper_m;
-        answer.kind =
-            answer.lower_m > outlook_.reach_m() ? AnswerKind::decided : AnswerKind::bracket;
+        answer.kind = answer.lower_m > region_of_interest_.reach_m() ? AnswerKind::separated
+                                                                     : AnswerKind::bounded;
         answer.tool_point_m = center_m;
-        outlook_.remember(answer);
+        region_of_interest_.remember(answer);
     }
     surface_.center_m = center_m;
     if (contacts_ != nullptr)
@@ -583,7 +591,7 @@ std::uint32_t Pair::enough_meeting() const noexcept
 
 void Pair::query_core(const Budgets& budgets, WorkCounters& work, FrameFault& faults) noexcept
 {
-    if (!outlook_.is_asleep())
+    if (!region_of_interest_.is_asleep())
     {
         LocalSurface& surface = surface_;
         WalkBudget budget{budgets.nodes, budgets.triangles};
@@ -593,8 +601,9 @@ void Pair::query_core(const Budgets& budgets, WorkCounters& work, FrameFault& fa
             query_memory_ = QueryMemory{};
         }
         work.skipped.add(Skip::starts, query_memory_.block != kNoNode ? 1 : 0);
-        gather_surface(parts_.model.model->tree, outlook_.core(), outlook_.reach_m(), query_memory_,
-                       budget, surface, proof_share(), enough_meeting(), tolerance_.felt());
+        gather_surface(parts_.model.model->tree, region_of_interest_.core(),
+                       region_of_interest_.reach_m(), query_memory_, budget, surface, proof_share(),
+                       enough_meeting(), tolerance_.felt());
         had_work_left_ = (SurfaceTolerance::kFinerGrowth - 1.0) * work.budget.used() <=
                          static_cast<double>(work.budget.left());
         work.nodes_visited += budget.nodes_visited;
@@ -602,7 +611,7 @@ void Pair::query_core(const Budgets& budgets, WorkCounters& work, FrameFault& fa
         faults |= budget.is_spent ? FrameFault::node_budget_spent : FrameFault::none;
         faults |= surface.truncated ? FrameFault::surface_truncated : FrameFault::none;
         narrow(surface.answer);
-        outlook_.remember(surface.answer);
+        region_of_interest_.remember(surface.answer);
     }
     report_core(work);
 }
@@ -616,8 +625,8 @@ void Pair::report_core(WorkCounters& work) noexcept
     if (tool.wants_contacts)
     {
         work.budget.spend(surface_.count * WorkCost::contact);
-        report_contacts(outlook_.core(), tool.radius_m / pose.scale, model.tree, surface_,
-                        model.header.is_closed(), *contacts_);
+        report_contacts(region_of_interest_.core(), tool.radius_m / pose.scale, model.tree,
+                        surface_, model.header.is_closed(), *contacts_);
         place_in_world(pose, *contacts_);
     }
     if (touches_ != nullptr)
@@ -626,7 +635,8 @@ void Pair::report_core(WorkCounters& work) noexcept
         if (surface_.answer.lower_m > 0.0) // Else the body stays where it is, or waits.
         {
             work.budget.spend(surface_.count * WorkCost::contact);
-            report_touches(outlook_.core(), outlook_.reach_m(), model.tree, surface_, *touches_);
+            report_touches(region_of_interest_.core(), region_of_interest_.reach_m(), model.tree,
+                           surface_, *touches_);
             place_in_world(pose, *touches_);
         }
     }
@@ -635,13 +645,13 @@ void Pair::report_core(WorkCounters& work) noexcept
 /// What a search that was cut short leaves open, the last answer may tell.
 void Pair::narrow(DistanceAnswer& answer) const noexcept
 {
-    if (answer.kind == AnswerKind::bracket && outlook_.has_known())
+    if (answer.kind == AnswerKind::bounded && region_of_interest_.has_known())
     {
-        const DistanceAnswer known = outlook_.from_motion();
+        const DistanceAnswer known = region_of_interest_.from_motion();
         answer.upper_m = std::min(answer.upper_m, known.upper_m);
         answer.lower_m = std::min(std::max(answer.lower_m, known.lower_m), answer.upper_m);
-        answer.kind =
-            answer.lower_m > outlook_.reach_m() ? AnswerKind::decided : AnswerKind::bracket;
+        answer.kind = answer.lower_m > region_of_interest_.reach_m() ? AnswerKind::separated
+                                                                     : AnswerKind::bounded;
     }
 }
 
@@ -657,14 +667,15 @@ void Pair::query_mesh(WorkCounters& work, FrameFault& faults) noexcept
     {
         touches_->clear();
     }
-    if (outlook_.is_asleep())
+    if (region_of_interest_.is_asleep())
     {
         mesh_->rest(contacts);
     }
     else
     {
         const double radius_m = tool.radius_m / pose.scale;
-        const double contact_m = touches != nullptr ? mesh_->touch_m(radius_m, outlook_.reach_m())
+        const double contact_m = touches != nullptr
+                                     ? mesh_->touch_m(radius_m, region_of_interest_.reach_m())
                                  : tool.wants_contacts ? radius_m
                                                        : -1.0;
         const FrameVariant& variant = parts_.rules->variant;
@@ -673,11 +684,12 @@ void Pair::query_mesh(WorkCounters& work, FrameFault& faults) noexcept
         const std::uint32_t enough = tool.wants_pairs      ? kAllMeetingFaces
                                      : tool.wants_contacts ? kEnoughMeetingFaces
                                                            : 1;
-        mesh_->query(outlook_, is_proven ? mesh_->certified_m(refine_memories_[0]) : 0.0, contact_m,
-                     enough, touches != nullptr ? &touches->ends : nullptr, answer, contacts);
+        mesh_->query(region_of_interest_, is_proven ? mesh_->certified_m(refine_memories_[0]) : 0.0,
+                     contact_m, enough, touches != nullptr ? &touches->ends : nullptr, answer,
+                     contacts);
         narrow(answer);
         mesh_->note_lower(answer.lower_m);
-        outlook_.remember(answer);
+        region_of_interest_.remember(answer);
         if (touches != nullptr)
         {
             touches->nearest = contacts.contacts;
@@ -702,22 +714,24 @@ double Pair::rounding_m() const noexcept
     const ObjectPose& pose = parts_.object->pose;
     const double offset_m = mesh_ == nullptr ? 0.0 : mesh_core_of(*parts_.tool).origin_m.norm();
     const double origin_m = parts_.model.model->header.origin_m().norm() * pose.scale;
-    return pose_rounding_m(pose, to_world(pose, outlook_.core().center()),
-                           outlook_.core().radius() * pose.scale + offset_m) +
+    return pose_rounding_m(pose, to_world(pose, region_of_interest_.core().center()),
+                           region_of_interest_.core().radius() * pose.scale + offset_m) +
            kOriginRounding * origin_m;
 }
 
-void Pair::rehearse(const SurfaceRoom& room, const Budgets& budgets,
-                    WorkBudget& work) const noexcept
+void Pair::warm_caches(const SurfaceRoom& room, const Budgets& budgets,
+                       WorkBudget& work) const noexcept
 {
-    if (outlook_.has_known() && !outlook_.is_asleep() && mesh_ == nullptr && is_model_here_)
+    if (region_of_interest_.has_known() && !region_of_interest_.is_asleep() && mesh_ == nullptr &&
+        is_model_here_)
     {
         WalkBudget budget{budgets.nodes, budgets.triangles};
         budget.frame = &work;
         QueryMemory memory = query_memory_;
         LocalSurface surface = room.surface();
-        gather_surface(parts_.model.model->tree, outlook_.core(), outlook_.reach_m(), memory,
-                       budget, surface, proof_share(), enough_meeting(), tolerance_.felt());
+        gather_surface(parts_.model.model->tree, region_of_interest_.core(),
+                       region_of_interest_.reach_m(), memory, budget, surface, proof_share(),
+                       enough_meeting(), tolerance_.felt());
     }
 }
 
@@ -729,7 +743,7 @@ PlacedSurface Pair::placed() noexcept
             .surface = &surface_,
             .material = &feel_.felt(),
             .quantum_m = quantum_m,
-            .reach_m = outlook_.reach_m() * pose.scale,
+            .reach_m = region_of_interest_.reach_m() * pose.scale,
             .lower_m = lower_m_,
             .touches = touches_,
             .upper_m = upper_m_,
@@ -744,7 +758,7 @@ PairOutput Pair::output() const noexcept
     const DistanceAnswer& answer = surface_.answer;
     // Beyond reach as well; the force has no use for that.
     const bool is_nearest_known =
-        answer.kind == AnswerKind::decided && tells_distance() && !answer.nearest_face.is_none();
+        answer.kind == AnswerKind::separated && tells_distance() && !answer.nearest_face.is_none();
     const AnswerKind known =
         answer.tolerated_m == 0.0 ? AnswerKind::exact : AnswerKind::within_tolerance;
     return {.tool = parts_.tool_index,
@@ -759,7 +773,7 @@ PairOutput Pair::output() const noexcept
             .tolerated_m = answer.tolerated_m * pose.scale,
             .nearest_face = answer.nearest_face,
             .nearest_point_m = to_world(pose, answer.nearest_point_m),
-            .skipped = outlook_.is_asleep(),
+            .skipped = region_of_interest_.is_asleep(),
             .nearest_feature = answer.nearest_feature,
             .is_shed = is_shed_,
             .is_joined = is_joined_,

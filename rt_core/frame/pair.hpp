@@ -4,7 +4,7 @@
 
 #include "rt_core/base/arena.hpp"
 #include "rt_core/base/realtime.hpp"
-#include "rt_core/force/material_glide.hpp"
+#include "rt_core/force/material_blend.hpp"
 #include "rt_core/frame/mesh_pair.hpp"
 #include "rt_core/frame/model.hpp"
 #include "rt_core/frame/tool.hpp"
@@ -15,7 +15,7 @@
 #include "rt_core/refine/refine_question.hpp"
 #include "rt_core/refine/surface_tolerance.hpp"
 #include "rt_core/scene/object_table.hpp"
-#include "rt_core/scene/outlook.hpp"
+#include "rt_core/scene/region_of_interest.hpp"
 
 #include <array>
 #include <cstdint>
@@ -85,7 +85,7 @@ struct PairMemory
     std::span<ContactReport> contacts; ///< Used by tools that want contacts or are meshes.
     std::span<TouchReport> touches;    ///< Used by rigid tools.
     std::span<MeshPair> meshes;        ///< Used by tools that are meshes.
-    std::span<PairFront> fronts;       ///< Used by the most urgent of these.
+    std::span<PairFront> fronts;       ///< Used by those of highest priority.
 
     [[nodiscard]] static PairMemory take(Arena& arena, std::span<const ToolSpec> tools,
                                          std::size_t pairs) noexcept;
@@ -93,7 +93,7 @@ struct PairMemory
 
 /// Questions of a pair to its object's model in a frame: for each sphere its present and its
 /// predicted place, and one for the distance.
-inline constexpr std::size_t kPairQuestions = std::size_t{2} * kMaxCoverBalls + 1;
+inline constexpr std::size_t kPairQuestions = std::size_t{2} * kMaxCoverSpheres + 1;
 /// One per pair, and one more for a tool that is a mesh.
 inline constexpr std::size_t kMaxRequests = std::size_t{2} * kMaxPairs;
 using RefineRequests = StaticVector<RefineRequest, kMaxRequests>;
@@ -113,13 +113,13 @@ public:
 
     /// Updates the pair for the poses of tool and object in this frame.
     void place(const Budgets& budgets) noexcept TACTUS_NONBLOCKING;
-    /// Urgency found by place().
-    [[nodiscard]] const Urgency& urgency() const noexcept { return urgency_; }
+    /// Priority found by place().
+    [[nodiscard]] const Priority& priority() const noexcept { return priority_; }
 
     /// Enables or disables loading and refinement for this pair.
     void shed(bool is_shed) noexcept { is_shed_ = is_shed; }
     /// True if shedding the pair would save anything.
-    [[nodiscard]] bool is_awake() const noexcept { return !outlook_.is_asleep(); }
+    [[nodiscard]] bool is_awake() const noexcept { return !region_of_interest_.is_asleep(); }
     [[nodiscard]] bool is_of_mesh() const noexcept { return mesh_ != nullptr; }
     /// MeshPair::exchange_front(), for a tool that is a mesh.
     PairFront* exchange_front(PairFront* front) noexcept TACTUS_NONBLOCKING
@@ -136,7 +136,7 @@ public:
     void rank_distance(RegionRanking& ranking) const noexcept TACTUS_NONBLOCKING;
 
     /// Adds the pair's questions to its models: for the tool's place and, if it approaches, for its
-    /// future place. Certificates of unasked questions are dropped: a model may coarsen there.
+    /// future place. Certificates of unrequested questions are dropped: a model may coarsen there.
     void ask(RefineRequests& requests) noexcept TACTUS_NONBLOCKING;
 
     /// True, after ask(), if too much surface is in reach, which merges reduce.
@@ -160,15 +160,15 @@ public:
                                           WorkCounters& work,
                                           FrameFault& faults) noexcept TACTUS_NONBLOCKING;
 
-    /// Repeats the last frame's query with its stored state; see Frame::rehearse().
-    void rehearse(const SurfaceRoom& room, const Budgets& budgets,
-                  WorkBudget& work) const noexcept TACTUS_NONBLOCKING;
+    /// Repeats the last frame's query with its stored state; see Frame::warm_caches().
+    void warm_caches(const SurfaceRoom& room, const Budgets& budgets,
+                     WorkBudget& work) const noexcept TACTUS_NONBLOCKING;
 
     /// True if, in this frame, the object's model isn't resident and its box is in the tool's
     /// reach: the tool stops there.
     [[nodiscard]] bool is_wall() const noexcept
     {
-        return !is_model_here_ && lower_m_ <= parts_.tool->stance().reach_m;
+        return !is_model_here_ && lower_m_ <= parts_.tool->placement().reach_m;
     }
 
     /// True if the object's model may be removed in spite of the pair: no contact is near, and its
@@ -225,12 +225,12 @@ private:
 
     [[nodiscard]] std::uint32_t revision() const noexcept;
     void look() noexcept;
-    void find_urgency() noexcept;
+    void find_priority() noexcept;
     [[nodiscard]] PairMotion motion() const noexcept;
     void fit_tolerance() noexcept;
     [[nodiscard]] SurfaceTolerance::Range tolerance_range() const noexcept;
     [[nodiscard]] SurfaceTolerance::Room surface_room() const noexcept;
-    void ask_for_balls() noexcept;
+    void ask_for_spheres() noexcept;
     void ask_for_distance() noexcept;
     [[nodiscard]] bool tells_distance() const noexcept
     {
@@ -270,16 +270,16 @@ private:
     ContactReport* contacts_{nullptr}; ///< Null unless the tool wants them or is a mesh.
     TouchReport* touches_{nullptr};    ///< Null unless the tool is rigid.
     MeshPair* mesh_{nullptr};          ///< Null unless the tool is a mesh.
-    Outlook outlook_;
+    RegionOfInterest region_of_interest_;
     Similarity asked_;           ///< Pose of the tool at the last query, in the world.
     Vec3 hand_m_{0.0, 0.0, 0.0}; ///< Device goal in the model's frame, in the last frame.
-    Urgency urgency_;
+    Priority priority_;
     bool is_shed_{false};
     bool is_joined_{true};
     bool is_model_here_{true}; ///< State of this frame.
     ObjectPose stood_;         ///< Object's pose in the last frame.
     ProxyMemory body_;
-    MaterialGlide feel_;
+    MaterialBlend feel_;
     bool feels_otherwise_{false}; ///< Differs from the last frame.
     SurfaceTolerance tolerance_;
     SurfaceTolerance::Room room_{SurfaceTolerance::Room::fitting}; ///< Result of the last frame.

@@ -9,13 +9,13 @@ namespace tactus
 
 bool PairShedding::shed(std::span<Pair* const> order) noexcept
 {
-    const bool is_needed = !order.empty() && order[0]->urgency().of <= below_;
+    const bool is_needed = !order.empty() && order[0]->priority().of <= below_;
     std::uint32_t left = is_needed ? count_ : 0;
     count_ = left;
     for (std::size_t i = order.size(); i > 0; --i)
     {
         Pair& pair = *order[i - 1];
-        const bool is_shed = left > 0 && pair.is_awake() && pair.urgency().of > below_;
+        const bool is_shed = left > 0 && pair.is_awake() && pair.priority().of > below_;
         pair.shed(is_shed);
         left -= is_shed ? 1 : 0;
     }
@@ -25,9 +25,9 @@ bool PairShedding::shed(std::span<Pair* const> order) noexcept
 
 void PairShedding::learn(std::uint32_t refused) noexcept
 {
-    if (refused <= static_cast<std::uint32_t>(UrgencyClass::soon))
+    if (refused <= static_cast<std::uint32_t>(PriorityClass::soon))
     {
-        const auto of = static_cast<UrgencyClass>(refused);
+        const auto of = static_cast<PriorityClass>(refused);
         below_ = count_ > 0 ? std::min(below_, of) : of;
         ++count_;
         patience_ = has_come_back_ ? std::min(2 * patience_, kCalmFramesMost) : patience_;

@@ -28,7 +28,7 @@ std::uint32_t Refinement::run(FrameParts& parts, FrameAccount& account) noexcept
     auto& [budgets, shares, work, faults, scene] = account;
     ModelSet& models = parts.models;
     requests_.clear();
-    for (Pair* pair : parts.pairs.by_urgency())
+    for (Pair* pair : parts.pairs.by_priority())
     {
         pair->ask(requests_);
         had_no_room_ = had_no_room_ || pair->is_short();
@@ -83,9 +83,9 @@ void Refinement::merge(FrameParts& parts, FrameAccount& account) noexcept
     {
         ModelSlot& slot = models.slot(models.in_turn(i, parts.rules.frame));
         const VertexForest& forest = slot.model->forest;
-        const bool is_crowded =
+        const bool exceeds_capacity =
             had_no_room_ || forest.active_in_pool() > 3 * (forest.capacity() / 4);
-        slot.model->begin_refinement(requests_of(slot), is_crowded ? budgets : steady, work);
+        slot.model->begin_refinement(requests_of(slot), exceeds_capacity ? budgets : steady, work);
         if (has_meshes_)
         {
             slot.model->refit(work, faults);
@@ -95,12 +95,12 @@ void Refinement::merge(FrameParts& parts, FrameAccount& account) noexcept
 
 std::uint32_t Refinement::refused_class() const noexcept
 {
-    std::uint32_t refused = kUrgencyClasses;
+    std::uint32_t refused = kPriorityClasses;
     for (std::uint32_t i = 0; i < requests_.size(); ++i)
     {
         if (has_fault(lateness_of(i), FrameFault::forest_full))
         {
-            refused = std::min(refused, static_cast<std::uint32_t>(requests_[i].urgency.of));
+            refused = std::min(refused, static_cast<std::uint32_t>(requests_[i].priority.of));
         }
     }
     return refused;
@@ -147,7 +147,7 @@ void Refinement::share_splits(FrameParts& parts, FrameAccount& account, SplitLim
         const RefineRequest& request = requests_[i];
         if (request.is_late())
         {
-            shares.add(request.urgency.of);
+            shares.add(request.priority.of);
             waiting.push_back(i);
         }
         else
@@ -159,7 +159,8 @@ void Refinement::share_splits(FrameParts& parts, FrameAccount& account, SplitLim
     const auto turn_of = [this](std::uint32_t i)
     {
         const RefineRequest& request = requests_[i];
-        return std::tuple(request.urgency.of, ~request.closure->waited, ~request.closure->saved, i);
+        return std::tuple(request.priority.of, ~request.closure->waited, ~request.closure->saved,
+                          i);
     };
     sort_without_recursion(waiting, [&turn_of](std::uint32_t a, std::uint32_t b)
                            { return turn_of(a) < turn_of(b); });
@@ -168,7 +169,7 @@ void Refinement::share_splits(FrameParts& parts, FrameAccount& account, SplitLim
         Closure& closure = *requests_[i].closure;
         const std::uint32_t before = account.work.splits;
         const SplitShares::Share share =
-            shares.take(requests_[i].urgency.of, closure.saved, before);
+            shares.take(requests_[i].priority.of, closure.saved, before);
         serve(parts, account, i, {share.limit, std::min(share.limit, limits.later)});
         closure.saved = shares.save(closure.saved, share.equal, account.work.splits - before);
         closure.waited = share.equal == 0 ? closure.waited + 1 : 0;

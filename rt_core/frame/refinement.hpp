@@ -22,8 +22,8 @@ public:
     /// If tools are meshes, trees are refitted at once, since others query their surfaces.
     explicit Refinement(bool has_meshes) noexcept : has_meshes_(has_meshes) {}
 
-    /// Returns the most urgent class of pairs that found no room for a face, kUrgencyClasses if all
-    /// did.
+    /// Returns the class of highest priority of pairs that found no room for a face,
+    /// kPriorityClasses if all did.
     [[nodiscard]] std::uint32_t run(FrameParts& parts,
                                     FrameAccount& account) noexcept TACTUS_NONBLOCKING;
 

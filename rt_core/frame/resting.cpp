@@ -16,7 +16,7 @@ bool Resting::try_rest(const FrameParts& parts, FrameAccount& account) const noe
     const ToolSet& tools = parts.tools;
     for (std::uint32_t i = 0; i < tools.size(); ++i)
     {
-        if (tools.status(i).is_here && !tools[i].is_settled())
+        if (tools.status(i).is_resident && !tools[i].is_settled())
         {
             return false;
         }
@@ -24,7 +24,8 @@ bool Resting::try_rest(const FrameParts& parts, FrameAccount& account) const noe
     for (std::uint32_t i = 0; i < tools.size(); ++i)
     {
         account.faults |= frame_faults(tools.outputs()[i]);
-        account.faults |= tools.status(i).is_crowded ? FrameFault::scene_crowded : FrameFault::none;
+        account.faults |=
+            tools.status(i).exceeds_capacity ? FrameFault::scene_over_capacity : FrameFault::none;
     }
     account.work.skipped.add(Skip::frames);
     return true;
@@ -36,7 +37,7 @@ void Resting::find_tools(FrameParts& parts, FrameAccount& account) noexcept
     for (std::uint32_t i = 0; i < tools.size(); ++i)
     {
         ToolStatus& status = parts.tools.status(i);
-        status.rests = status.is_here && parts.rules.variant.lets_tools_rest &&
+        status.rests = status.is_resident && parts.rules.variant.lets_tools_rest &&
                        tools[i].is_settled() &&
                        std::max(status.clear_m, 0.0) == tools.outputs()[i].clear_m &&
                        std::ranges::all_of(parts.pairs.of(i),
@@ -51,7 +52,7 @@ void Resting::end_frame(FrameParts& parts) noexcept
     for (std::uint32_t i = 0; i < parts.tools.size(); ++i)
     {
         const ToolStatus& status = parts.tools.status(i);
-        may_rest_ = may_rest_ && (status.rests || !status.is_here);
+        may_rest_ = may_rest_ && (status.rests || !status.is_resident);
     }
     for (const ModelId id : parts.models.busy())
     {

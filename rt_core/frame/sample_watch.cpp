@@ -42,7 +42,7 @@ double angle_between(const Mat3& from, const Mat3& to) noexcept
 } // namespace
 
 SampleWatch::Verdict SampleWatch::judge(const ToolState& sample, const ToolSpec& spec,
-                                        const ToolGoal& goal, double elapsed_s) noexcept
+                                        const ProxyGoal& goal, double elapsed_s) noexcept
 {
     const Verdict verdict = take(sample, spec, goal, elapsed_s);
     fault_ = verdict.fault;
@@ -50,7 +50,7 @@ SampleWatch::Verdict SampleWatch::judge(const ToolState& sample, const ToolSpec&
 }
 
 SampleWatch::Verdict SampleWatch::take(const ToolState& sample, const ToolSpec& spec,
-                                       const ToolGoal& goal, double elapsed_s) noexcept
+                                       const ProxyGoal& goal, double elapsed_s) noexcept
 {
     Verdict verdict;
     verdict.fault = find_fault(sample);
@@ -76,12 +76,12 @@ SampleWatch::Verdict SampleWatch::take(const ToolState& sample, const ToolSpec& 
 }
 
 bool SampleWatch::is_jump(const ToolState& sample, const ToolSpec& spec,
-                          const ToolGoal& goal) const noexcept
+                          const ProxyGoal& goal) const noexcept
 {
     const double farthest_m = kJumpSpeeds * std::max(spec.speed_max_m_per_s, 1.0) * blind_s_;
     return (sample.position_m - goal.position_m).norm() > farthest_m ||
            (turns(spec) &&
-            angle_between(goal.rotation, sample.rotation) > kJumpTurning_rad_per_s * blind_s_);
+            angle_between(goal.rotation, sample.rotation) > kJumpRotation_rad_per_s * blind_s_);
 }
 
 FrameFault SampleWatch::find_fault(const ToolState& sample) const noexcept
@@ -94,7 +94,7 @@ FrameFault SampleWatch::find_fault(const ToolState& sample) const noexcept
 }
 
 void SampleWatch::look_for_return(const ToolOutput& output, const ToolSpec& spec,
-                                  const ToolGoal& goal) noexcept
+                                  const ProxyGoal& goal) noexcept
 {
     if (!has_lost_place_)
     {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "rt_core/base/realtime.hpp"
-#include "rt_core/force/tool_goal.hpp"
+#include "rt_core/force/proxy_goal.hpp"
 #include "rt_core/math/infinity.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_output.hpp"
@@ -14,7 +14,7 @@ namespace tactus
 {
 
 /// Checks the samples of one tool's device: decides which are taken, and reports a fault if they
-/// can't be trusted, so that SafeState fades the force.
+/// can't be trusted, so that ForceFader fades the force.
 ///
 /// A sample that is not finite, out of range, no rotation or older than the one before is not
 /// taken; the goal stays. A sample with the time of the one before is not taken either: a device
@@ -38,13 +38,14 @@ public:
     /// Judges a sample, once per frame and tool. `elapsed_s` is the time since the last frame,
     /// `goal` that of the last sample taken. After kSampleHold_s + kFadeTime_s without a sample the
     /// device's clock may have restarted: then an earlier time is taken.
-    [[nodiscard]] Verdict judge(const ToolState& sample, const ToolSpec& spec, const ToolGoal& goal,
+    [[nodiscard]] Verdict judge(const ToolState& sample, const ToolSpec& spec,
+                                const ProxyGoal& goal,
                                 double elapsed_s) noexcept TACTUS_NONBLOCKING;
 
     /// Ends a jump if the springs between proxy and goal are within the device's range; called once
     /// the frame's force is known.
     void look_for_return(const ToolOutput& output, const ToolSpec& spec,
-                         const ToolGoal& goal) noexcept TACTUS_NONBLOCKING;
+                         const ProxyGoal& goal) noexcept TACTUS_NONBLOCKING;
 
     /// Fault of the device after this frame: that of the last verdict, and tool_jumped until a
     /// force may follow the goal.
@@ -54,10 +55,10 @@ public:
     }
 
 private:
-    [[nodiscard]] Verdict take(const ToolState& sample, const ToolSpec& spec, const ToolGoal& goal,
+    [[nodiscard]] Verdict take(const ToolState& sample, const ToolSpec& spec, const ProxyGoal& goal,
                                double elapsed_s) noexcept;
     [[nodiscard]] bool is_jump(const ToolState& sample, const ToolSpec& spec,
-                               const ToolGoal& goal) const noexcept;
+                               const ProxyGoal& goal) const noexcept;
     [[nodiscard]] FrameFault find_fault(const ToolState& sample) const noexcept;
 
     double blind_s_{kInfinity}; ///< Time since the last sample taken.

@@ -93,7 +93,7 @@ SceneChanges::Refusal SceneChanges::try_change_tool(const SceneChange& change, F
         return ChangeRefusal::number_too_big;
     }
     const bool comes = change.kind == SceneChangeKind::tool_comes;
-    if (parts.tools.status(change.number).is_here == comes)
+    if (parts.tools.status(change.number).is_resident == comes)
     {
         return comes ? ChangeRefusal::already_here : ChangeRefusal::not_here;
     }

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/frame/tool.hpp"
 
-#include "rt_core/geometry/believed_motion.hpp"
+#include "rt_core/geometry/object_speed_limit.hpp"
 #include "rt_core/math/infinity.hpp"
 #include "rt_core/math/rotation.hpp"
 
@@ -14,12 +14,12 @@ namespace tactus
 namespace
 {
 
-/// The ball is wider than the proxy's possible motion by this share of the tool's radius, so that
+/// The sphere is wider than the proxy's possible motion by this share of the tool's radius, so that
 /// a front that lags by a frame or two still holds what the proxy needs.
 constexpr double kReachMargin = 0.05;
 
-/// A second ball is refined this far ahead in time, so that the front is there when the tool is: a
-/// contact needs some 600 splits at 1 M faces, ten frames of 64.
+/// A second sphere is refined this far ahead in time, so that the front is there when the tool is:
+/// a contact needs some 600 splits at 1 M faces, ten frames of 64.
 constexpr double kApproachTime_s = 0.01;
 
 /// What a tool can come to in this time is looked at: chunks of it are asked for that far ahead.
@@ -51,7 +51,7 @@ Tool::Tool(const ToolSpec& spec, RigidProxy::Planes* planes) noexcept
     : spec_(spec), body_(make_body(spec, planes))
 {
     const PlacedCore core(spec.core, Similarity{});
-    ball_ = {core.center(), core.radius()};
+    sphere_ = {core.center(), core.radius()};
 }
 
 Tool::Body Tool::make_body(const ToolSpec& spec, RigidProxy::Planes* planes) noexcept
@@ -61,7 +61,7 @@ Tool::Body Tool::make_body(const ToolSpec& spec, RigidProxy::Planes* planes) noe
         TACTUS_ASSERT(planes != nullptr);
         return RigidProxy(spec, *planes);
     }
-    if (spec.passes_through)
+    if (spec.query_only)
     {
         return Follower(spec);
     }
@@ -90,7 +90,7 @@ FrameFault Tool::begin(const ToolState& sample, double period_s,
     lost_object_ =
         lost_object_ || std::ranges::any_of(objects, [this](const NearObject& object)
                                             { return object.has_moved() && is_jump(object); });
-    const ToolGoal last = goal_;
+    const ProxyGoal last = goal_;
     goal_.elapsed_s = period_s * static_cast<double>(std::max(sample.elapsed_periods, 1U));
     const FrameFault fault = take(sample);
     is_still_ = fault == FrameFault::none && objects.empty() && !lost_object_ && !leapt_by_ &&
@@ -103,10 +103,10 @@ FrameFault Tool::begin(const ToolState& sample, double period_s,
              way_left_m_ = spec_.speed_max_m_per_s * goal_.elapsed_s;
              stand(body);
          });
-    began_m_ = ball().center;
+    began_m_ = sphere().center;
     // A mesh in contact is refined ahead by what it moves: see MeshPair.
     const double ahead_s = output_.in_contact && is_mesh(spec_) ? 0.0 : kApproachTime_s;
-    stance_.approach_m = ahead_s * goal_.velocity_m_per_s;
+    placement_.approach_m = ahead_s * goal_.velocity_m_per_s;
     return fault;
 }
 
@@ -130,7 +130,7 @@ void Tool::let_carry(auto& body, std::span<const NearObject> objects) noexcept
 bool Tool::is_held() const noexcept
 {
     const auto* const rigid = std::get_if<RigidProxy>(&body_);
-    return rigid != nullptr ? rigid->is_joined() : !spec_.passes_through;
+    return rigid != nullptr ? rigid->is_joined() : !spec_.query_only;
 }
 
 /// Where the body is now it looks as far as it may go for the goal. Of a mesh all that is in reach
@@ -139,11 +139,11 @@ void Tool::stand(const auto& body) noexcept
 {
     const double likely_m = is_mesh(spec_) ? likely_way_m(body) : kInfinity;
     const double way_m = std::min({body.way_to_m(goal_), way_left_m_, likely_m});
-    stance_.place = body.place();
-    stance_.reach_m = body.radius_m() * (1.0 + kReachMargin) + way_m;
+    placement_.place = body.place();
+    placement_.reach_m = body.radius_m() * (1.0 + kReachMargin) + way_m;
     if constexpr (requires { body.feels_beyond_m(); })
     {
-        stance_.reach_m += body.feels_beyond_m();
+        placement_.reach_m += body.feels_beyond_m();
     }
 }
 
@@ -176,8 +176,8 @@ FrameFault Tool::take(const ToolState& sample) noexcept
 /// would change by more than the device's largest force.
 bool Tool::is_jump(const NearObject& object) const noexcept
 {
-    const Ball reach = reach_ball();
-    const double way_m = way_in_ball_m(*object.before, *object.now, reach.center, reach.radius);
+    const Sphere reach = reach_sphere();
+    const double way_m = way_in_sphere_m(*object.before, *object.now, reach.center, reach.radius);
     return way_m > leap_m() &&
            (output_.in_contact || object.lower_m <= spec_.radius_m + kTouchSlack_m + way_m);
 }
@@ -186,14 +186,15 @@ bool Tool::is_jump(const NearObject& object) const noexcept
 Tool::Motion Tool::motion_of(std::span<const NearObject> objects) const noexcept
 {
     Motion motion;
-    const Ball reach = reach_ball();
+    const Sphere reach = reach_sphere();
     for (const NearObject& object : objects)
     {
         if (!object.has_moved() || object.lower_m > spec_.radius_m + kTouchSlack_m)
         {
             continue;
         }
-        const double way_m = way_in_ball_m(*object.before, *object.now, reach.center, reach.radius);
+        const double way_m =
+            way_in_sphere_m(*object.before, *object.now, reach.center, reach.radius);
         motion.object_way_m = std::max(motion.object_way_m, way_m);
         motion.object_turn_rad =
             std::max(motion.object_turn_rad,
@@ -204,15 +205,15 @@ Tool::Motion Tool::motion_of(std::span<const NearObject> objects) const noexcept
 
 void Tool::forget(const PlacedSurface& gone) noexcept
 {
-    lost_object_ = lost_object_ || (output_.in_contact && gone.lower_m <= stance_.reach_m);
+    lost_object_ = lost_object_ || (output_.in_contact && gone.lower_m <= placement_.reach_m);
     with(body_, [&gone](auto& body) { body.forget(gone.object); });
 }
 
-/// Seen from the object, the core's ball goes straight.
+/// Seen from the object, the core's sphere goes straight.
 void Tool::look_for_leap(const ObjectPose& before, const ObjectPose& now,
-                         const Ball& object) noexcept
+                         const Sphere& object) noexcept
 {
-    if (spec_.passes_through || goal_.elapsed_s == 0.0)
+    if (spec_.query_only || goal_.elapsed_s == 0.0)
     {
         return; // It is not held, or is nowhere yet.
     }
@@ -221,16 +222,16 @@ void Tool::look_for_leap(const ObjectPose& before, const ObjectPose& now,
     const double length_sq = way_m.squaredNorm();
     const double share =
         length_sq > 0.0 ? std::clamp(-from_m.dot(way_m) / length_sq, 0.0, 1.0) : 0.0;
-    const double radius_m = object.radius + ball_.radius / std::min(before.scale, now.scale);
+    const double radius_m = object.radius + sphere_.radius / std::min(before.scale, now.scale);
     leapt_by_ = leapt_by_ || (from_m + share * way_m).norm() <= radius_m;
 }
 
 double Tool::near_m() const noexcept
 {
     const double soon_m =
-        std::max(Outlook::kKeepFactor * stance_.reach_m + stance_.approach_m.norm(),
-                 stance_.reach_m + kNearTime_s * goal_.velocity_m_per_s.norm());
-    return ball_.radius + soon_m;
+        std::max(RegionOfInterest::kKeepFactor * placement_.reach_m + placement_.approach_m.norm(),
+                 placement_.reach_m + kNearTime_s * goal_.velocity_m_per_s.norm());
+    return sphere_.radius + soon_m;
 }
 
 bool Tool::try_go_on(double& clear_m) noexcept
@@ -254,7 +255,7 @@ bool Tool::try_go_on(double& clear_m) noexcept
     }
     clear_m -= body->went_m();
     body->go_on();
-    stance_.place = body->place();
+    placement_.place = body->place();
     return true;
 }
 
@@ -276,7 +277,7 @@ ToolOutput Tool::finish(ToolOutput output, double clear_m) noexcept
     output.sample_fault = watch_.fault();
     output.clear_m = std::max(clear_m, 0.0);
     output.lost_object = lost_object_;
-    if (has_motion_ && !lost_object_) // A jump is no motion that is believed.
+    if (has_motion_ && !lost_object_) // A jump does not count as motion.
     {
         output.object_way_m = motion_.object_way_m;
         output.object_turn_rad = motion_.object_turn_rad;
@@ -284,7 +285,7 @@ ToolOutput Tool::finish(ToolOutput output, double clear_m) noexcept
         output.carried_rad = motion_.carried_rad;
     }
     lost_object_ = false;
-    output.squeezed = output.squeezed || leapt_by_;
+    output.over_constrained = output.over_constrained || leapt_by_;
     leapt_by_ = false;
     equal_outputs_ = is_still_ && output == output_ ? equal_outputs_ + 1 : 0;
     output_ = output;

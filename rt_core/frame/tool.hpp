@@ -9,7 +9,7 @@
 #include "rt_core/frame/sample_watch.hpp"
 #include "rt_core/records/frame_output.hpp"
 #include "rt_core/records/object_touch.hpp"
-#include "rt_core/scene/outlook.hpp"
+#include "rt_core/scene/region_of_interest.hpp"
 
 #include <algorithm>
 #include <span>
@@ -33,7 +33,7 @@ public:
     /// True if surfaces hold back a tool of this kind as a rigid tool, with a force and a torque.
     [[nodiscard]] static bool is_held_as_body(const ToolSpec& spec) noexcept
     {
-        return !spec.passes_through && !std::holds_alternative<PointCore>(spec.core);
+        return !spec.query_only && !std::holds_alternative<PointCore>(spec.core);
     }
 
     /// True if surfaces hold the tool in this frame: neither a query-only tool, nor a rigid tool
@@ -49,11 +49,11 @@ public:
     void forget(const PlacedSurface& gone) noexcept TACTUS_NONBLOCKING;
     /// Checks a moved object that was not near, all of which is in this sphere of its model's
     /// frame; before begin(). If its motion may have passed over the tool, the next output is
-    /// squeezed.
+    /// over-constrained.
     void look_for_leap(const ObjectPose& before, const ObjectPose& now,
-                       const Ball& object) noexcept TACTUS_NONBLOCKING;
+                       const Sphere& object) noexcept TACTUS_NONBLOCKING;
 
-    /// Computes the force from surfaces that were queried at stance(); the core is at least
+    /// Computes the force from surfaces that were queried at placement(); the core is at least
     /// `clear_m` away from all others there.
     [[nodiscard]] ToolOutput respond(std::span<const PlacedSurface> surfaces, double clear_m,
                                      std::uint32_t planes) noexcept TACTUS_NONBLOCKING
@@ -62,8 +62,8 @@ public:
     }
 
     /// The same in steps: try_go_on() is true if the tool would move on from its new place. Then
-    /// stance() is that place, `clear_m` is reduced by the motion, and the next step() belongs to
-    /// the same frame. finish() ends the steps with the `clear_m` of the frame's beginning.
+    /// placement() is that place, `clear_m` is reduced by the motion, and the next step() belongs
+    /// to the same frame. finish() ends the steps with the `clear_m` of the frame's beginning.
     /// `planes` are the rest of Budgets::planes; a step subtracts what it used.
     [[nodiscard]] ToolOutput step(std::span<const PlacedSurface> surfaces, double clear_m,
                                   std::uint32_t& planes) noexcept TACTUS_NONBLOCKING;
@@ -79,18 +79,18 @@ public:
 
     [[nodiscard]] const ToolSpec& spec() const noexcept { return spec_; }
     /// Place of the tool at the device pose.
-    [[nodiscard]] const ToolGoal& goal() const noexcept { return goal_; }
+    [[nodiscard]] const ProxyGoal& goal() const noexcept { return goal_; }
     /// Place that the surfaces allow, from begin() to respond().
-    [[nodiscard]] const ToolStance& stance() const noexcept { return stance_; }
+    [[nodiscard]] const ToolPlacement& placement() const noexcept { return placement_; }
     /// Sphere that holds the core, in the world.
-    [[nodiscard]] Ball ball() const noexcept
+    [[nodiscard]] Sphere sphere() const noexcept
     {
-        return {stance_.place.to_there(ball_.center), ball_.radius};
+        return {placement_.place.local_to_world(sphere_.center), sphere_.radius};
     }
     /// Sphere that holds all of a surface that the tool may meet in a frame.
-    [[nodiscard]] Ball reach_ball() const noexcept
+    [[nodiscard]] Sphere reach_sphere() const noexcept
     {
-        const Ball core = ball();
+        const Sphere core = sphere();
         return {core.center, core.radius + spec_.radius_m + kTouchSlack_m};
     }
     /// Displacement of an object above which it jumps: the stretch for the tool's largest force.
@@ -136,15 +136,15 @@ private:
     /// Centre of the core after the last frame.
     [[nodiscard]] Vec3 center_m() const noexcept
     {
-        return output_.proxy_m + output_.proxy_rotation * ball_.center;
+        return output_.proxy_m + output_.proxy_rotation * sphere_.center;
     }
 
     ToolSpec spec_;
-    Ball ball_; ///< Sphere round the core, in the tool's frame.
+    Sphere sphere_; ///< Sphere round the core, in the tool's frame.
     SampleWatch watch_;
-    ToolGoal goal_;
+    ProxyGoal goal_;
     Body body_;
-    ToolStance stance_;
+    ToolPlacement placement_;
     /// Centre of the core when this frame or, after it, the last one began.
     Vec3 began_m_{0.0, 0.0, 0.0};
     double way_left_m_{0.0}; ///< Displacement left in this frame by the speed limit.

@@ -41,9 +41,9 @@ ToolSet::ToolSet(Arena& arena, const FrameSetup& setup) noexcept
     }
 }
 
-void ToolSet::renew(std::uint32_t tool, bool is_here) noexcept
+void ToolSet::renew(std::uint32_t tool, bool is_resident) noexcept
 {
-    status_[tool] = {is_here};
+    status_[tool] = {is_resident};
     tools_[tool] = Tool(tools_[tool].spec(), planes_);
 }
 
@@ -55,7 +55,7 @@ FrameFault ToolSet::begin(std::span<const ToolState> samples, const AwakePairs& 
     FrameFault faults = FrameFault::none;
     for (std::uint32_t i = 0; i < samples.size(); ++i)
     {
-        if (!status_[i].is_here)
+        if (!status_[i].is_resident)
         {
             continue;
         }

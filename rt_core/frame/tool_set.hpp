@@ -19,10 +19,10 @@ namespace tactus
 /// State of a tool that one stage of a frame passes to later ones.
 struct ToolStatus
 {
-    bool is_here{true};
+    bool is_resident{true};
     /// ToolOutput::clear_m, or below zero if nothing is known yet.
     double clear_m{0.0};
-    bool is_crowded{false}; ///< The tool needs more than clear_m in this frame.
+    bool exceeds_capacity{false}; ///< The tool needs more than clear_m in this frame.
     /// The tool repeats its last answer in this frame.
     bool rests{false};
 };
@@ -56,7 +56,7 @@ public:
     }
 
     /// Adds or removes a tool without pairs; it starts without history.
-    void renew(std::uint32_t tool, bool is_here) noexcept TACTUS_NONBLOCKING;
+    void renew(std::uint32_t tool, bool is_resident) noexcept TACTUS_NONBLOCKING;
 
     /// Begins the frame: each present tool takes its sample and moves with the objects that carry
     /// it. `period_ns` > 0 is the loop's. Returns the samples' faults.

@@ -27,7 +27,7 @@ Flaw find_flaw(const Model& model) noexcept
         flaw = flaw.is_none() ? finder.first() : flaw;
     }
     // What comes or goes is not whole.
-    return flaw.is_none() && model.is_here() ? find_flaw(model.forest) : flaw;
+    return flaw.is_none() && model.is_resident() ? find_flaw(model.forest) : flaw;
 }
 
 void require_sound(const Model& model) noexcept

@@ -73,7 +73,7 @@ std::uint32_t WorkShares::planes() const noexcept
     return std::max(kPlanesLeast, work_->left() / WorkCost::plane);
 }
 
-WorkBudget WorkShares::for_rehearsal() const noexcept
+WorkBudget WorkShares::for_warming() const noexcept
 {
     return WorkBudget(part(kRehearsal));
 }

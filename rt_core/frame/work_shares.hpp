@@ -30,7 +30,7 @@ public:
     /// Planes that a proxy may check now; with fewer than the least it stays in place.
     [[nodiscard]] std::uint32_t planes() const noexcept TACTUS_NONBLOCKING;
     /// Limit of the work between this frame and the next.
-    [[nodiscard]] WorkBudget for_rehearsal() const noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] WorkBudget for_warming() const noexcept TACTUS_NONBLOCKING;
 
 private:
     [[nodiscard]] std::uint32_t part(double share) const noexcept;

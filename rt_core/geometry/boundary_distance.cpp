@@ -137,12 +137,12 @@ private:
     [[nodiscard]] bool may_be_nearest(const Candidate& candidate) const noexcept
     {
         return candidate.distance - kFilterMargin * length_ <= std::min(upper_, best_.distance) &&
-               (candidate.pair & decided_) == 0;
+               (candidate.pair & separated_) == 0;
     }
 
     void decide(const Candidate& candidate) noexcept
     {
-        decided_ |= candidate.pair;
+        separated_ |= candidate.pair;
         switch (candidate.kind)
         {
         case Kind::corner_face:
@@ -200,7 +200,7 @@ private:
     double length_;
     double upper_{kInfinity};
     StaticVector<Candidate, 15> candidates_;
-    std::uint64_t decided_{0}; ///< Pairs already decided.
+    std::uint64_t separated_{0}; ///< Pairs already decided.
     DoubleDouble best_sq_{kInfinity};
     ClosestPoints best_{.distance = kInfinity};
 };

@@ -79,7 +79,8 @@ PlacedCore::PlacedCore(const ToolCore& core, const Similarity& place) noexcept
     TACTUS_ASSERT(place.scale > 0.0);
     if (const auto* segment = std::get_if<Segment>(&core))
     {
-        const Segment placed{place.to_there(segment->from), place.to_there(segment->to)};
+        const Segment placed{place.local_to_world(segment->from),
+                             place.local_to_world(segment->to)};
         const Vec3 half_way = 0.5 * (placed.to - placed.from);
         core_ = placed;
         center_ = placed.from + half_way;
@@ -93,7 +94,7 @@ PlacedCore::PlacedCore(const ToolCore& core, const Similarity& place) noexcept
     }
     else if (const auto* mesh = std::get_if<MeshCore>(&core))
     {
-        center_ = place.to_there(mesh->origin_m + 0.5 * mesh->extent_m);
+        center_ = place.local_to_world(mesh->origin_m + 0.5 * mesh->extent_m);
         half_ = 0.5 * place.scale * kRoundedUp * mesh->extent_m;
         core_ = Box{half_};
         is_mesh_ = true;
@@ -118,7 +119,7 @@ PlacedCore::PlacedCore(const ToolCore& core, const Similarity& place) noexcept
 /// Sets the box in the body's own axes, round its centre.
 void PlacedCore::surround(const ConvexBody& body, const Similarity& place) noexcept
 {
-    center_ = place.to_there(body.center);
+    center_ = place.local_to_world(body.center);
     for (int axis = 0; axis < 3; ++axis)
     {
         Vec3 along(0.0, 0.0, 0.0);
@@ -320,7 +321,7 @@ CoreCover PlacedCore::cover(double enough) const noexcept
 {
     std::array<int, 3> count{1, 1, 1};
     Vec3 cell = half_;
-    while (count[0] * count[1] * count[2] * 2 <= static_cast<int>(kMaxCoverBalls) &&
+    while (count[0] * count[1] * count[2] * 2 <= static_cast<int>(kMaxCoverSpheres) &&
            cell.norm() > enough)
     {
         const int longest = cell.x() >= cell.y() && cell.x() >= cell.z() ? 0
@@ -329,7 +330,7 @@ CoreCover PlacedCore::cover(double enough) const noexcept
         count[static_cast<std::size_t>(longest)] *= 2;
         cell[longest] *= 0.5;
     }
-    CoreCover balls;
+    CoreCover spheres;
     for (int x = 0; x < count[0]; ++x)
     {
         for (int y = 0; y < count[1]; ++y)
@@ -337,12 +338,12 @@ CoreCover PlacedCore::cover(double enough) const noexcept
             for (int z = 0; z < count[2]; ++z)
             {
                 const Vec3 at(2 * x + 1 - count[0], 2 * y + 1 - count[1], 2 * z + 1 - count[2]);
-                balls.push_back(
+                spheres.push_back(
                     {center_ + axes_ * at.cwiseProduct(cell), cell.norm() * kRoundedUp});
             }
         }
     }
-    return balls;
+    return spheres;
 }
 
 CoreCorners PlacedCore::corners() const noexcept

@@ -6,6 +6,7 @@
 #include "rt_core/base/static_vector.hpp"
 #include "rt_core/geometry/closest_points.hpp"
 #include "rt_core/geometry/gjk.hpp"
+#include "rt_core/geometry/shapes.hpp"
 #include "rt_core/geometry/tool_core.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/math/infinity.hpp"
@@ -17,14 +18,8 @@
 namespace tactus
 {
 
-struct Ball
-{
-    Vec3 center{0.0, 0.0, 0.0};
-    double radius{0.0};
-};
-
 /// Spheres that together hold a core. Their order and number don't change when it moves.
-using CoreCover = StaticVector<Ball, kMaxCoverBalls>;
+using CoreCover = StaticVector<Sphere, kMaxCoverSpheres>;
 
 /// Corners of a core that is a segment, a box or a hull; other cores have none.
 using CoreCorners = StaticVector<Vec3, kMaxHullVertices>;
@@ -113,7 +108,7 @@ public:
     [[nodiscard]] CoreSeparation
     separation(const Triangle& triangle) const noexcept TACTUS_NONBLOCKING;
 
-    /// Enough spheres for none to be larger than `enough`, but at most kMaxCoverBalls.
+    /// Enough spheres for none to be larger than `enough`, but at most kMaxCoverSpheres.
     [[nodiscard]] CoreCover cover(double enough) const noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] CoreCorners corners() const noexcept TACTUS_NONBLOCKING;

@@ -148,7 +148,7 @@ inline constexpr std::uint32_t kPlaneLanes = 8;
 struct PlaneRows
 {
     // NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): kernel_source.inc.
-    alignas(32) float normal[3][kPlaneLanes]; ///< From the face to the ball.
+    alignas(32) float normal[3][kPlaneLanes]; ///< Direction from the face to the sphere.
     float offset[kPlaneLanes];
     float cone[kPlaneLanes];
     // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
@@ -183,13 +183,13 @@ struct PlaneQuestion
 {
     // NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): kernel_source.inc.
     float place[3];
-    float stand[3]; ///< Where the ball is now.
+    float stand[3]; ///< Where the sphere is now.
     // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
     std::uint32_t stand_number; ///< Another one for each stand; not 0.
     float drift;                ///< How far the place is from the last question's, or more.
     float least;                ///< Heights below this are asked for.
-    /// Likewise at the stand. Less than `least` where the ball is deep in faces: then a way out of
-    /// them is free that nowhere comes nearer than this.
+    /// Likewise at the stand. Less than `least` where the sphere is deep in faces: then a way out
+    /// of them is free that nowhere comes nearer than this.
     float least_here;
 };
 
@@ -222,20 +222,20 @@ struct KernelPage
 /// An index page's rows have so many boxes: three rows of low steps, then three of high ones.
 inline constexpr int kIndexRow = 64;
 
-/// A ball around the same point, in quanta.
-struct KernelBall
+/// A sphere around the same point, in quanta.
+struct KernelSphere
 {
     // NOLINTNEXTLINE(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): likewise.
     float center[3];
     float radius;
 };
 
-/// How eight boxes lie to some balls.
+/// How eight boxes lie to some spheres.
 struct NearBoxes
 {
-    std::uint32_t met;  ///< Boxes that a ball surely meets.
+    std::uint32_t met;  ///< Boxes that a sphere surely meets.
     std::uint32_t open; ///< Boxes that single precision can't decide.
-    float gap;          ///< No ball is nearer than this to any of the others.
+    float gap;          ///< No sphere is nearer than this to any of the others.
 };
 
 /// A LocalTriangle: its name, then three coordinates of each corner.
@@ -368,11 +368,11 @@ struct Kernels
                        const TriangleRows& tool, std::uint32_t tool_mask, float bound, float slack,
                        const float* way, std::uint32_t* near) noexcept TACTUS_NONBLOCKING;
 
-    /// The faces that a ball of radius `least` may enter on its straight way from the stand to the
-    /// place. Planes that are below are found again from the stand first, each once a stand, and
-    /// heights are at the place, or at the stand where that is below `least_here` and less. Where
-    /// the stand was asked about before, a face that is not in `hits` has a plane that is not below
-    /// at either. `hits` has room for all batches; they are in the batches' order.
+    /// The faces that a sphere of radius `least` may enter on its straight way from the stand to
+    /// the place. Planes that are below are found again from the stand first, each once a stand,
+    /// and heights are at the place, or at the stand where that is below `least_here` and less.
+    /// Where the stand was asked about before, a face that is not in `hits` has a plane that is not
+    /// below at either. `hits` has room for all batches; they are in the batches' order.
     PlaneCounts (*planes_below)(const PlaneTable& table, const PlaneQuestion& question,
                                 PlaneHit* hits) noexcept TACTUS_NONBLOCKING;
 
@@ -389,10 +389,10 @@ struct Kernels
     void (*pair_distances)(const PairRows& rows, std::uint32_t count,
                            PairDistances& distances) noexcept TACTUS_NONBLOCKING;
 
-    /// How eight boxes of an index page lie to `count` balls; boxes in `known` are left out.
+    /// How eight boxes of an index page lie to `count` spheres; boxes in `known` are left out.
     /// `steps` is the first of them in the page's first row.
     NearBoxes (*near_boxes)(const std::uint16_t* steps, const KernelPage& page,
-                            const KernelBall* balls, std::uint32_t count,
+                            const KernelSphere* spheres, std::uint32_t count,
                             std::uint32_t known) noexcept TACTUS_NONBLOCKING;
 };
 

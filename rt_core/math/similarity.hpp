@@ -18,12 +18,12 @@ struct Similarity
     Vec3 translation_m{0.0, 0.0, 0.0};
     double scale{1.0};
 
-    [[nodiscard]] Vec3 to_there(const Vec3& here_m) const noexcept
+    [[nodiscard]] Vec3 local_to_world(const Vec3& here_m) const noexcept
     {
         return translation_m + scale * (rotation * here_m);
     }
-    /// Inverse of to_there().
-    [[nodiscard]] Vec3 to_here(const Vec3& there_m) const noexcept
+    /// Inverse of local_to_world().
+    [[nodiscard]] Vec3 world_to_local(const Vec3& there_m) const noexcept
     {
         const Vec3 relative = there_m - translation_m;
         return (rotation.transpose() * relative) / scale;
@@ -35,7 +35,7 @@ struct Similarity
 [[nodiscard]] inline Similarity in_frame(const Similarity& other, const Similarity& here) noexcept
 {
     TACTUS_ASSERT(other.scale > 0.0);
-    return {other.rotation.transpose() * here.rotation, other.to_here(here.translation_m),
+    return {other.rotation.transpose() * here.rotation, other.world_to_local(here.translation_m),
             here.scale / other.scale};
 }
 

@@ -27,23 +27,25 @@ constexpr std::array<double, 4> kLeads{0.25, 0.5, 0.75, 1.0};
 
 /// Adds each sphere moved by the region's centre and widened by its radius. A full ranking drops
 /// later pairs' spheres; only those at a tool's present place are missed.
-void add_balls(const RankedRegion& moved, const CoreCover& balls, RegionRanking& ranking) noexcept
+void add_spheres(const RankedRegion& moved, const CoreCover& spheres,
+                 RegionRanking& ranking) noexcept
 {
-    for (const Ball& ball : balls)
+    for (const Sphere& sphere : spheres)
     {
-        const bool has_room = ranking.try_push_back({moved.model, ball.center + moved.center_m,
-                                                     ball.radius + moved.radius_m, moved.lead_ns});
-        ranking.lacks_present = ranking.lacks_present || (!has_room && moved.lead_ns == 0);
+        const bool has_room =
+            ranking.try_push_back({moved.model, sphere.center + moved.center_m,
+                                   sphere.radius + moved.radius_m, moved.horizon_ns});
+        ranking.lacks_present = ranking.lacks_present || (!has_room && moved.horizon_ns == 0);
     }
 }
 
 } // namespace
 
-void RegionPredictor::observe(const PairMotion& motion, double lead_s) noexcept
+void RegionPredictor::observe(const PairMotion& motion, double horizon_s) noexcept
 {
-    TACTUS_ASSERT(motion.elapsed_s > 0.0 && lead_s > 0.0);
+    TACTUS_ASSERT(motion.elapsed_s > 0.0 && horizon_s > 0.0);
     motion_ = motion;
-    lead_s_ = lead_s;
+    horizon_s_ = horizon_s;
     follow_hand();
     forecast_left_s_ -= motion.elapsed_s;
     if (forecast_left_s_ < 0.5 * motion.elapsed_s)
@@ -77,19 +79,19 @@ void RegionPredictor::judge_forecasts() noexcept
             const double error_m = (forecasts_m_[i] - motion_.center_m).norm();
             errors_m_[i] += kNewestError * (error_m - errors_m_[i]);
         }
-        forecasts_m_[i] = motion_.center_m + way_in(static_cast<Prediction>(i), lead_s_);
+        forecasts_m_[i] = motion_.center_m + way_in(static_cast<Prediction>(i), horizon_s_);
     }
     has_forecasts_ = true;
-    forecast_left_s_ = lead_s_;
+    forecast_left_s_ = horizon_s_;
     for (std::size_t i = 0; i < kPredictions; ++i)
     {
         const auto way = static_cast<Prediction>(i);
-        believed_ = error_of(way) < kClearlyBetter * error_of(believed_) ? way : believed_;
+        limited_ = error_of(way) < kClearlyBetter * error_of(limited_) ? way : limited_;
     }
 }
 
 /// Displacement of the core's centre in this time, limited by its maximum speed.
-Vec3 RegionPredictor::way_in(Prediction way, double lead_s) const noexcept
+Vec3 RegionPredictor::way_in(Prediction way, double horizon_s) const noexcept
 {
     if (way == Prediction::local_neighbours)
     {
@@ -100,37 +102,38 @@ Vec3 RegionPredictor::way_in(Prediction way, double lead_s) const noexcept
     if (way == Prediction::quadratic)
     {
         velocity += kVelocityTime_s * acceleration_; // Correction of the smoothing's lag.
-        ahead += 0.5 * lead_s * lead_s * acceleration_;
+        ahead += 0.5 * horizon_s * horizon_s * acceleration_;
     }
-    ahead += lead_s * velocity;
+    ahead += horizon_s * velocity;
     if (way == Prediction::distance_query)
     {
         ahead -= std::min(ahead.dot(motion_.outward) + motion_.gap_m, 0.0) * motion_.outward;
     }
-    const double most_m = lead_s * std::max(motion_.speed_max_m_per_s, velocity.norm());
+    const double most_m = horizon_s * std::max(motion_.speed_max_m_per_s, velocity.norm());
     const double far_m = ahead.norm();
     return far_m > most_m ? Vec3(ahead * (most_m / far_m)) : ahead;
 }
 
-void RegionPredictor::rank_present(ModelId model, const CoreCover& balls, double reach_m,
+void RegionPredictor::rank_present(ModelId model, const CoreCover& spheres, double reach_m,
                                    RegionRanking& ranking) noexcept
 {
-    add_balls({model, Vec3(0.0, 0.0, 0.0), reach_m, 0}, balls, ranking);
+    add_spheres({model, Vec3(0.0, 0.0, 0.0), reach_m, 0}, spheres, ranking);
 }
 
-void RegionPredictor::rank(Prediction way, ModelId model, const CoreCover& balls, double reach_m,
+void RegionPredictor::rank(Prediction way, ModelId model, const CoreCover& spheres, double reach_m,
                            RegionRanking& ranking) const noexcept
 {
-    const Prediction chosen = way == Prediction::automatic ? believed_ : way;
-    rank_present(model, balls, reach_m, ranking);
+    const Prediction chosen = way == Prediction::automatic ? limited_ : way;
+    rank_present(model, spheres, reach_m, ranking);
     for (const double share : kLeads)
     {
-        const double lead_s = share * lead_s_;
-        const double wider_m = chosen == Prediction::local_neighbours ? lead_s * velocity_.norm()
+        const double horizon_s = share * horizon_s_;
+        const double wider_m = chosen == Prediction::local_neighbours ? horizon_s * velocity_.norm()
                                                                       : share * error_of(chosen);
-        add_balls({model, way_in(chosen, lead_s), reach_m + std::min(wider_m, kWidest * reach_m),
-                   static_cast<std::int64_t>(lead_s * 1e9)},
-                  balls, ranking);
+        add_spheres({model, way_in(chosen, horizon_s),
+                     reach_m + std::min(wider_m, kWidest * reach_m),
+                     static_cast<std::int64_t>(horizon_s * 1e9)},
+                    spheres, ranking);
     }
 }
 

@@ -36,35 +36,35 @@ struct PairMotion
 class RegionPredictor
 {
 public:
-    /// Observes a frame. `lead_s` > 0: the present prediction horizon of requests.
-    void observe(const PairMotion& motion, double lead_s) noexcept TACTUS_NONBLOCKING;
+    /// Observes a frame. `horizon_s` > 0: the present prediction horizon of requests.
+    void observe(const PairMotion& motion, double horizon_s) noexcept TACTUS_NONBLOCKING;
 
-    /// Adds the spheres to the ranking, most urgent first, each widened by `reach_m`: at their
+    /// Adds the spheres to the ranking, highest priority first, each widened by `reach_m`: at their
     /// present place, and moved with the core's centre at each quarter of the horizon, so that
     /// there is no gap on the path of a tool that had to wait.
-    void rank(Prediction way, ModelId model, const CoreCover& balls, double reach_m,
+    void rank(Prediction way, ModelId model, const CoreCover& spheres, double reach_m,
               RegionRanking& ranking) const noexcept TACTUS_NONBLOCKING;
 
     /// Adds the spheres at their present place only, without a prediction.
-    static void rank_present(ModelId model, const CoreCover& balls, double reach_m,
+    static void rank_present(ModelId model, const CoreCover& spheres, double reach_m,
                              RegionRanking& ranking) noexcept TACTUS_NONBLOCKING;
 
     /// Velocity of the device's goal.
     [[nodiscard]] const Vec3& velocity_m_per_s() const noexcept { return velocity_; }
     /// Method in use for Prediction::automatic.
-    [[nodiscard]] Prediction believed() const noexcept { return believed_; }
+    [[nodiscard]] Prediction limited() const noexcept { return limited_; }
 
 private:
     void follow_hand() noexcept;
     void judge_forecasts() noexcept;
-    [[nodiscard]] Vec3 way_in(Prediction way, double lead_s) const noexcept;
+    [[nodiscard]] Vec3 way_in(Prediction way, double horizon_s) const noexcept;
     [[nodiscard]] double error_of(Prediction way) const noexcept
     {
         return errors_m_[static_cast<std::size_t>(way)];
     }
 
     PairMotion motion_;
-    double lead_s_{0.0};
+    double horizon_s_{0.0};
     Vec3 hand_m_{0.0, 0.0, 0.0};
     Vec3 velocity_{0.0, 0.0, 0.0};
     Vec3 acceleration_{0.0, 0.0, 0.0};
@@ -73,7 +73,7 @@ private:
     double forecast_left_s_{0.0};
     bool has_forecasts_{false};
     std::array<double, kPredictions> errors_m_{};
-    Prediction believed_{Prediction::linear};
+    Prediction limited_{Prediction::linear};
 };
 
 } // namespace tactus

@@ -82,10 +82,10 @@ struct Findings
     const AnswerKind known = found.exact_lower_m <= std::max(found.tolerated_lower_m, 0.0)
                                  ? AnswerKind::exact
                                  : AnswerKind::within_tolerance;
-    answer.kind = answer.lower_m > reach_m   ? AnswerKind::decided
+    answer.kind = answer.lower_m > reach_m   ? AnswerKind::separated
                   : is_nearest_proven(found) ? known
-                  : is_beyond                ? AnswerKind::decided
-                                             : AnswerKind::bracket;
+                  : is_beyond                ? AnswerKind::separated
+                                             : AnswerKind::bounded;
     TACTUS_ASSERT(!(answer.lower_m > answer.upper_m)); // U may be no number: then L is 0.
     return answer;
 }

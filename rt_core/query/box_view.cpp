@@ -35,7 +35,7 @@ BoxView::BoxView(const MeshPlacement& there, double units_per_m, float slack) no
 /// rounds of the extents is less than kPairMargin of them.
 KernelBox BoxView::of(const Aabb& box) const noexcept
 {
-    const Vec3 center = there_.to_there(0.5 * (to_vec3(box.low) + to_vec3(box.high)));
+    const Vec3 center = there_.local_to_world(0.5 * (to_vec3(box.low) + to_vec3(box.high)));
     KernelBox seen; // NOLINT(cppcoreguidelines-pro-type-member-init): all of it is set below.
     for (std::size_t axis = 0; axis < 3; ++axis)
     {

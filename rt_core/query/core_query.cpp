@@ -443,7 +443,7 @@ void gather_surface(const AbTree& tree, const PlacedCore& core, double reach_m, 
         gather_surface(tree, core.center(), reach_m, memory, budget, surface, share, tolerance);
         DistanceAnswer& answer = surface.answer;
         answer.lower_m = std::max(0.0, answer.lower_m - core.radius());
-        answer.kind = answer.lower_m > reach_m ? AnswerKind::decided : AnswerKind::bracket;
+        answer.kind = answer.lower_m > reach_m ? AnswerKind::separated : AnswerKind::bounded;
         return;
     }
     TACTUS_ASSERT(!core.is_mesh());

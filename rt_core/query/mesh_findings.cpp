@@ -44,7 +44,8 @@ bool comes_before(const MeetingFaces& a, const MeetingFaces& b) noexcept
 
 Triangle placed_triangle(const Triangle& there, const MeshPlacement& place) noexcept
 {
-    return {place.to_there(there[0]), place.to_there(there[1]), place.to_there(there[2])};
+    return {place.local_to_world(there[0]), place.local_to_world(there[1]),
+            place.local_to_world(there[2])};
 }
 
 MeshFindings::MeshFindings(const MeshQuestion& question, Aim aim, std::uint32_t enough,
@@ -86,7 +87,7 @@ double MeshFindings::farthest_contact_m() const noexcept
                : -1.0;
 }
 
-bool MeshFindings::is_crowded() const noexcept
+bool MeshFindings::exceeds_capacity() const noexcept
 {
     return touching_.size() == kMaxContacts && found_ > kMaxContacts;
 }
@@ -245,7 +246,7 @@ void MeshFindings::report_contacts(const DistanceAnswer& answer) noexcept
     {
         return;
     }
-    if (is_crowded()) // However many were found before.
+    if (exceeds_capacity()) // However many were found before.
     {
         contacts_->contacts.clear();
         drop_ends();

@@ -47,7 +47,7 @@ public:
     MeshFindings(const MeshQuestion& question, Aim aim, std::uint32_t enough, double doubt_m,
                  MeshReport& report, ContactReport* contacts) noexcept TACTUS_NONBLOCKING;
 
-    /// Contacts that are apart are not looked for: good only where is_crowded() in the end.
+    /// Contacts that are apart are not looked for: good only where exceeds_capacity() in the end.
     void expect_crowd() noexcept { expects_crowd_ = true; }
     /// Where nothing is in reach, this share of the distance is proven, above 0.
     void prove(double share) noexcept { share_ = share; }
@@ -66,7 +66,7 @@ public:
     /// Of one contact more than there is room for; negative where all have room.
     [[nodiscard]] double farthest_contact_m() const noexcept TACTUS_NONBLOCKING;
     /// What meets leaves no room for other contacts.
-    [[nodiscard]] bool is_crowded() const noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] bool exceeds_capacity() const noexcept TACTUS_NONBLOCKING;
     /// What is farther changes nothing; never grows.
     [[nodiscard]] double worth_m() const noexcept TACTUS_NONBLOCKING;
     /// Exact pairs that are farther apart need no measuring; negative when none does.

@@ -126,7 +126,7 @@ public:
         if (object != nullptr && findings_.bound_m() == kInfinity)
         {
             static_cast<void>(
-                findings_.try_bound(object->upper_bound_m(ball_round(question_.tool.box())) *
+                findings_.try_bound(object->upper_bound_m(sphere_round(question_.tool.box())) *
                                     question_.place.place.scale * kRoundedUp));
         }
         if (is_near)
@@ -149,7 +149,7 @@ public:
         }
         else
         {
-            const double gap_m = balls_gap_m();
+            const double gap_m = spheres_gap_m();
             findings_.leave(gap_m > 0.0 ? gap_m : 0.0); // Not a number: nothing is known.
         }
         if (!findings_.has_met() && witness && witness->do_meet)
@@ -159,12 +159,12 @@ public:
     }
 
 private:
-    /// Of the tool's ball and the object's.
-    [[nodiscard]] double balls_gap_m() const noexcept
+    /// Of the tool's sphere and the object's.
+    [[nodiscard]] double spheres_gap_m() const noexcept
     {
-        const Ball tool = ball_round(question_.tool.box());
-        const Ball object = ball_round(question_.object.box());
-        const Vec3 way = question_.place.to_there(tool.center) - object.center;
+        const Sphere tool = sphere_round(question_.tool.box());
+        const Sphere object = sphere_round(question_.object.box());
+        const Vec3 way = question_.place.local_to_world(tool.center) - object.center;
         return way.norm() / kRoundedUp - question_.place.rounding_m(tool.center) -
                (question_.place.place.scale * tool.radius + object.radius) * kRoundedUp;
     }
@@ -440,7 +440,7 @@ struct MeshAnswers
 /// What a search takes for granted that saves half of the time and more.
 struct Guess
 {
-    bool is_crowded{false};
+    bool exceeds_capacity{false};
     double contacts_within_m{kInfinity};
 };
 
@@ -453,16 +453,17 @@ struct Guess
 {
     MeshSearch search(question, Aim::all, question.enough, object.budget(), memory, answers.report,
                       &answers.contacts);
-    if (guess.is_crowded)
+    if (guess.exceeds_capacity)
     {
         search.findings().expect_crowd();
     }
     search.findings().expect_contacts(guess.contacts_within_m);
     search.findings().prove(memory.share);
     search.run(&object, witness);
-    memory.is_crowded = search.findings().is_crowded();
+    memory.exceeds_capacity = search.findings().exceeds_capacity();
     memory.farthest_contact_m = search.findings().farthest_contact_m();
-    if (guess.is_crowded ? !memory.is_crowded : !search.findings().has_expected_contacts())
+    if (guess.exceeds_capacity ? !memory.exceeds_capacity
+                               : !search.findings().has_expected_contacts())
     {
         answers.report.clear();
         answers.contacts.clear();
@@ -513,10 +514,10 @@ private:
 /// Since the last query, as far as that is known.
 double moved_m(const MeshQuestion& question) noexcept
 {
-    const double motion_m =
-        question.front != nullptr
-            ? motion_between(question.front->place, question.place, ball_round(question.tool.box()))
-            : kInfinity;
+    const double motion_m = question.front != nullptr
+                                ? motion_between(question.front->place, question.place,
+                                                 sphere_round(question.tool.box()))
+                                : kInfinity;
     return std::isfinite(motion_m) ? motion_m : kContactsMoved * question.contact_m;
 }
 
@@ -538,10 +539,10 @@ void query_meshes(const MeshQuestion& question, OtherSurface& object, MeshMemory
     const bool are_asked = question.contact_m >= 0.0;
     const double within_m = kContactsAsNear * (farthest_m + moved_m(question));
     const bool is_guessed =
-        are_asked &&
-        ((memory.is_crowded && search_meshes(question, {true}, object, memory, witness, answers)) ||
-         (farthest_m >= 0.0 &&
-          search_meshes(question, {false, within_m}, object, memory, witness, answers)));
+        are_asked && ((memory.exceeds_capacity &&
+                       search_meshes(question, {true}, object, memory, witness, answers)) ||
+                      (farthest_m >= 0.0 && search_meshes(question, {false, within_m}, object,
+                                                          memory, witness, answers)));
     if (!is_guessed)
     {
         search_meshes(question, {}, object, memory, witness, answers);

@@ -46,7 +46,7 @@ struct MeshQuestion
 struct MeshMemory
 {
     FacePair faces;
-    bool is_crowded{false}; ///< More met than there is room for contacts; so it may be again.
+    bool exceeds_capacity{false}; ///< More met than there is room for contacts; so it may be again.
     /// The nearest contacts for which there was no room were as near; negative: there was room.
     double farthest_contact_m{-1.0};
     /// Beyond the reach, so much of the distance is asked for: less after a query that was cut.
@@ -77,7 +77,7 @@ void query_meshes(const MeshQuestion& question, OtherSurface& object, MeshMemory
 
 /// The least distance and where it is, however far: `question`'s reach and contacts don't count.
 /// Ends with the first pair that meets, which the report then has alone. Exact where no coarse face
-/// is nearer; where the budget ends the search, a bracket of what was proven until then. `object`
+/// is nearer; where the budget ends the search, bounds of what was proven until then. `object`
 /// as above. 0.5 us where the faces that met last still do, some 30 us near the surface.
 void find_nearest_faces(const MeshQuestion& question, OtherSurface& object, MeshMemory& memory,
                         DistanceAnswer& answer, MeshReport& report) noexcept TACTUS_NONBLOCKING;

@@ -68,7 +68,7 @@ void NearFaces::search(double bound_m, const PairWalk::Start& start, const Loose
     }
     if (views_.is_beyond_kernels())
     {
-        const double gap_m = other_.lower_bound_m(ball_round(start.box), bound_m);
+        const double gap_m = other_.lower_bound_m(sphere_round(start.box), bound_m);
         leave(round_down_to_float(gap_m * quanta_per_m_ / kRoundedUp));
         return;
     }

@@ -32,15 +32,15 @@ double MeshPlacement::rounding_m(const Vec3& here_m) const noexcept
            (place.translation_m.norm() + place.scale * (here_m.norm() + offset_m.norm()));
 }
 
-double OtherSurface::lower_bound_m(const Ball& ball, double enough_m) noexcept
+double OtherSurface::lower_bound_m(const Sphere& sphere, double enough_m) noexcept
 {
     TACTUS_ASSERT(other_ != nullptr);
-    TACTUS_ASSERT(ball.radius >= 0.0);
+    TACTUS_ASSERT(sphere.radius >= 0.0);
     const auto quantum = static_cast<double>(other_->quantum_m());
     const double scale = there_.place.scale;
-    const double rounding = there_.rounding_m(ball.center);
-    const Vec3 center = there_.to_there(ball.center);
-    const double enough = ((enough_m + ball.radius) * scale + rounding) / quantum * kRoundedUp;
+    const double rounding = there_.rounding_m(sphere.center);
+    const Vec3 center = there_.local_to_world(sphere.center);
+    const double enough = ((enough_m + sphere.radius) * scale + rounding) / quantum * kRoundedUp;
     double nearest_m = 0.0;
     if (is_beyond_kernels(center, other_->quantum_m()))
     {
@@ -53,17 +53,17 @@ double OtherSurface::lower_bound_m(const Ball& ball, double enough_m) noexcept
         const KernelProbe probe = make_probe(center, other_->quantum_m());
         nearest_m = static_cast<double>(nearest_quanta(probe, limit)) * quantum;
     }
-    return (nearest_m - rounding) / scale / kRoundedUp - ball.radius;
+    return (nearest_m - rounding) / scale / kRoundedUp - sphere.radius;
 }
 
-double OtherSurface::upper_bound_m(const Ball& ball) noexcept
+double OtherSurface::upper_bound_m(const Sphere& sphere) noexcept
 {
     TACTUS_ASSERT(other_ != nullptr);
-    TACTUS_ASSERT(ball.radius >= 0.0);
+    TACTUS_ASSERT(sphere.radius >= 0.0);
     const DistanceAnswer answer =
-        query_distance(*other_, there_.to_there(ball.center), kInfinity, memory_, budget_);
-    return (answer.upper_m + there_.rounding_m(ball.center)) / there_.place.scale * kRoundedUp +
-           ball.radius;
+        query_distance(*other_, there_.local_to_world(sphere.center), kInfinity, memory_, budget_);
+    return (answer.upper_m + there_.rounding_m(sphere.center)) / there_.place.scale * kRoundedUp +
+           sphere.radius;
 }
 
 /// No face less its error is nearer than this, or than `enough`.
@@ -115,8 +115,8 @@ SurfaceWalk::SurfaceWalk(const AbTree& tree, OtherSurface& other) noexcept
 {
     if (!tree.root().is_none())
     {
-        const Ball ball = ball_round(tree.box());
-        stack_.push_back({tree.root(), -ball.radius, ball});
+        const Sphere sphere = sphere_round(tree.box());
+        stack_.push_back({tree.root(), -sphere.radius, sphere});
     }
 }
 
@@ -137,7 +137,7 @@ std::uint32_t SurfaceWalk::next_block(double bound_m) noexcept
         stack_.pop_back();
         if (item.ref.is_block())
         {
-            ball_ = item.ball;
+            sphere_ = item.sphere;
             return item.ref.index();
         }
         push_children(tree_.node(item.ref.index()), item.gap_m, bound_m);
@@ -152,13 +152,13 @@ void SurfaceWalk::push_children(const AbNode& node, double least_m, double bound
     for (std::uint32_t left = node.mask; left != 0; left &= left - 1)
     {
         const auto child = static_cast<std::uint32_t>(std::countr_zero(left));
-        const Ball ball = ball_round(node.box_of(child));
-        const double gap = std::max(least_m, other_.lower_bound_m(ball, bound_m));
+        const Sphere sphere = sphere_round(node.box_of(child));
+        const double gap = std::max(least_m, other_.lower_bound_m(sphere, bound_m));
         if (gap > bound_m)
         {
             continue;
         }
-        stack_.push_back({node.children[child], gap, ball});
+        stack_.push_back({node.children[child], gap, sphere});
         // The nearest on top, the others below in any order.
         const std::size_t top = stack_.size() - 1;
         if (top > first && stack_[top].gap_m > stack_[top - 1].gap_m)
@@ -168,34 +168,34 @@ void SurfaceWalk::push_children(const AbNode& node, double least_m, double bound
     }
 }
 
-Ball ball_round(const Aabb& box) noexcept
+Sphere sphere_round(const Aabb& box) noexcept
 {
-    Ball ball;
+    Sphere sphere;
     Vec3 half(0.0, 0.0, 0.0);
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
         const auto low = static_cast<double>(box.low[axis]);
         const auto high = static_cast<double>(box.high[axis]);
-        ball.center[static_cast<Eigen::Index>(axis)] = 0.5 * (low + high);
+        sphere.center[static_cast<Eigen::Index>(axis)] = 0.5 * (low + high);
         half[static_cast<Eigen::Index>(axis)] = 0.5 * (high - low);
     }
-    ball.radius = half.norm() * kRoundedUp;
-    return ball;
+    sphere.radius = half.norm() * kRoundedUp;
+    return sphere;
 }
 
-Ball ball_round(const Triangle& triangle) noexcept
+Sphere sphere_round(const Triangle& triangle) noexcept
 {
-    Ball ball;
+    Sphere sphere;
     const Vec3 low = least_of(least_of(triangle[0], triangle[1]), triangle[2]);
     const Vec3 high = greatest_of(greatest_of(triangle[0], triangle[1]), triangle[2]);
-    ball.center = 0.5 * (low + high);
+    sphere.center = 0.5 * (low + high);
     double radius_sq = 0.0;
     for (const Vec3& corner : triangle)
     {
-        radius_sq = std::max(radius_sq, (corner - ball.center).squaredNorm());
+        radius_sq = std::max(radius_sq, (corner - sphere.center).squaredNorm());
     }
-    ball.radius = std::sqrt(radius_sq) * kRoundedUp;
-    return ball;
+    sphere.radius = std::sqrt(radius_sq) * kRoundedUp;
+    return sphere;
 }
 
 } // namespace tactus

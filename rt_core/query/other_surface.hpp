@@ -20,13 +20,13 @@ struct MeshPlacement
     Similarity place;
     Vec3 offset_m{0.0, 0.0, 0.0};
 
-    [[nodiscard]] Vec3 to_there(const Vec3& here_m) const noexcept
+    [[nodiscard]] Vec3 local_to_world(const Vec3& here_m) const noexcept
     {
-        return place.to_there(here_m + offset_m);
+        return place.local_to_world(here_m + offset_m);
     }
     /// The way back.
     [[nodiscard]] MeshPlacement inverse() const noexcept TACTUS_NONBLOCKING;
-    /// What `to_there` may be off by, in metres there.
+    /// What `local_to_world` may be off by, in metres there.
     [[nodiscard]] double rounding_m(const Vec3& here_m) const noexcept TACTUS_NONBLOCKING;
 };
 
@@ -43,13 +43,13 @@ public:
     {
     }
 
-    /// Less than any distance from a point of the ball, down to minus the ball's radius; beyond
+    /// Less than any distance from a point of the sphere, down to minus the sphere's radius; beyond
     /// `enough_m` any that is not below it. In single precision.
-    [[nodiscard]] double lower_bound_m(const Ball& ball,
+    [[nodiscard]] double lower_bound_m(const Sphere& sphere,
                                        double enough_m) noexcept TACTUS_NONBLOCKING;
-    /// More than the distance from some point of the ball to the other's original surface, if the
-    /// ball holds any of what is asked for.
-    [[nodiscard]] double upper_bound_m(const Ball& ball) noexcept TACTUS_NONBLOCKING;
+    /// More than the distance from some point of the sphere to the other's original surface, if the
+    /// sphere holds any of what is asked for.
+    [[nodiscard]] double upper_bound_m(const Sphere& sphere) noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] const AbTree& tree() const noexcept { return *other_; }
     /// Of the frame here in the other's.
@@ -68,7 +68,7 @@ private:
     QueryMemory memory_;
 };
 
-/// Walks the blocks of a tree that are near another surface, by balls round their boxes, nearest
+/// Walks the blocks of a tree that are near another surface, by spheres round their boxes, nearest
 /// first. Each box looked at is a question to the other surface.
 class SurfaceWalk
 {
@@ -77,7 +77,7 @@ public:
     {
         TreeRef ref;
         double gap_m{0.0}; ///< Everything in it is at least this far from the other surface.
-        Ball ball;         ///< Round its box.
+        Sphere sphere;     ///< Round its box.
     };
 
     SurfaceWalk(const AbTree& tree, OtherSurface& other) noexcept TACTUS_NONBLOCKING;
@@ -87,7 +87,7 @@ public:
     [[nodiscard]] std::uint32_t next_block(double bound_m) noexcept TACTUS_NONBLOCKING;
 
     /// Round the block that next_block() gave last.
-    [[nodiscard]] const Ball& ball() const noexcept { return ball_; }
+    [[nodiscard]] const Sphere& sphere() const noexcept { return sphere_; }
     /// What was not visited when the budget was spent; empty after a complete walk.
     [[nodiscard]] std::span<const Item> left() const noexcept { return stack_.view(); }
 
@@ -98,11 +98,11 @@ private:
     const AbTree& tree_;
     OtherSurface& other_;
     StaticVector<Item, kTreeStack> stack_;
-    Ball ball_;
+    Sphere sphere_;
 };
 
 /// Round a box, and round a triangle; as small as is found without search.
-[[nodiscard]] Ball ball_round(const Aabb& box) noexcept TACTUS_NONBLOCKING;
-[[nodiscard]] Ball ball_round(const Triangle& triangle) noexcept TACTUS_NONBLOCKING;
+[[nodiscard]] Sphere sphere_round(const Aabb& box) noexcept TACTUS_NONBLOCKING;
+[[nodiscard]] Sphere sphere_round(const Triangle& triangle) noexcept TACTUS_NONBLOCKING;
 
 } // namespace tactus

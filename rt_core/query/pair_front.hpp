@@ -36,7 +36,7 @@ struct PairFront
     static constexpr std::uint32_t kRoom = 2'048;
     /// After a walk that found no room for its pairs so many keep nothing.
     static constexpr std::uint32_t kPause = 16;
-    /// So many pairs of a tool and an object have one at once, the most urgent of them.
+    /// So many pairs of a tool and an object have one at once, those of highest priority.
     static constexpr std::uint32_t kFronts = 4;
 
     std::uint32_t count{0}; ///< 0: nothing is known.
@@ -53,9 +53,9 @@ struct PairFront
     PairFront() noexcept {} // NOLINT(cppcoreguidelines-pro-type-member-init)
 };
 
-/// No point of the ball that `before` places is farther from where `now` does; not a number where
+/// No point of the sphere that `before` places is farther from where `now` does; not a number where
 /// either place is none.
 [[nodiscard]] double motion_between(const MeshPlacement& before, const MeshPlacement& now,
-                                    const Ball& ball) noexcept TACTUS_NONBLOCKING;
+                                    const Sphere& sphere) noexcept TACTUS_NONBLOCKING;
 
 } // namespace tactus

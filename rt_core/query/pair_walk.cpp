@@ -61,7 +61,7 @@ Vec3f seen_from_tool(const Vec3f& way, const BoxView& of_tool) noexcept
 } // namespace
 
 double motion_between(const MeshPlacement& before, const MeshPlacement& now,
-                      const Ball& ball) noexcept
+                      const Sphere& sphere) noexcept
 {
     // The difference of two rotations turns and stretches: two of its singular values are equal,
     // the third is zero. So it moves nothing by more than its Frobenius norm over the root of two.
@@ -69,8 +69,8 @@ double motion_between(const MeshPlacement& before, const MeshPlacement& now,
     const Mat3 turned =
         now.place.scale * now.place.rotation - before.place.scale * before.place.rotation;
     const double of_turn = now.place.scale == before.place.scale ? kOfTwo : 1.0;
-    return ((now.to_there(ball.center) - before.to_there(ball.center)).norm() +
-            of_turn * turned.norm() * ball.radius) *
+    return ((now.local_to_world(sphere.center) - before.local_to_world(sphere.center)).norm() +
+            of_turn * turned.norm() * sphere.radius) *
            kWidened;
 }
 
@@ -86,10 +86,10 @@ MeshViews::MeshViews(const AbTree& tool, const AbTree& object, const MeshPlaceme
 float MeshViews::slack_of(const AbTree& tool, const AbTree& object,
                           const MeshPlacement& place) noexcept
 {
-    const Ball tool_ball = ball_round(tool.box());
-    const Ball object_ball = ball_round(object.box());
-    const double tool_reach_m = tool_ball.center.norm() + tool_ball.radius;
-    const double object_reach_m = object_ball.center.norm() + object_ball.radius;
+    const Sphere tool_sphere = sphere_round(tool.box());
+    const Sphere object_sphere = sphere_round(object.box());
+    const double tool_reach_m = tool_sphere.center.norm() + tool_sphere.radius;
+    const double object_reach_m = object_sphere.center.norm() + object_sphere.radius;
     const auto quantum_m = static_cast<double>(object.quantum_m());
     // Of either, in the other's frame and in metres of the object's.
     const double placed_m =
@@ -160,7 +160,7 @@ bool PairWalk::can_go_on(const MeshPlacement& place, bool exact_only) noexcept
     {
         return false;
     }
-    const double motion_m = motion_between(front_->place, place, ball_round(tool_.box()));
+    const double motion_m = motion_between(front_->place, place, sphere_round(tool_.box()));
     if (motion_m > 0.0)
     {
         front_->travel += (motion_m / static_cast<double>(object_.quantum_m())) * kRoundedUp +

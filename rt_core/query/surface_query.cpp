@@ -535,12 +535,12 @@ DistanceAnswer answer_from_afar(const AbTree& tree, const Vec3& center_m, double
     }
     answer.lower_m = tree.is_complete() ? std::sqrt(near_sq) * kRootRoundedDown : 0.0;
     answer.upper_m = std::sqrt(far_sq) * kRootRoundedUp;
-    answer.kind = answer.lower_m > reach_m ? AnswerKind::decided : AnswerKind::bracket;
+    answer.kind = answer.lower_m > reach_m ? AnswerKind::separated : AnswerKind::bounded;
     answer.tool_point_m = center_m;
     return answer;
 }
 
-/// Not inlined: a rehearsal must run the same machine code as the query.
+/// Not inlined: a warm-up must run the same machine code as the query.
 [[gnu::noinline]] DistanceAnswer search(const AbTree& tree, const Vec3& center_m, double reach_m,
                                         double band_m, ProofShare share, ErrorCode tolerance,
                                         QueryMemory& memory, WalkBudget& budget,

@@ -31,12 +31,12 @@ inline constexpr float kProofShare = 0.9F;
 /// L is the least of (distance - error) over active faces, U the least of the exact faces'
 /// distances and the distances to coarse corners (which are original vertices). Both include the
 /// kernels' error laws. Where the surface is within reach both come from double precision. Where
-/// none is, the search stops at `share` of the best distance: most of it is all that "decided"
+/// none is, the search stops at `share` of the best distance: most of it is all that "separated"
 /// needs. A traversal that runs out of budget, or a tree that is incomplete, lowers L and the
 /// certified radius to what was proven.
 ///
-/// Writes `surface` completely. Haptic thread; cost: the nodes near the ball, about 5 ns a triangle
-/// in it.
+/// Writes `surface` completely. Haptic thread; cost: the nodes near the sphere, about 5 ns a
+/// triangle in it.
 void gather_surface(const AbTree& tree, const Vec3& center_m, double reach_m, QueryMemory& memory,
                     WalkBudget& budget, LocalSurface& surface, ProofShare share = ProofShare::most,
                     ErrorCode tolerance = 0) noexcept TACTUS_NONBLOCKING;

@@ -9,7 +9,7 @@ namespace tactus
 /// Rotational properties and limits of a device, about the tool's point: DeviceLimits for angles.
 /// The default is a device without rotation. All values are finite and not negative. A device that
 /// produces torques measures its rotation, and its inertia, slew and stiffness are above zero.
-struct TurnLimits
+struct RotationLimits
 {
     bool is_measured{false}; ///< Samples contain a rotation.
     /// Norm. 0: the device produces no torque; the values below describe it all the same.
@@ -22,7 +22,7 @@ struct TurnLimits
     double stiffness_max_nm_per_rad{0.0};
     double added_damping_max_nm_s_per_rad{0.0};
 
-    [[nodiscard]] bool operator==(const TurnLimits&) const = default;
+    [[nodiscard]] bool operator==(const RotationLimits&) const = default;
 };
 
 /// Properties and limits of a device on which stability depends; fixed while it runs. SI, at the
@@ -47,7 +47,7 @@ struct DeviceLimits
     double stiffness_max_n_per_m{3000.0}; ///< The maker's limit for any wall at any rate.
     /// Largest damping that the passivity controller may add, in N s/m.
     double added_damping_max_n_s_per_m{5.0};
-    TurnLimits turn{};
+    RotationLimits rotation{};
 
     [[nodiscard]] bool operator==(const DeviceLimits&) const = default;
 };

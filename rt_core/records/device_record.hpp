@@ -12,7 +12,7 @@ namespace tactus
 {
 
 /// Position and rotation at which the user holds the device. World frame.
-struct HandPlace
+struct DevicePose
 {
     Vec3 position_m{0.0, 0.0, 0.0};
     Mat3 rotation{Mat3::Identity()};
@@ -25,7 +25,7 @@ struct DeviceRecord
     bool connected{true};
     bool deadman_held{true};
     /// Device pose while a clutch separates tool and device; ToolState then has the tool's pose.
-    std::optional<HandPlace> hand;
+    std::optional<DevicePose> hand;
     std::optional<Vec3> velocity_m_per_s;
     std::optional<Vec3> angular_velocity_rad_per_s;
     std::uint32_t buttons{0};

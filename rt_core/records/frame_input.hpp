@@ -46,13 +46,13 @@ struct ToolSpec
     bool wants_contacts{false};      ///< Report contacts, normals and sides; microseconds per pair.
     double torque_max_nm{0.5};       ///< Limit of the torque's norm; a sphere has none.
     /// Query-only tool: it follows the device through surfaces, without a force.
-    bool passes_through{false};
+    bool query_only{false};
     /// Stiffness of the rotational spring; 0: derived from the stiffness and the tool's size.
     double angular_stiffness_nm_per_rad{0.0};
     /// Force shading of a point or sphere: facets within this distance of its contact are felt as
-    /// one smooth surface, by interpolated normals (force/smooth_normals.hpp). The felt surface is
-    /// within an eighth of it of the mesh. kSmoothWidthMin_m .. kSmoothWidthMax_m; 0: off.
-    double smooth_m{0.0};
+    /// one smooth surface, by interpolated normals (force/force_shading.hpp). The felt surface is
+    /// within an eighth of it of the mesh. kShadingWidthMin_m .. kShadingWidthMax_m; 0: off.
+    double shading_m{0.0};
     /// Report exact distances at any range, as soon as all of the surface that may be nearest is
     /// resident and refined. Frames refine it gradually, after all that forces need and as far as
     /// the pools have room; until then the bounds narrow. Some microseconds per pair and frame. No
@@ -90,9 +90,9 @@ struct Budgets
     /// checked in any case. Tools of other shapes need none: kMaxHalfSpaces bounds each of their
     /// steps.
     std::uint32_t planes{1'024};
-    /// W, the whole frame in instructions (WorkCost), a bound on any frame. The most urgent pairs
-    /// are served first; a stage that is cut short reports it. At least WorkBudget::kLeast are
-    /// used.
+    /// W, the whole frame in instructions (WorkCost), a bound on any frame. The highest-priority
+    /// pairs are served first; a stage that is cut short reports it. At least WorkBudget::kLeast
+    /// are used.
     std::uint32_t work{WorkBudget::kUnlimited};
 
     /// Factor by which a frame with a hull as a tool may do more work; below, with a mesh.
@@ -114,7 +114,7 @@ struct Budgets
     bool operator==(const Budgets&) const = default;
 };
 
-/// All inputs of a frame, besides the events of its models' doors: the same inputs give the same
+/// All inputs of a frame, besides the events of its models' queues: the same inputs give the same
 /// bits. The spans are read during Frame::run() only.
 struct FrameInput
 {

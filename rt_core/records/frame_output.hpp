@@ -4,9 +4,9 @@
 
 #include "rt_core/math/vec3.hpp"
 #include "rt_core/records/contact.hpp"
-#include "rt_core/records/door_event.hpp"
 #include "rt_core/records/local_surface.hpp"
 #include "rt_core/records/mesh_report.hpp"
+#include "rt_core/records/queue_event.hpp"
 #include "rt_core/records/scene_change.hpp"
 #include "rt_core/records/work_counters.hpp"
 
@@ -20,7 +20,7 @@ namespace tactus
 
 /// Results of one tool. World frame, SI.
 ///
-/// Force and torque are those of the proxy's spring even with faults: SafeState fades them for the
+/// Force and torque are those of the proxy's spring even with faults: ForceFader fades them for the
 /// faults of faults_of().
 struct ToolOutput
 {
@@ -35,15 +35,15 @@ struct ToolOutput
     /// at rest.
     double lag_m{0.0};
     bool in_contact{false};
-    bool frozen{false};   ///< The proxy waits for data and is halted.
-    bool squeezed{false}; ///< Objects leave the tool no room (over-constrained).
+    bool halted{false};           ///< The proxy waits for data and is halted.
+    bool over_constrained{false}; ///< Objects leave the tool no room.
     /// Data-limited: the proxy reached the end of the known surface before its goal.
-    bool held_back{false};
+    bool data_limited{false};
     /// The proxy is still moving: it reached the end of the known surface or of a frame's steps.
     bool under_way{false};
     bool cut_short{false}; ///< The proxy is still moving: the frame's checks were used up.
     /// Capacity exceeded: more contacts than limits allow; force and torque may lack some.
-    bool crowded{false};
+    bool capacity_exceeded{false};
     bool lost_object{false}; ///< An object near the touching tool was removed or jumped.
     /// The tool was removed (SceneChangeKind::tool_goes); all other values are defaults.
     bool is_gone{false};
@@ -66,9 +66,9 @@ struct ToolOutput
 /// Faults that a frame reports for a tool with this output.
 [[nodiscard]] constexpr FrameFault frame_faults(const ToolOutput& output) noexcept
 {
-    return output.sample_fault | (output.frozen ? FrameFault::proxy_frozen : FrameFault::none) |
-           (output.squeezed ? FrameFault::proxy_squeezed : FrameFault::none) |
-           (output.crowded ? FrameFault::tool_crowded : FrameFault::none) |
+    return output.sample_fault | (output.halted ? FrameFault::proxy_halted : FrameFault::none) |
+           (output.over_constrained ? FrameFault::proxy_over_constrained : FrameFault::none) |
+           (output.capacity_exceeded ? FrameFault::tool_over_capacity : FrameFault::none) |
            (output.cut_short ? FrameFault::plane_budget_spent : FrameFault::none) |
            (output.lost_object ? FrameFault::object_lost : FrameFault::none);
 }
@@ -77,10 +77,10 @@ struct ToolOutput
 /// nothing to fade; an over-constrained one will have a force as soon as it touches.
 [[nodiscard]] constexpr FrameFault faults_of(const ToolOutput& output) noexcept
 {
-    const bool is_held = output.frozen && output.in_contact;
+    const bool is_held = output.halted && output.in_contact;
     return output.sample_fault | (output.lost_object ? FrameFault::object_lost : FrameFault::none) |
-           (is_held ? FrameFault::proxy_frozen : FrameFault::none) |
-           (output.squeezed ? FrameFault::proxy_squeezed : FrameFault::none);
+           (is_held ? FrameFault::proxy_halted : FrameFault::none) |
+           (output.over_constrained ? FrameFault::proxy_over_constrained : FrameFault::none);
 }
 
 /// Results of one pair of tool and object. World frame, metres: the model's distances times the
@@ -89,7 +89,7 @@ struct PairOutput
 {
     std::uint32_t tool{0};
     std::uint32_t object{0};
-    AnswerKind kind{AnswerKind::bracket};
+    AnswerKind kind{AnswerKind::bounded};
     /// Place of the tool that the answers are for: at the start of the frame, or of its last step
     /// that had work left for this pair. Pairs of one tool may differ.
     Vec3 tool_m{0.0, 0.0, 0.0};
@@ -106,7 +106,7 @@ struct PairOutput
     Vec3 nearest_point_m{0.0, 0.0, 0.0}; ///< Point of nearest_face; undefined without one.
     bool skipped{false};                 ///< Derived from the last distance and the motion since.
     TriangleFeature nearest_feature{TriangleFeature::interior}; ///< Feature of nearest_face.
-    /// The pair is neither loaded nor refined: more urgent pairs took the capacity.
+    /// The pair is neither loaded nor refined: higher-priority pairs took the capacity.
     bool is_shed{false};
     /// False: one passed round the other, and there is no force until they are proven apart.
     bool is_joined{true};
@@ -118,10 +118,11 @@ struct PairOutput
 /// The scene after a frame.
 struct SceneOutput
 {
-    std::uint32_t objects{0};       ///< Objects in the scene.
-    std::uint32_t pairs{0};         ///< Awake pairs: those with a PairOutput.
-    std::uint32_t crowded_tools{0}; ///< Tools not proven clear as far as they ask.
-    /// Crowded tools, and tools at a model that is not resident, whose device pose is farther away.
+    std::uint32_t objects{0};             ///< Objects in the scene.
+    std::uint32_t pairs{0};               ///< Awake pairs: those with a PairOutput.
+    std::uint32_t tools_over_capacity{0}; ///< Tools not proven clear as far as they ask.
+    /// Tools over capacity, and tools at a model that is not resident, whose device pose is
+    /// farther away.
     std::uint32_t walled_tools{0};
     std::uint32_t walks{0}; ///< Walks over all objects: at most kBroadWalks.
     /// Changes that were refused, in the order of ChangeRefusal.
@@ -173,7 +174,7 @@ struct FrameOutput
     std::span<const ModelOutput> models; ///< Set-up order.
     WorkCounters work;
     FrameFault faults{FrameFault::none};
-    DoorTake door; ///< An input of the frame, kept for recordings.
+    QueueTake queues; ///< An input of the frame, kept for recordings.
     SceneOutput scene;
 };
 

@@ -27,10 +27,10 @@ struct LocalTriangle
 /// Kinds of answers (docs/accuracy.md).
 enum class AnswerKind : std::uint8_t
 {
-    exact,   ///< L and U come from exact faces and differ only by the kernel's error law.
-    decided, ///< Separated: L is above the tool's reach, so no contact, proven without refining.
-    bracket, ///< Bounded: L < U, and the question is open.
-    stale,   ///< Older than allowed, by revision or pose; L and U hold for that pose only.
+    exact,     ///< L and U come from exact faces and differ only by the kernel's error law.
+    separated, ///< L is above the tool's reach: no contact, proven without refining.
+    bounded,   ///< L < U: the question is open.
+    stale,     ///< Older than allowed, by revision or pose; L and U hold for that pose only.
     /// Like exact, but coarse faces with an error within the tolerance count as the surface: their
     /// error is subtracted from L, and U comes from exact faces and from corners.
     within_tolerance,
@@ -39,7 +39,7 @@ enum class AnswerKind : std::uint8_t
 /// The distance from a tool's core to a model, in the model's frame and metres.
 struct DistanceAnswer
 {
-    AnswerKind kind{AnswerKind::bracket};
+    AnswerKind kind{AnswerKind::bounded};
     double lower_m{0.0};       ///< L: no original surface is nearer.
     double upper_m{kInfinity}; ///< U: some surface is within this.
     /// All original faces within this distance of the core are active and exact, or represented by

@@ -41,18 +41,18 @@ struct ObjectSpec
                                            const Vec3& origin_m) noexcept
 {
     ObjectPose pose = source_pose;
-    pose.translation_m = source_pose.to_there(origin_m);
+    pose.translation_m = source_pose.local_to_world(origin_m);
     return pose;
 }
 
 [[nodiscard]] inline Vec3 to_model(const ObjectPose& pose, const Vec3& world_m) noexcept
 {
-    return pose.to_here(world_m);
+    return pose.world_to_local(world_m);
 }
 
 [[nodiscard]] inline Vec3 to_world(const ObjectPose& pose, const Vec3& model_m) noexcept
 {
-    return pose.to_there(model_m);
+    return pose.local_to_world(model_m);
 }
 
 /// Bound on the error of distances from a core of this radius round a place of the world that the

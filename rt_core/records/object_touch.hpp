@@ -13,7 +13,7 @@
 namespace tactus
 {
 
-/// A tool and an object that touch, or may touch within BelievedSpeed::kPatience_s. World frame.
+/// A tool and an object that touch, or may touch within ObjectSpeedLimit::kPatience_s. World frame.
 struct ObjectTouch
 {
     std::uint32_t object{0};

@@ -5,7 +5,7 @@
 #include "rt_core/base/static_vector.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/math/vec3.hpp"
-#include "rt_core/records/urgency.hpp"
+#include "rt_core/records/priority.hpp"
 #include "rt_core/spm/ids.hpp"
 
 #include <cstdint>
@@ -13,18 +13,18 @@
 namespace tactus
 {
 
-/// A sphere of a model that a tool may touch now, or after `lead_ns` at its present velocity. Model
-/// frame, metres.
+/// A sphere of a model that a tool may touch now, or after `horizon_ns` at its present velocity.
+/// Model frame, metres.
 struct RankedRegion
 {
     ModelId model{};
     Vec3 center_m{0.0, 0.0, 0.0};
     double radius_m{0.0};
-    std::int64_t lead_ns{0};
-    UrgencyClass of{UrgencyClass::touching}; ///< Class of its pair.
+    std::int64_t horizon_ns{0};
+    PriorityClass of{PriorityClass::touching}; ///< Class of its pair.
 };
 
-/// The regions of one frame, most urgent first.
+/// The regions of one frame, highest priority first.
 struct RegionRanking : StaticVector<RankedRegion, kMaxRankedRegions>
 {
     bool lacks_present{false}; ///< A sphere where a tool is now did not fit.

@@ -41,10 +41,10 @@ enum class ForceOff : std::uint32_t
     assertion = 1U << 9U, ///< The haptic thread found a bug in itself.
     /// While the tool touched an object, one was removed or moved too fast.
     jump = 1U << 10U,
-    frozen = 1U << 11U,   ///< The proxy is halted and waits for surface data.
-    squeezed = 1U << 12U, ///< Objects leave the tool no room (over-constrained).
-    clutch = 1U << 13U,   ///< A button separates device and tool.
-    starved = 1U << 14U,  ///< The proxy waits for data overdue by a second.
+    halted = 1U << 11U,           ///< The proxy is halted and waits for surface data.
+    over_constrained = 1U << 12U, ///< Objects leave the tool no room.
+    clutch = 1U << 13U,           ///< A button separates device and tool.
+    starved = 1U << 14U,          ///< The proxy waits for data overdue by a second.
     /// The force would change faster than device and objects move.
     growth = 1U << 15U,
 };
@@ -73,7 +73,8 @@ inline constexpr std::array<const char*, kSafetyStates> kSafetyStateNames{"reset
                                                                           "brake"};
 /// Names of the causes, in the order of ForceOff's bits.
 inline constexpr std::array<const char*, kForceOffs> kForceOffNames{
-    "velocity", "watchdog",  "software", "disconnect", "deadman",  "stale",  "garbage", "stall",
-    "host",     "assertion", "jump",     "frozen",     "squeezed", "clutch", "starved", "growth"};
+    "velocity",         "watchdog", "software", "disconnect", "deadman", "stale",
+    "garbage",          "stall",    "host",     "assertion",  "jump",    "halted",
+    "over_constrained", "clutch",   "starved",  "growth"};
 
 } // namespace tactus

@@ -18,8 +18,8 @@ enum class ForceAction : std::uint8_t
 {
     none = 0,
     refused = 1U << 0U, ///< Force or stiffness was no usable number: zero force.
-    /// Stiffer than stiffness_cap_n_per_m(): scaled down to it.
-    stiffness_capped = 1U << 1U,
+    /// Stiffer than stiffness_limit_n_per_m(): scaled down to it.
+    stiffness_limited = 1U << 1U,
     clamped = 1U << 2U,        ///< Longer than DeviceLimits::force_max_n.
     change_limited = 1U << 3U, ///< Faster change than ChangeLimit allows.
     damped = 1U << 4U,         ///< The passivity controller added damping.
@@ -32,7 +32,7 @@ inline constexpr std::size_t kForceActions = 6;
 static_assert(static_cast<std::uint32_t>(ForceAction::blind) == 1U << (kForceActions - 1));
 /// Names of the actions, in the order of ForceAction's bits.
 inline constexpr std::array<const char*, kForceActions> kForceActionNames{
-    "refused", "stiffness_capped", "clamped", "change_limited", "damped", "blind"};
+    "refused", "stiffness_limited", "clamped", "change_limited", "damped", "blind"};
 
 [[nodiscard]] constexpr ForceAction operator|(ForceAction a, ForceAction b) noexcept
 {
@@ -62,8 +62,8 @@ struct SpringForce
     ForceAction actions{ForceAction::none};
     double damping_n_s_per_m{0.0}; ///< Added by the passivity controller.
     double work_j{0.0};            ///< Work on user and device since the start.
-    /// Observed energy that is not dissipated yet: PassivityObserver::surplus_j().
-    double surplus_j{0.0};
+    /// Observed energy that is not dissipated yet: PassivityObserver::observed_energy_j().
+    double observed_energy_j{0.0};
 };
 
 /// Force and torque of one tool on their way from the frame to the device. Each stage of a
@@ -75,7 +75,7 @@ struct ToolForce
     Vec3 load_n{0.0, 0.0, 0.0};  ///< Payload compensation, sent in addition: force.
     Vec3 load_nm{0.0, 0.0, 0.0}; ///< Payload compensation: torque.
     double gripper_n{0.0};       ///< Gripper force of the program.
-    double own_n{0.0};           ///< Force that the program commanded: OwnForce.
+    double own_n{0.0};           ///< Force that the program commanded: ExternalForce.
     double twist_rad{0.0};       ///< Angle between device and proxy, in contact.
     SafetyState state{SafetyState::reset};
     ForceOff causes{ForceOff::none}; ///< Causes for which less than the frame's force is sent.

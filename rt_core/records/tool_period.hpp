@@ -33,8 +33,8 @@ struct ToolPeriod
     Vec3 turned_rad{0.0, 0.0, 0.0}; ///< Rotation of the device about the world's axes, summed up.
     Vec3 velocity_m_per_s{0.0, 0.0, 0.0};
     bool has_velocity{false}; ///< False: derived from the positions.
-    Vec3 turning_rad_per_s{0.0, 0.0, 0.0};
-    bool has_turning{false};               ///< False: derived from turned_rad.
+    Vec3 rotation_rad_per_s{0.0, 0.0, 0.0};
+    bool has_rotation{false};              ///< False: derived from turned_rad.
     std::int64_t sample_time_ns{0};        ///< 0: the device reports none, every sample is new.
     double elapsed_s{0.0};                 ///< Time since the last frame; the true one after a
                                            ///< stall.

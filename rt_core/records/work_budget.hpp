@@ -33,7 +33,7 @@ struct WorkCost
     static constexpr std::uint32_t scan = 250;        ///< Record checked for merging.
     static constexpr std::uint32_t refit = 300;       ///< Refit of a block or node.
     static constexpr std::uint32_t index_group = 200; ///< Eight boxes of an index page.
-    static constexpr std::uint32_t index_ball = 50;   ///< One sphere against them.
+    static constexpr std::uint32_t index_sphere = 50; ///< One sphere against them.
     static constexpr std::uint32_t search = 3'000;    ///< Requests of a model, without those.
     static constexpr std::uint32_t refining = 4'000;  ///< Choice of a face to split, without the
                                                       ///< walk to it.

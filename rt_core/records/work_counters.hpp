@@ -111,31 +111,45 @@ enum class FrameFault : std::uint32_t
     surface_truncated = 1U << 6U,  ///< More triangles in reach than kMaxLocalTriangles.
     model_inconsistent = 1U << 7U, ///< A record contradicts the mesh: rebuild the model.
     tool_invalid = 1U << 8U,       ///< A device sample was not usable.
-    proxy_frozen = 1U << 9U,       ///< Its surface is not certified; SafeState fades a force.
-    tool_stuck = 1U << 10U,        ///< The device's time does not advance; SafeState fades the
+    proxy_halted = 1U << 9U,       ///< Its surface is not certified; ForceFader fades a force.
+    tool_stuck = 1U << 10U,        ///< The device's time does not advance; ForceFader fades the
                                    ///< force.
     /// Goal faster than any user's motion; no force until it returns.
     tool_jumped = 1U << 11U,
-    proxy_squeezed = 1U << 12U,    ///< Over-constrained, or run over by an object.
-    refine_heap_full = 1U << 13U,  ///< More coarse faces in reach than kRefineHeap.
-    held_records_full = 1U << 14U, ///< More records of open closures than kMaxHeldRecords.
-    ranking_full = 1U << 15U,      ///< More regions at tools than kMaxRankedRegions.
-    tool_crowded = 1U << 16U,      ///< Contacts of a tool did not fit: kMaxContacts and others.
-    pair_shed = 1U << 17U,         ///< Pair deferred for a more urgent one. More `--pool-mib`.
-    scene_crowded = 1U << 18U,     ///< Tool deferred: too many objects near it. See kMaxPairs.
-    /// A touched object was removed or jumped; SafeState fades a force.
+    proxy_over_constrained = 1U << 12U, ///< Objects leave no room, or one runs over it.
+    refine_heap_full = 1U << 13U,       ///< More coarse faces in reach than kRefineHeap.
+    held_records_full = 1U << 14U,      ///< More records of open closures than kMaxHeldRecords.
+    ranking_full = 1U << 15U,           ///< More regions at tools than kMaxRankedRegions.
+    tool_over_capacity = 1U << 16U, ///< Contacts of a tool did not fit: kMaxContacts and others.
+    pair_shed = 1U << 17U,          ///< Pair deferred for a higher-priority one. More `--pool-mib`.
+    scene_over_capacity = 1U << 18U, ///< Tool deferred: too many objects near it. See kMaxPairs.
+    /// A touched object was removed or jumped; ForceFader fades a force.
     object_lost = 1U << 19U,
     plane_budget_spent = 1U << 20U, ///< Proxy stopped early. Raise `planes` or `work`.
 };
 inline constexpr std::size_t kFrameFaults = 21;
 /// Names of the flags, in the order of FrameFault's bits.
-inline constexpr std::array<const char*, kFrameFaults> kFrameFaultNames{
-    "split_budget_spent", "forest_full",       "tree_full",         "chunk_late",
-    "cache_full",         "node_budget_spent", "surface_truncated", "model_inconsistent",
-    "tool_invalid",       "proxy_frozen",      "tool_stuck",        "tool_jumped",
-    "proxy_squeezed",     "refine_heap_full",  "held_records_full", "ranking_full",
-    "tool_crowded",       "pair_shed",         "scene_crowded",     "object_lost",
-    "plane_budget_spent"};
+inline constexpr std::array<const char*, kFrameFaults> kFrameFaultNames{"split_budget_spent",
+                                                                        "forest_full",
+                                                                        "tree_full",
+                                                                        "chunk_late",
+                                                                        "cache_full",
+                                                                        "node_budget_spent",
+                                                                        "surface_truncated",
+                                                                        "model_inconsistent",
+                                                                        "tool_invalid",
+                                                                        "proxy_halted",
+                                                                        "tool_stuck",
+                                                                        "tool_jumped",
+                                                                        "proxy_over_constrained",
+                                                                        "refine_heap_full",
+                                                                        "held_records_full",
+                                                                        "ranking_full",
+                                                                        "tool_over_capacity",
+                                                                        "pair_shed",
+                                                                        "scene_over_capacity",
+                                                                        "object_lost",
+                                                                        "plane_budget_spent"};
 
 [[nodiscard]] constexpr FrameFault operator|(FrameFault a, FrameFault b) noexcept
 {

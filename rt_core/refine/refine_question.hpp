@@ -6,7 +6,7 @@
 #include "rt_core/math/vec3.hpp"
 #include "rt_core/query/near_faces.hpp"
 #include "rt_core/query/other_surface.hpp"
-#include "rt_core/records/urgency.hpp"
+#include "rt_core/records/priority.hpp"
 #include "rt_core/records/work_counters.hpp"
 #include "rt_core/spm/error_code.hpp"
 #include "rt_core/spm/ids.hpp"
@@ -82,7 +82,7 @@ struct RefineRequest
     ModelId model{};
     std::span<const RefineQuestion> questions;
     Closure* closure{nullptr};
-    Urgency urgency;
+    Priority priority;
 
     /// True if a face within reach that is needed now may be coarse.
     [[nodiscard]] bool is_late() const noexcept

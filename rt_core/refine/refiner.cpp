@@ -26,8 +26,8 @@ constexpr std::uint32_t kMeasuredStars = 8;
 constexpr std::uint32_t kFacesPerSplit = 2;
 constexpr std::uint32_t kLeastFaces = 16;
 
-/// Order of the heap: most urgent first; among equals the lower slot, so that the order is the same
-/// in every run. A function object, since a function would be called through a pointer.
+/// Order of the heap: highest priority first; among equals the lower slot, so that the order is the
+/// same in every run. A function object, since a function would be called through a pointer.
 constexpr auto comes_later = [](const auto& a, const auto& b) noexcept
 { return a.excess_m != b.excess_m ? a.excess_m > b.excess_m : a.prim > b.prim; };
 
@@ -263,14 +263,14 @@ bool Refiner::gather(const RefineQuestion& question, std::uint32_t enough, const
     WalkBudget budget{walk_left(budgets.nodes, work.nodes_visited),
                       walk_left(budgets.triangles, work.triangles_tested)};
     budget.frame = &work.budget;
-    gather_near_ball(question, budget);
+    gather_near_sphere(question, budget);
     found |= budget.is_spent ? FrameFault::node_budget_spent : FrameFault::none;
     work.nodes_visited += budget.nodes_visited;
     work.triangles_tested += budget.triangles_tested;
     return true;
 }
 
-void Refiner::gather_near_ball(const RefineQuestion& question, WalkBudget& budget) noexcept
+void Refiner::gather_near_sphere(const RefineQuestion& question, WalkBudget& budget) noexcept
 {
     const float bound = round_up_to_float(target_of(question) / quantum_m_);
     TreeWalk walk(*tree_, question.memory->probe, budget);
@@ -581,7 +581,7 @@ void Refiner::consider_star(RecordId id, const VsplitRecord& record,
         stars_left_ -= question.surface != nullptr && is_own ? 1U : 0U;
         StarBounds lower; // NOLINT(cppcoreguidelines-pro-type-member-init): it is filled.
         question.surface != nullptr ? bound_star_near_surface(question, coarse, lower)
-                                    : bound_star_near_ball(question, coarse, lower);
+                                    : bound_star_near_sphere(question, coarse, lower);
         for (std::uint32_t lanes = coarse.lanes; lanes != 0; lanes &= lanes - 1)
         {
             const auto place = static_cast<std::size_t>(std::countr_zero(lanes));
@@ -610,8 +610,8 @@ void Refiner::consider_star(RecordId id, const VsplitRecord& record,
 }
 
 /// Lower bounds on distances minus errors of a star's coarse faces.
-void Refiner::bound_star_near_ball(const RefineQuestion& question, const LooseFaces& coarse,
-                                   StarBounds& lower_m) const noexcept
+void Refiner::bound_star_near_sphere(const RefineQuestion& question, const LooseFaces& coarse,
+                                     StarBounds& lower_m) const noexcept
 {
     FaceBounds bounds; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
     bound_faces(tree_->kernels(), coarse.geometry, coarse.lanes, question.memory->probe, bounds);
@@ -662,7 +662,7 @@ double Refiner::lower_bound(PrimId prim, const RefineQuestion& question) const n
         return lower;
     }
     const double enough = target_of(question) - question.span_m + error;
-    const double from_surface = question.surface->lower_bound_m(ball_round(triangle), enough);
+    const double from_surface = question.surface->lower_bound_m(sphere_round(triangle), enough);
     return std::max(lower, from_surface - error + question.span_m);
 }
 

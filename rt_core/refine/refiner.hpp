@@ -48,7 +48,7 @@ public:
     Refiner(VertexForest& forest, PageTable& pages, const AbTree& tree, RefineScratch& scratch,
             float quantum_m) noexcept;
 
-    /// Begins the frame with all requests to the model, the most urgent first. Follows the
+    /// Begins the frame with all requests to the model, the highest priority first. Follows the
     /// questions and merges until `work` has `budgets.scanned` and `budgets.merges`. The requests
     /// must stay until the frame ends.
     void begin(std::span<const RefineRequest> requests, const Budgets& budgets,
@@ -107,7 +107,7 @@ private:
     [[nodiscard]] bool gather(const RefineQuestion& question, std::uint32_t enough,
                               const Budgets& budgets, WorkCounters& work,
                               FrameFault& found) noexcept;
-    void gather_near_ball(const RefineQuestion& question, WalkBudget& budget) noexcept;
+    void gather_near_sphere(const RefineQuestion& question, WalkBudget& budget) noexcept;
     [[nodiscard]] bool gather_near_surface(const RefineQuestion& question,
                                            std::uint32_t enough) noexcept;
     void gather_block(std::uint32_t index, const RefineQuestion& question) noexcept;
@@ -130,8 +130,8 @@ private:
                        const VertexForest::StarGeometry& star, std::span<const RefineQuestion> own,
                        std::uint32_t splits_left) noexcept;
     using StarBounds = std::array<double, kMaxStarFaces>;
-    void bound_star_near_ball(const RefineQuestion& question, const LooseFaces& coarse,
-                              StarBounds& lower_m) const noexcept;
+    void bound_star_near_sphere(const RefineQuestion& question, const LooseFaces& coarse,
+                                StarBounds& lower_m) const noexcept;
     void bound_star_near_surface(const RefineQuestion& question, const LooseFaces& coarse,
                                  StarBounds& lower_m) const noexcept;
     void hold(RecordId record, Closure& closure) noexcept;

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "rt_core/base/assert.hpp"
-#include "rt_core/records/urgency.hpp"
+#include "rt_core/records/priority.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,19 +14,20 @@ namespace tactus
 
 /// Shares one frame's splits among the requests that wait for some.
 ///
-/// The more urgent class takes what it can use, except an eighth of all, rounded up, for each lower
-/// class with a waiting request. Within a class each request in turn may take an equal part of what
-/// the class has left, and, if there is enough for all, its earlier savings: a request with short
-/// bursts is not behind others that always need everything. So with at least eight splits a frame
-/// each of n requests of a class may take one in ceil(n / ceil(splits / 8)) frames, independent of
-/// the others' needs, if requests that got nothing for longest go first (docs/accuracy.md).
+/// The higher-priority class takes what it can use, except an eighth of all, rounded up, for each
+/// lower class with a waiting request. Within a class each request in turn may take an equal part
+/// of what the class has left, and, if there is enough for all, its earlier savings: a request with
+/// short bursts is not behind others that always need everything. So with at least eight splits a
+/// frame each of n requests of a class may take one in ceil(n / ceil(splits / 8)) frames,
+/// independent of the others' needs, if requests that got nothing for longest go first
+/// (docs/accuracy.md).
 class SplitShares
 {
 public:
     explicit SplitShares(std::uint32_t splits) noexcept : splits_(splits) {}
 
     /// Adds a waiting request, before the first take().
-    void add(UrgencyClass of) noexcept { ++waiting_[static_cast<std::size_t>(of)]; }
+    void add(PriorityClass of) noexcept { ++waiting_[static_cast<std::size_t>(of)]; }
 
     /// Splits that one request may take.
     struct Share
@@ -38,13 +39,13 @@ public:
 
     /// Share of the next request of a class, classes in order, which has `saved` splits, in a frame
     /// that has done `done`.
-    [[nodiscard]] Share take(UrgencyClass of, std::uint32_t saved, std::uint32_t done) noexcept
+    [[nodiscard]] Share take(PriorityClass of, std::uint32_t saved, std::uint32_t done) noexcept
     {
         const auto own = static_cast<std::size_t>(of);
         TACTUS_ASSERT(waiting_[own] > 0);
         const std::uint32_t left = splits_ - std::min(splits_, done);
         std::uint32_t kept = 0;
-        for (std::size_t below = own + 1; below < kUrgencyClasses; ++below)
+        for (std::size_t below = own + 1; below < kPriorityClasses; ++below)
         {
             kept += waiting_[below] > 0 ? (splits_ + 7) / 8 : 0;
         }
@@ -70,7 +71,7 @@ public:
 
 private:
     std::uint32_t splits_;
-    std::array<std::uint32_t, kUrgencyClasses> waiting_{};
+    std::array<std::uint32_t, kPriorityClasses> waiting_{};
 };
 
 } // namespace tactus

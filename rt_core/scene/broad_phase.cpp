@@ -27,17 +27,17 @@ double size_of(const Vec3& place) noexcept
 }
 
 /// Lower bound on the distance of both, from the computed squared distance.
-double proven_gap(const Vec3& place, const Ball& ball, double square) noexcept
+double proven_gap(const Vec3& place, const Sphere& sphere, double square) noexcept
 {
     const double length = std::sqrt(square);
-    return (length - ball.radius) -
-           kGapRounding * (length + ball.radius + size_of(place) + size_of(ball.center));
+    return (length - sphere.radius) -
+           kGapRounding * (length + sphere.radius + size_of(place) + size_of(sphere.center));
 }
 
 } // namespace
 
 BroadPhase::BroadPhase(Arena& arena, std::uint32_t objects, std::uint32_t tools) noexcept
-    : balls_(arena.take<Ball>(objects))
+    : spheres_(arena.take<Sphere>(objects))
     , groups_(arena.take<Group>((objects + kGroup - 1) / kGroup))
     , scratch_(arena.take<Candidate>(objects))
     , tool_count_(tools)
@@ -46,22 +46,22 @@ BroadPhase::BroadPhase(Arena& arena, std::uint32_t objects, std::uint32_t tools)
     TACTUS_ASSERT(tools <= kMaxTools);
     for (std::uint32_t i = 0; i < objects && !arena.is_measuring(); ++i)
     {
-        balls_[i].radius = -1.0;
+        spheres_[i].radius = -1.0;
     }
 }
 
-void BroadPhase::place(std::uint32_t object, const Ball& ball) noexcept
+void BroadPhase::place(std::uint32_t object, const Sphere& sphere) noexcept
 {
-    TACTUS_ASSERT(object < balls_.size());
-    TACTUS_ASSERT(ball.radius >= 0.0);
-    count_ += balls_[object].radius < 0.0 ? 1U : 0U;
-    balls_[object] = ball;
+    TACTUS_ASSERT(object < spheres_.size());
+    TACTUS_ASSERT(sphere.radius >= 0.0);
+    count_ += spheres_[object].radius < 0.0 ? 1U : 0U;
+    spheres_[object] = sphere;
     groups_[object / kGroup].is_stale = true;
     for (ToolRange& tool : std::span(tools_).first(tool_count_))
     {
         const double gap_m =
-            proven_gap(tool.center_m, ball, (tool.center_m - ball.center).squaredNorm());
-        if (!tool.is_here || gap_m > tool.clear_m)
+            proven_gap(tool.center_m, sphere, (tool.center_m - sphere.center).squaredNorm());
+        if (!tool.is_resident || gap_m > tool.clear_m)
         {
             continue;
         }
@@ -84,10 +84,10 @@ void BroadPhase::place(std::uint32_t object, const Ball& ball) noexcept
 
 void BroadPhase::remove(std::uint32_t object) noexcept
 {
-    TACTUS_ASSERT(object < balls_.size());
-    TACTUS_ASSERT(balls_[object].radius >= 0.0);
+    TACTUS_ASSERT(object < spheres_.size());
+    TACTUS_ASSERT(spheres_[object].radius >= 0.0);
     --count_;
-    balls_[object].radius = -1.0;
+    spheres_[object].radius = -1.0;
     groups_[object / kGroup].is_stale = true;
     for (ToolRange& tool : std::span(tools_).first(tool_count_))
     {
@@ -112,7 +112,7 @@ void BroadPhase::look(std::uint32_t tool, const Vec3& center_m, double near_m) n
         range.clear_m -=
             way_m + kGapRounding * (way_m + std::abs(range.clear_m) + size_of(center_m));
     }
-    range.is_here = true;
+    range.is_resident = true;
     range.center_m = center_m;
     range.near_m = near_m;
     walks_ = 0;
@@ -128,7 +128,7 @@ void BroadPhase::forget(std::uint32_t tool) noexcept
 
 bool BroadPhase::lacks_proof(const ToolRange& tool) const noexcept
 {
-    return tool.is_here && (tool.clear_m < tool.near_m || (tool.near.empty() && count_ > 0));
+    return tool.is_resident && (tool.clear_m < tool.near_m || (tool.near.empty() && count_ > 0));
 }
 
 bool BroadPhase::needs_walk(const ToolRange& tool) const noexcept
@@ -190,17 +190,17 @@ void BroadPhase::search(const Group& group, std::uint32_t first, const ToolRange
     {
         return;
     }
-    const auto count = static_cast<std::uint32_t>(balls_.size());
+    const auto count = static_cast<std::uint32_t>(spheres_.size());
     for (std::uint32_t i = first; i < std::min(first + kGroup, count); ++i)
     {
-        const Ball& ball = balls_[i];
-        const double square = (center - ball.center).squaredNorm();
-        const double far = std::max(found.wide_m, found.after_m) + ball.radius;
-        if (ball.radius < 0.0 || square > far * far * (1.0 + 1e-9))
+        const Sphere& sphere = spheres_[i];
+        const double square = (center - sphere.center).squaredNorm();
+        const double far = std::max(found.wide_m, found.after_m) + sphere.radius;
+        if (sphere.radius < 0.0 || square > far * far * (1.0 + 1e-9))
         {
             continue;
         }
-        const double gap_m = proven_gap(center, ball, square);
+        const double gap_m = proven_gap(center, sphere, square);
         if (gap_m <= found.wide_m)
         {
             scratch_[found.listed++] = {gap_m, i};
@@ -248,24 +248,24 @@ void BroadPhase::keep_nearest(ToolRange& tool, Findings& found) noexcept
 void BroadPhase::fit(Group& group, std::uint32_t first) noexcept
 {
     group = Group{};
-    const auto count = static_cast<std::uint32_t>(balls_.size());
-    for (const Ball& ball : balls_.subspan(first, std::min(kGroup, count - first)))
+    const auto count = static_cast<std::uint32_t>(spheres_.size());
+    for (const Sphere& sphere : spheres_.subspan(first, std::min(kGroup, count - first)))
     {
-        if (ball.radius >= 0.0)
+        if (sphere.radius >= 0.0)
         {
-            const Vec3 half(ball.radius, ball.radius, ball.radius);
-            group.low = least_of(group.low, ball.center - half);
-            group.high = greatest_of(group.high, ball.center + half);
+            const Vec3 half(sphere.radius, sphere.radius, sphere.radius);
+            group.low = least_of(group.low, sphere.center - half);
+            group.high = greatest_of(group.high, sphere.center + half);
         }
     }
 }
 
 double BroadPhase::gap_m(std::uint32_t tool, std::uint32_t object) const noexcept
 {
-    const Ball& ball = balls_[object];
-    TACTUS_ASSERT(ball.radius >= 0.0);
+    const Sphere& sphere = spheres_[object];
+    TACTUS_ASSERT(sphere.radius >= 0.0);
     const Vec3& center = tools_[tool].center_m;
-    return proven_gap(center, ball, (center - ball.center).squaredNorm());
+    return proven_gap(center, sphere, (center - sphere.center).squaredNorm());
 }
 
 } // namespace tactus

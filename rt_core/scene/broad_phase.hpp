@@ -36,7 +36,7 @@ public:
     BroadPhase(Arena& arena, std::uint32_t objects, std::uint32_t tools) noexcept;
 
     /// Adds or moves an object.
-    void place(std::uint32_t object, const Ball& ball) noexcept TACTUS_NONBLOCKING;
+    void place(std::uint32_t object, const Sphere& sphere) noexcept TACTUS_NONBLOCKING;
     void remove(std::uint32_t object) noexcept TACTUS_NONBLOCKING;
 
     /// Sets a tool's place in this frame; its list must hold all objects within `near_m` >= 0 of
@@ -77,7 +77,7 @@ private:
     };
     struct ToolRange
     {
-        bool is_here{false};
+        bool is_resident{false};
         bool was_full{false}; ///< The last walk found more than fits.
         std::uint32_t waited{0};
         Vec3 center_m{0.0, 0.0, 0.0};
@@ -107,7 +107,7 @@ private:
     void keep_nearest(ToolRange& tool, Findings& found) noexcept;
     void fit(Group& group, std::uint32_t first) noexcept;
 
-    std::span<Ball> balls_; ///< Radius below zero: no object.
+    std::span<Sphere> spheres_; ///< Radius below zero: no object.
     std::span<Group> groups_;
     std::span<Candidate> scratch_; ///< One per object.
     std::array<ToolRange, kMaxTools> tools_{};

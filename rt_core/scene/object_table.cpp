@@ -38,7 +38,7 @@ ObjectTable::find_refusal(const SceneChange& change, std::span<const bool> is_sh
     const Object& object = objects_[change.number];
     if (change.kind != SceneChangeKind::object_comes)
     {
-        if (!object.is_here)
+        if (!object.is_resident)
         {
             return ChangeRefusal::not_here;
         }
@@ -49,7 +49,7 @@ ObjectTable::find_refusal(const SceneChange& change, std::span<const bool> is_sh
     }
     else
     {
-        if (object.is_here)
+        if (object.is_resident)
         {
             return ChangeRefusal::already_here;
         }
@@ -78,8 +78,8 @@ void ObjectTable::make(const SceneChange& change, const Vec3& origin_m,
 {
     TACTUS_ASSERT(change.number < objects_.size());
     Object& object = objects_[change.number];
-    object.is_here = change.kind != SceneChangeKind::object_goes;
-    if (!object.is_here)
+    object.is_resident = change.kind != SceneChangeKind::object_goes;
+    if (!object.is_resident)
     {
         return;
     }

@@ -24,7 +24,7 @@ struct Object
     std::uint32_t generation{0};
     std::uint32_t came_frame{0};  ///< Frame in which it was added; 0 at start.
     std::uint32_t moved_frame{0}; ///< Frame in which it was last added or moved.
-    bool is_here{false};
+    bool is_resident{false};
     bool was_here{false}; ///< The number has been used, last with `generation`.
 };
 

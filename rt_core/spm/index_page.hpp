@@ -49,7 +49,7 @@ struct IndexPage
 };
 
 /// A sphere in the quanta of a model.
-struct QuantumBall
+struct QuantumSphere
 {
     std::array<double, 3> center{};
     double radius{0.0};
@@ -59,9 +59,9 @@ struct QuantumBall
 [[nodiscard]] double distance_sq(const std::array<double, 3>& place,
                                  const QuantumBox& box) noexcept TACTUS_NONBLOCKING;
 
-[[nodiscard]] inline bool meets(const QuantumBall& ball, const QuantumBox& box) noexcept
+[[nodiscard]] inline bool meets(const QuantumSphere& sphere, const QuantumBox& box) noexcept
 {
-    return distance_sq(ball.center, box) <= ball.radius * ball.radius;
+    return distance_sq(sphere.center, box) <= sphere.radius * sphere.radius;
 }
 
 /// Influence box of a chunk; `page_box` is its page's box.

@@ -53,7 +53,7 @@ public:
     }
 
     /// True if bytes are left that no symbol used.
-    [[nodiscard]] bool has_surplus() const noexcept { return read_ < bytes_.size(); }
+    [[nodiscard]] bool has_observed_energy() const noexcept { return read_ < bytes_.size(); }
 
 private:
     /// Refills the range, which no bit shrinks by more than 2^-8.

@@ -98,10 +98,10 @@ public:
         const VertexId u = record.parent;
         for (std::uint32_t i = 0; i < record.fan_size; ++i)
         {
-            const bool is_here = from == v ? to == w[i]
-                                 : to == v ? from == w[i + 1]
-                                           : from == w[i] && to == w[i + 1];
-            if (is_here)
+            const bool is_resident = from == v ? to == w[i]
+                                     : to == v ? from == w[i + 1]
+                                               : from == w[i] && to == w[i + 1];
+            if (is_resident)
             {
                 return 2 + i;
             }

@@ -34,8 +34,8 @@ SurfaceAnswer answer_of(const PairOutput& pair)
     {
         return {(pair.point_m - pair.nearest_point_m).norm(), pair.nearest_point_m, true};
     }
-    const bool is_bracket = std::isfinite(pair.upper_m);
-    return {is_bracket ? 0.5 * (pair.lower_m + pair.upper_m) : pair.lower_m, Vec3(0.0, 0.0, 0.0),
+    const bool is_bounded = std::isfinite(pair.upper_m);
+    return {is_bounded ? 0.5 * (pair.lower_m + pair.upper_m) : pair.lower_m, Vec3(0.0, 0.0, 0.0),
             false};
 }
 

@@ -212,7 +212,7 @@ struct SheetFigures
     double torque_step{0.0};
     double sunk_m{0.0};
     std::uint64_t impaired{0}; ///< Frames that are halted, over-constrained or without force.
-    std::uint64_t crowded{0};  ///< Frames in which the contact capacity is exceeded.
+    std::uint64_t capacity_exceeded{0}; ///< Frames in which the contact capacity is exceeded.
 
     void see(const SheetBody& body, const ToolOutput& output, double plane_m)
     {
@@ -223,8 +223,8 @@ struct SheetFigures
         sunk_m =
             std::max(sunk_m, plane_m - output.proxy_m.z() - body.lowest_m(output.proxy_rotation));
         const bool is_well =
-            output.in_contact && !output.frozen && !output.squeezed && force_n.z() > 0.0;
-        crowded += output.crowded ? 1U : 0U;
+            output.in_contact && !output.halted && !output.over_constrained && force_n.z() > 0.0;
+        capacity_exceeded += output.capacity_exceeded ? 1U : 0U;
         impaired += is_well ? 0U : 1U;
     }
     void see_step(const SheetBody& body, const ToolOutput& before, const ToolOutput& now)
@@ -285,7 +285,7 @@ void run_sheet(const CaseContext& context, const Scene& scene, const SheetBody& 
                  100.0 * kSheetTorqueStep);
         rows.add("sunk in", 1e6 * figures.sunk_m, "um", 1e6 * kSheetForceOff * kSheetDepth_m);
         rows.add("frames impaired", static_cast<double>(figures.impaired), "", 0.0);
-        rows.add("frames crowded", static_cast<double>(figures.crowded), "");
+        rows.add("frames over capacity", static_cast<double>(figures.capacity_exceeded), "");
     }
 }
 

@@ -88,7 +88,7 @@ struct StaticCase
     SceneSource scene;
     double near_p50{kNoGoal}, near_p99{kNoGoal};
     double flight_p99{kNoGoal};
-    double rehearsed_p99{kNoGoal}; ///< Goal as a share of our own warm p99.
+    double warmed_p99{kNoGoal}; ///< Goal as a share of our own warm p99.
 };
 /// Queries of the touching motion against a fully refined model, compared with the peers.
 void run_static_case(const CaseContext& context, const StaticCase& test_case);

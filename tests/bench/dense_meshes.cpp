@@ -100,8 +100,8 @@ DenseTool dense_capsule(const char* name, double radius_m, double length_m)
 /// Model of the mesh tools in all runs.
 const Scene& dense_tool_scene(SceneStore& scenes)
 {
-    const TriangleMesh ball = make_shape(Shape::bumpy_sphere, 1'000).value();
-    return scenes.get(NamedMesh{"tool-20mm", scaled(ball, 0.2)});
+    const TriangleMesh sphere = make_shape(Shape::bumpy_sphere, 1'000).value();
+    return scenes.get(NamedMesh{"tool-20mm", scaled(sphere, 0.2)});
 }
 
 DenseTool dense_mesh_tool(const Scene& scene)
@@ -147,7 +147,7 @@ std::vector<Vec3> dense_way(const Scene& scene, const DenseTool& tool, std::uint
     manner.diagonal_m = scene.model.diagonal_m;
     manner.step_m = kDenseSlide_m_per_s * kPeriod_s;
     manner.turn_rad = kDenseTurn_rad_per_s * kPeriod_s;
-    manner.turn_rate = [](std::uint64_t turn)
+    manner.rotation_rate = [](std::uint64_t turn)
     { return 1.0 - kDenseUneven * (0.5 + 0.5 * test::signed_unit(kSeed, turn)); };
     test::SurfaceSlide slide(
         tree, manner, {middle_m.x(), middle_m.y() - kDenseRound_m, tree.high_m().z() + 0.01});
@@ -182,7 +182,7 @@ struct DenseFigures
         const bool has_force = tool.force_n.norm() > 0.0;
         pressed += is_pressed ? 1U : 0U;
         forceless += is_pressed && !has_force ? 1U : 0U;
-        waiting += is_pressed && !has_force && (tool.frozen || tool.held_back) ? 1U : 0U;
+        waiting += is_pressed && !has_force && (tool.halted || tool.data_limited) ? 1U : 0U;
         in_a_row = is_pressed && !has_force ? in_a_row + 1 : 0;
         longest = std::max(longest, in_a_row);
         contacts += tool.in_contact ? 1U : 0U;

@@ -121,7 +121,7 @@ def ground(axes, slope=0.0):
 
 
 def coupling(_):
-    """Forces on a tool: two springs, friction's cone, and the springs of --guide."""
+    """Forces on a tool: two springs, friction's cone, and the springs of --fixture."""
     figure, axes = panels(("held back: two springs", "friction: it sticks", "friction: it slides",
                            "guided: plane, line, point"), 2.9)
     for one in axes:

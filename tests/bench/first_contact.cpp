@@ -117,9 +117,9 @@ FirstContactFigures measure_first_contact(const ModelStore& store, const Decoded
     for (std::uint32_t i = 0; i < contacts; ++i)
     {
         const Vec3 place_m = surface.draw_by_area();
-        const auto named = index.named_by(BallZone{place_m, radius_m});
+        const auto named = index.named_by(SphereZone{place_m, radius_m});
         count_named(store, named, counted);
-        count_needed(store, refinement.certify_ball(place_m, radius_m).splits, named.chunks,
+        count_needed(store, refinement.certify_sphere(place_m, radius_m).splits, named.chunks,
                      counted);
     }
     return figures_of(store, counted);

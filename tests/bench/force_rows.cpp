@@ -53,7 +53,7 @@ ForceFigures measure_forces(const ForceTrace& trace, const std::vector<Vec3>& go
         const Vec3 truth_n = touch.stiffness_n_per_m * (rests_m[i] - goals_m[i]);
         errors_n.push_back(length_of(output.force_n - truth_n));
         const bool is_stuck =
-            output.frozen || !output.in_contact || !((output.proxy_m - rests_m[i]).norm() <= lag_m);
+            output.halted || !output.in_contact || !((output.proxy_m - rests_m[i]).norm() <= lag_m);
         figures.stuck += is_stuck ? 1U : 0U;
         figures.without_force += output.force_n.norm() > 0.0 ? 0U : 1U;
         if (i > 0)
@@ -106,7 +106,7 @@ void add_lag_rows(CaseRows& rows, const ForceTrace& trace, std::size_t slows_at)
         const ToolOutput& output = trace.outputs[i];
         largest_m = std::max(largest_m, output.lag_m);
         cut_short += output.cut_short ? 1.0 : 0.0;
-        if (i >= slows_at && output.in_contact && !output.frozen && !output.under_way)
+        if (i >= slows_at && output.in_contact && !output.halted && !output.under_way)
         {
             back_ms = std::min(back_ms, 1e3 * kPeriod_s * static_cast<double>(i - slows_at));
         }

@@ -91,7 +91,7 @@ void add_cold(CaseRows& rows, const FrameReplay& replay, CacheState caches, doub
 {
     const std::vector<double>& all = replay.sum_us(caches).least();
     const auto end = all.begin() + static_cast<std::ptrdiff_t>(std::min(frames, all.size()));
-    const std::string figure = caches == CacheState::cold ? "frame cold" : "frame rehearsed";
+    const std::string figure = caches == CacheState::cold ? "frame cold" : "frame warmed";
     add_spread(rows, figure, spread_of({all.begin(), end}), {kNoGoal, kNoGoal, max_goal});
     rows.add(figure + ".raw_max", replay.sum_us(caches).raw_max(), "us");
 }
@@ -138,7 +138,7 @@ void run_frame_case(const CaseContext& context, const FrameCase& test_case)
     const auto peer = peer_spread(run, passes, peer_name);
     add_warm(rows, replay, test_case, peer, peer_name);
     const std::size_t cold_frames = frames / kColdShare;
-    for (const CacheState caches : {CacheState::cold, CacheState::rehearsed})
+    for (const CacheState caches : {CacheState::cold, CacheState::warmed})
     {
         replay.run(caches, std::min(passes, 2U), cold_frames);
         add_cold(rows, replay, caches, caches == CacheState::cold ? test_case.cold_max : kNoGoal,

@@ -53,7 +53,7 @@ void FrameReplay::prepare(test::FrameRig& rig, CacheState caches)
     }
     if (caches != CacheState::cold)
     {
-        rig.frame().rehearse();
+        rig.frame().warm_caches();
     }
 }
 
@@ -77,7 +77,7 @@ void FrameReplay::run_once(CacheState caches, std::size_t frames)
         const std::vector<Vec3> goals{run_.goals_m[i]};
         if (i == run_.lead_in)
         {
-            bytes_before = rig.courier().counters().coded_bytes;
+            bytes_before = rig.chunk_loader().counters().coded_bytes;
         }
         prepare(rig, is_counted ? caches : CacheState::warm);
         FrameOutput output;
@@ -94,7 +94,7 @@ void FrameReplay::run_once(CacheState caches, std::size_t frames)
             if (is_counted)
             {
                 count(output);
-                work_.coded_bytes = rig.courier().counters().coded_bytes - bytes_before;
+                work_.coded_bytes = rig.chunk_loader().counters().coded_bytes - bytes_before;
             }
         }
         if (hashes_[i] != output.models[0].state_hash)
@@ -128,7 +128,7 @@ void FrameReplay::count(const FrameOutput& output)
     work_.counters += output.work;
     work_.contacts += is_in_contact ? 1 : 0;
     work_.uncertified += is_in_contact && kind != AnswerKind::exact ? 1 : 0;
-    work_.open += kind == AnswerKind::exact || kind == AnswerKind::decided ? 0 : 1;
+    work_.open += kind == AnswerKind::exact || kind == AnswerKind::separated ? 0 : 1;
     work_.model = output.models[0];
 }
 

@@ -21,9 +21,9 @@ namespace tactus::bench
 /// Content of the caches at the start of a frame.
 enum class CacheState : std::uint8_t
 {
-    warm, ///< Content left by the last frame and its warm-up, as in a loop that runs on its own.
-    cold, ///< Evicted before the frame, and not warmed.
-    rehearsed, ///< Evicted, then warmed, as a loop does in the wait before its deadline.
+    warm,   ///< Content left by the last frame and its warm-up, as in a loop that runs on its own.
+    cold,   ///< Evicted before the frame, and not warmed.
+    warmed, ///< Evicted, then warmed, as a loop does in the wait before its deadline.
 };
 
 /// Path of one tool over one model, with the budgets of the frames.

@@ -27,7 +27,7 @@ test::RigOptions options_of(const PairRun& run)
     tool.radius_m = run.radius_m;
     tool.speed_max_m_per_s = run.speed_m_per_s;
     tool.core = MeshCore{ModelId{1}};
-    tool.passes_through = true;
+    tool.query_only = true;
     tool.wants_pairs = true;
     options.tools = {tool};
     return options;

@@ -172,7 +172,7 @@ void add_peers(TouchTrial& trial)
 /// least known distance otherwise.
 double told_distance_m(const PairOutput& answer)
 {
-    return answer.kind == AnswerKind::decided ? kInfinity : answer.upper_m;
+    return answer.kind == AnswerKind::separated ? kInfinity : answer.upper_m;
 }
 
 FrameRun make_streaming_run(const TouchTrial& trial, std::size_t pool_bytes)
@@ -181,7 +181,7 @@ FrameRun make_streaming_run(const TouchTrial& trial, std::size_t pool_bytes)
     ToolSpec tool;
     tool.radius_m = trial.radius_m();
     tool.speed_max_m_per_s = kFastest_diag_per_s * trial.diagonal_m();
-    tool.passes_through = true; // The answers are for the motion's own points.
+    tool.query_only = true; // The answers are for the motion's own points.
     run.rig.tools = {tool};
     run.rig.pool_bytes = pool_bytes;
     return run;
@@ -202,7 +202,7 @@ void add_frame_answers(const TouchTrial& trial, CaseRows& rows, const FrameRepla
         {
             error_m = std::max(error_m, std::abs(answer.upper_m - trial.questions.truth_m[i]));
         }
-        open += answer.kind == AnswerKind::exact || answer.kind == AnswerKind::decided ? 0U : 1U;
+        open += answer.kind == AnswerKind::exact || answer.kind == AnswerKind::separated ? 0U : 1U;
     }
     rows.add("distance off", error_m / trial.diagonal_m(), "diag",
              our_goal(kStreaming, kOurError_diag));

@@ -341,7 +341,7 @@ def stream(data):
                      range(len(tours)), mark, color=COLOURS[shade], markeredgewidth=2,
                      markersize=5 if mark == "o" else 12,
                      label="whole programs" if key == "value" else "goal, at most")
-    for one, title, names in ((axes[0], "by way of foretelling", cases),
+    for one, title, names in ((axes[0], "by prediction", cases),
                               (axes[1], "over DDS, two networks", tours)):
         one.set(title=title, xlabel="frames whose answer is open, %", yticks=range(len(names)),
                 yticklabels=[name.removeprefix("1.1M, ") for name in names],

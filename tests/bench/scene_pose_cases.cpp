@@ -4,7 +4,7 @@
 /// Effect of external poses on a force, and their cost in a frame.
 
 #include "host_tools/shapes/shapes.hpp"
-#include "platform/loop/pose_door.hpp"
+#include "platform/loop/scene_mailbox.hpp"
 #include "tests/bench/least_times.hpp"
 #include "tests/bench/measuring.hpp"
 #include "tests/bench/scene_cases.hpp"
@@ -32,7 +32,7 @@ MonotonicTime time_of(std::int64_t frame)
     return MonotonicTime{1'000'000'000} + milliseconds(frame);
 }
 
-struct GlideCase
+struct BlendCase
 {
     double speed_m_per_s;
     double goal_n;
@@ -54,7 +54,7 @@ struct ForceSteps
 };
 
 /// Force steps of a tool held 6 mm below the top of a plate of 500 N/m that moves up and down.
-ForceSteps force_steps(const Scene& scene, const GlideCase& test_case, bool glides,
+ForceSteps force_steps(const Scene& scene, const BlendCase& test_case, bool blends,
                        std::uint32_t frames)
 {
     constexpr double kDepth_m = 0.006;
@@ -73,7 +73,7 @@ ForceSteps force_steps(const Scene& scene, const GlideCase& test_case, bool glid
         rig.step(goal);
     }
     const ObjectPose start = rig.pose();
-    PoseDoor door({&start, 1}, kAgeLimit);
+    SceneMailbox queues({&start, 1}, kAgeLimit);
     test::Random random = test::Random::seeded(kSeed);
     ForceSteps steps;
     Vec3 before = Vec3::Zero();
@@ -90,10 +90,10 @@ ForceSteps force_steps(const Scene& scene, const GlideCase& test_case, bool glid
             ObjectPose pose = start;
             pose.translation_m.z() += offset_m(test_case.speed_m_per_s, sent);
             pose.stamp_ns = time_of(sent).ns;
-            glides ? door.put(0, pose, time_of(frame)) : rig.place_object(pose);
+            blends ? queues.put(0, pose, time_of(frame)) : rig.place_object(pose);
         }
-        door.hear(0, time_of(frame));
-        for (const SceneChange& change : door.refresh(time_of(frame)))
+        queues.hear(0, time_of(frame));
+        for (const SceneChange& change : queues.refresh(time_of(frame)))
         {
             rig.place_object(change.pose);
         }
@@ -113,28 +113,28 @@ ForceSteps force_steps(const Scene& scene, const GlideCase& test_case, bool glid
     return steps;
 }
 
-void run_glide_case(const CaseContext& context, const GlideCase& test_case)
+void run_blend_case(const CaseContext& context, const BlendCase& test_case)
 {
     const auto plate = needed(make_thin_plate(20, 0.02));
     const Scene& scene = context.scenes.get(NamedMesh{"plate", plate});
     const std::uint32_t frames = context.options.frames_or(5'000, 2'000);
-    const ForceSteps gliding = force_steps(scene, test_case, true, frames);
+    const ForceSteps blending = force_steps(scene, test_case, true, frames);
     const ForceSteps jumping = force_steps(scene, test_case, false, frames);
     Row common = context.common_row(scene.model.name, "poses");
     common.frames = frames;
-    common.hash = gliding.hash;
+    common.hash = blending.hash;
     CaseRows rows(context.rows, common);
-    rows.add("largest step of the force", gliding.largest_n, "N", test_case.goal_n);
+    rows.add("largest step of the force", blending.largest_n, "N", test_case.goal_n);
     rows.add("the same with poses as they come", jumping.largest_n, "N");
 }
 
-struct DoorCase
+struct QueueCase
 {
     std::uint32_t objects;
     std::uint32_t moving; ///< Objects that move 100 times a second.
 };
 
-void run_door_case(const CaseContext& context, const DoorCase& test_case)
+void run_queue_case(const CaseContext& context, const QueueCase& test_case)
 {
     const PinnedCore pinned(context.options.core);
     const std::uint32_t frames = context.options.frames_or(5'000, 1'000);
@@ -143,20 +143,20 @@ void run_door_case(const CaseContext& context, const DoorCase& test_case)
     std::uint64_t hash = test_case.objects;
     for (std::uint32_t pass = 0; pass < context.options.passes_or(5, 2); ++pass)
     {
-        PoseDoor door(placed, kAgeLimit);
+        SceneMailbox queues(placed, kAgeLimit);
         std::int64_t frame = 0;
         const auto put = [&](std::uint32_t object)
         {
             ObjectPose pose;
             pose.translation_m.x() = 1e-5 * static_cast<double>(frame);
             pose.stamp_ns = time_of(frame).ns;
-            door.put(object, pose, time_of(frame));
+            queues.put(object, pose, time_of(frame));
         };
         const auto hear_all = [&]
         {
             for (std::uint32_t i = 0; i < test_case.objects && frame % 20 == 0; ++i)
             {
-                door.hear(i, time_of(frame));
+                queues.hear(i, time_of(frame));
             }
         };
         for (std::uint32_t i = 0; i < test_case.objects; ++i)
@@ -166,7 +166,7 @@ void run_door_case(const CaseContext& context, const DoorCase& test_case)
         for (; frame < 200; ++frame) // All objects are tracked, and rest.
         {
             hear_all();
-            static_cast<void>(door.refresh(time_of(frame)));
+            static_cast<void>(queues.refresh(time_of(frame)));
         }
         for (std::uint32_t i = 0; i < frames; ++i, ++frame)
         {
@@ -177,7 +177,7 @@ void run_door_case(const CaseContext& context, const DoorCase& test_case)
                 put(moved * (test_case.objects / test_case.moving));
             }
             const auto begin = BenchClock::now();
-            const auto changes = door.refresh(time_of(frame));
+            const auto changes = queues.refresh(time_of(frame));
             us.keep(i, microseconds(begin, BenchClock::now()) - clock_cost_us());
             hash = hash * 31 + changes.size();
         }
@@ -198,13 +198,13 @@ std::vector<Case> scene_pose_cases()
 {
     std::vector<Case> cases;
     cases.push_back(
-        make_case("moved at 0.1 m/s, 500 N/m", When::always, run_glide_case, GlideCase{0.1, 0.06}));
-    for (const DoorCase& test_case : {DoorCase{64, 0}, DoorCase{kMaxObjects, 0},
-                                      DoorCase{kMaxObjects, 64}, DoorCase{kMaxObjects, 100}})
+        make_case("moved at 0.1 m/s, 500 N/m", When::always, run_blend_case, BlendCase{0.1, 0.06}));
+    for (const QueueCase& test_case : {QueueCase{64, 0}, QueueCase{kMaxObjects, 0},
+                                       QueueCase{kMaxObjects, 64}, QueueCase{kMaxObjects, 100}})
     {
         cases.push_back(make_case(
             fmt::format("poses, {} objects, {} moving", test_case.objects, test_case.moving),
-            When::always, run_door_case, test_case));
+            When::always, run_queue_case, test_case));
     }
     return cases;
 }

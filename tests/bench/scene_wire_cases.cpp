@@ -205,7 +205,7 @@ Json measure_joins(ShowingHost& host, const std::filesystem::path& folder)
 
 constexpr const char* kStart = "start with 256 models";
 constexpr const char* kFarModel = "a far model at the start";
-constexpr const char* kLoop = "hrtc with 256 guests, until its loop begins";
+constexpr const char* kLoop = "hrtc with 256 streamed models, until its loop begins";
 constexpr const char* kWhole = "hrtc with 256 whole models, until its loop begins";
 
 /// Time from the program's start to its line about objects, in ms.
@@ -241,7 +241,7 @@ Json measure_start(ShowingHost& /*host*/, const std::filesystem::path& folder)
                 {kWhole, whole}};
 }
 
-struct GuestCase
+struct StreamedModelCase
 {
     std::uint32_t models;
     std::uint32_t objects;
@@ -276,7 +276,7 @@ std::filesystem::path write_scene(const Files& files, double diagonal_m, std::ui
 }
 
 /// A device moves at 2 m/s with 20 ms delay, in pools that do not hold all models.
-void run_guest_case(const CaseContext& context, const GuestCase& test_case)
+void run_streamed_model_case(const CaseContext& context, const StreamedModelCase& test_case)
 {
     Files files;
     double diagonal_m = 0.0;
@@ -286,7 +286,7 @@ void run_guest_case(const CaseContext& context, const GuestCase& test_case)
         files.push_back(scene.model.path);
         diagonal_m = scene.model.diagonal_m;
     }
-    const test::TemporaryFolder folder("scene-guests");
+    const test::TemporaryFolder folder("scene-streamed-models");
     const auto path = write_scene(files, diagonal_m, test_case.objects, folder.path());
     auto networks = RelayedNetworks::make({10.0}, folder.path());
     auto host = start_at(networks.host(), "spm_publish", folder.path(),
@@ -297,11 +297,11 @@ void run_guest_case(const CaseContext& context, const GuestCase& test_case)
                            fmt::format("{}", test_case.visits)});
     rider.wait();
     const Json told = report_in(folder.path() / "scene_rider.log");
-    if (told["touched"] != told["visits"] || told["are_guests"] == 0)
+    if (told["touched"] != told["visits"] || told["streamed_models"] == 0)
     {
         throw Failure("not every object was touched, or all models are here: " + told.dump());
     }
-    Row common = context.common_row("bumpy-sphere-2000", "guests");
+    Row common = context.common_row("bumpy-sphere-2000", "streamed_models");
     common.setting = fmt::format("{} MiB", test_case.pool_mib);
     CaseRows rows(context.rows, common);
     rows.add("start", told["start_ms"].get<double>(), "ms", 500.0);
@@ -336,8 +336,8 @@ std::vector<Case> scene_wire_cases()
               kModels,
               measure_start,
               {{kStart, "ms", 500.0}, {kFarModel, "B"}, {kLoop, "ms", 500.0}, {kWhole, "ms"}}}),
-        make_case("guests, 200 objects of 200 models", When::full_only, run_guest_case,
-                  GuestCase{200, 200, 60, "8"}),
+        make_case("streamed models, 200 objects of 200 models", When::full_only,
+                  run_streamed_model_case, StreamedModelCase{200, 200, 60, "8"}),
     };
 }
 

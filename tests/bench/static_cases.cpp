@@ -115,7 +115,7 @@ void add_near_work(CaseRows& rows, TactusQuery& ours, const Questions& questions
 
 /// Times of near questions with evicted caches, optionally warmed.
 Spread cold_spread(TactusQuery& ours, const Questions& questions, const std::vector<bool>& near,
-                   double band_m, bool rehearsed)
+                   double band_m, bool warmed)
 {
     CacheEvictor evictor;
     std::vector<double> times_us;
@@ -128,9 +128,9 @@ Spread cold_spread(TactusQuery& ours, const Questions& questions, const std::vec
         }
         sum_m += ours.distance_m(questions.points_m[i > 0 ? i - 1 : 0], band_m);
         evictor.evict();
-        if (rehearsed)
+        if (warmed)
         {
-            ours.rehearse();
+            ours.warm_caches();
         }
         const BenchClock::time_point start = BenchClock::now();
         sum_m += ours.distance_m(questions.points_m[i], band_m);
@@ -174,8 +174,8 @@ void run_static_case(const CaseContext& context, const StaticCase& test_case)
     if (!context.options.count)
     {
         const double warm_p99 = quantile(chosen(banded[0].us.least(), near), 0.99);
-        add_spread(rows, "T_Q near, rehearsed", cold_spread(ours, questions, near, band_m, true),
-                   test_case.rehearsed_p99 * warm_p99);
+        add_spread(rows, "T_Q near, warmed", cold_spread(ours, questions, near, band_m, true),
+                   test_case.warmed_p99 * warm_p99);
         add_spread(rows, "T_Q near, cold", cold_spread(ours, questions, near, band_m, false),
                    kNoGoal);
     }

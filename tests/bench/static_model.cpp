@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "tests/bench/static_model.hpp"
 
-#include "transport/courier.hpp"
+#include "transport/chunk_loader.hpp"
 #include "transport/store/model_store.hpp"
 
 #include <cmath>
@@ -33,8 +33,8 @@ std::size_t static_pool_bytes(const Scene& scene)
     const ModelHeader& header = store.value().header();
     const ModelCounts counts = header.counts();
     // Memory that belongs to no model, and the loader.
-    const std::size_t beside =
-        (std::size_t{1} << 20U) + Courier::required_bytes(counts.chunks(), counts.index_pages());
+    const std::size_t beside = (std::size_t{1} << 20U) +
+                               ChunkLoader::required_bytes(counts.chunks(), counts.index_pages());
     std::size_t bytes = 64 * scene.model.faces.size();
     for (;; bytes += bytes / 50)
     {
@@ -92,7 +92,7 @@ bool refine_fully(Model& model)
 std::unique_ptr<test::FrameRig> refined_rig(const Scene& scene, test::RigOptions options)
 {
     options.pool_bytes = ample_pool_bytes(scene);
-    options.courier_steps_per_frame = 32;
+    options.chunk_loader_steps_per_frame = 32;
     auto rig = std::make_unique<test::FrameRig>(scene.model, options);
     load_everything(*rig);
     const Model& model = rig->model();
@@ -118,10 +118,10 @@ double TactusQuery::distance_m(const Vec3& point_m, double band_m)
     return is_beyond || is_exact ? answer.upper_m : std::numeric_limits<double>::quiet_NaN();
 }
 
-void TactusQuery::rehearse()
+void TactusQuery::warm_caches()
 {
     const QueryMemory memory = memory_;
-    rehearsed_m_ += distance_m(last_point_m_, last_band_m_);
+    warmed_m_ += distance_m(last_point_m_, last_band_m_);
     memory_ = memory;
 }
 

@@ -58,7 +58,7 @@ public:
 
     /// Repeats the last question into scratch memory with the same machine code, as a loop does in
     /// the wait before its deadline.
-    void rehearse();
+    void warm_caches();
 
     /// Counts over all questions so far.
     [[nodiscard]] std::uint64_t nodes_visited() const { return nodes_visited_; }
@@ -70,7 +70,7 @@ private:
     Vec3 last_point_m_{0.0, 0.0, 0.0};
     double last_band_m_{0.0};
     Vec3 nearest_m_{0.0, 0.0, 0.0};
-    double rehearsed_m_{0.0};
+    double warmed_m_{0.0};
     std::uint64_t nodes_visited_{0};
     std::uint64_t triangles_tested_{0};
 };

@@ -54,7 +54,7 @@ public:
     [[nodiscard]] const StreamFigures& figures() const { return figures_; }
 
 private:
-    void count_loads(std::span<const DoorEvent> events);
+    void count_loads(std::span<const QueueEvent> events);
 
     const TapTour& tour_;
     StreamFigures figures_;

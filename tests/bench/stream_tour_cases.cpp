@@ -101,7 +101,7 @@ Json run_hrtc(const Scene& scene, const NetworkEnd& end, const HrtcRun& run,
                           fmt::format("{}", run.cache_mib),
                           "--splits",
                           fmt::format("{}", tour_splits(run.speed_diag_per_s)),
-                          "--follow-speed",
+                          "--proxy-speed",
                           fmt::format("{}", kTourFollow * run.speed_diag_per_s * diagonal_m),
                           "--duration",
                           fmt::format("{}", static_cast<double>(run.frames) * kPeriod_s),
@@ -173,7 +173,7 @@ void run_tour_case(const CaseContext& context, const TourCase& test_case)
                  (static_cast<double>(figures.frames) * kPeriod_s),
              "kB/s");
     rows.add("reloads", figures.per_second(figures.reloads), "/s");
-    rows.add("own faults", number_of(report["deadline"]["own_fault"]), "");
+    rows.add("overruns", number_of(report["deadline"]["overrun"]), "");
     rows.add("late frames", number_of(report["deadline"]["missed"]), "");
 }
 
@@ -189,7 +189,7 @@ void run_first_touch_case(const CaseContext& context, const FirstTouchCase& test
     const Vec3 touching_m = tour.goals_m[tour.touches.at(0)];
     const Vec3 away_m = touching_m + Vec3(10.0, 0.0, 0.0) * scene.model.diagonal_m;
     double payload_kb = 0.0;
-    std::uint64_t first_wish = 0;
+    std::uint64_t first_request = 0;
     std::uint64_t first_exact = 0;
     std::uint64_t loads = 0;
     std::uint64_t hash = 0;
@@ -206,15 +206,16 @@ void run_first_touch_case(const CaseContext& context, const FirstTouchCase& test
         const double all_kb = static_cast<double>(traffic.payload_bytes) / kKilo;
         payload_kb = touches ? all_kb - payload_kb : all_kb;
         std::uint64_t frame = 0;
-        first_wish = first_exact = loads = 0;
+        first_request = first_exact = loads = 0;
         look_at_frames(folder.path(),
                        [&](const FrameOutput& output)
                        {
                            ++frame;
                            hash += output.models[0].state_hash * (2 * frame + 1);
                            loads += output.work.pages_adopted;
-                           first_wish =
-                               first_wish == 0 && output.work.requests > 0 ? frame : first_wish;
+                           first_request = first_request == 0 && output.work.requests > 0
+                                               ? frame
+                                               : first_request;
                            const bool is_exact =
                                touches && output.pairs[0].kind == AnswerKind::exact;
                            first_exact = first_exact == 0 && is_exact ? frame : first_exact;
@@ -225,9 +226,10 @@ void run_first_touch_case(const CaseContext& context, const FirstTouchCase& test
     common.hash = hash;
     CaseRows rows(context.rows, common);
     rows.add("UDP payload", payload_kb, "kB", goal_if(test_case.payload_kb));
-    rows.add("first wish to exact",
-             first_exact == 0 ? std::numeric_limits<double>::quiet_NaN()
-                              : static_cast<double>(first_exact - first_wish) * kPeriod_s * kKilo,
+    rows.add("first request to exact",
+             first_exact == 0
+                 ? std::numeric_limits<double>::quiet_NaN()
+                 : static_cast<double>(first_exact - first_request) * kPeriod_s * kKilo,
              "ms", goal_if(test_case.time_ms));
     rows.add("pieces", static_cast<double>(loads), "");
 }

@@ -23,7 +23,7 @@ constexpr std::uint32_t kFrames = 2'000;
 FrameRun slide(const Scene& scene)
 {
     FrameRun run = make_slide(scene, 0.5, 64, kMiB, kFrames);
-    run.rig.courier_steps_per_frame = 1;
+    run.rig.chunk_loader_steps_per_frame = 1;
     run.rig.faults.delay_polls_min = run.rig.faults.delay_polls_max = 10;
     return run;
 }

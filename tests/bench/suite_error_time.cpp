@@ -64,7 +64,7 @@ struct ErrorTimeFigures
 
 void set_latency(FrameRun& run, std::uint32_t latency_ms)
 {
-    run.rig.courier_steps_per_frame = 1; // One poll is one frame.
+    run.rig.chunk_loader_steps_per_frame = 1; // One poll is one frame.
     run.rig.faults.delay_polls_min = run.rig.faults.delay_polls_max = latency_ms;
 }
 
@@ -226,7 +226,7 @@ void add_streaming(CaseRows& rows, const FrameReplay& replay, double diagonal_m)
         widths_diag.push_back((pair.upper_m - pair.lower_m) / diagonal_m);
     }
     const FrameWork& work = replay.work();
-    rows.add("bracket p99", spread_of(widths_diag).p99, "diag");
+    rows.add("bounds p99", spread_of(widths_diag).p99, "diag");
     rows.add("exact", 100.0 * exact / static_cast<double>(work.frames), "%");
     rows.add("wire", work.per_frame(work.coded_bytes) * 1e-3 / kPeriod_s, "kB/s");
 }
@@ -326,7 +326,7 @@ private:
         std::ranges::copy(truth.questions().points_m, run.goals_m.begin() + kApproachFrames);
         ToolSpec& tool = run.rig.tools[0];
         tool.radius_m = truth.radius_m();
-        tool.passes_through = true; // The tool is at the peers' points.
+        tool.query_only = true; // The tool is at the peers' points.
         set_latency(run, kLatency_ms);
         setting.change(run);
         if (run.rig.static_when_it_fits)
@@ -351,7 +351,7 @@ private:
         const std::size_t frames = 2 * scene_.model.faces.size() / kSplits + 1'000;
         run.goals_m.insert(run.goals_m.begin(), frames, run.goals_m.front());
         run.lead_in += frames;
-        run.rig.courier_steps_per_frame = 4;
+        run.rig.chunk_loader_steps_per_frame = 4;
         run.rig.faults = {};
     }
 

@@ -177,7 +177,7 @@ void run_sweep(const SweepContext& context, double radius_m, const SpeedCase& sp
     context.coarser[{speed_m_per_s, radius_m}] = figures.error_n.p99;
 }
 
-/// Sweep without a known true force: with friction, or with a device that outruns the proxy.
+/// Sweep without a known true force: with friction, or with a device faster than the proxy.
 void run_felt_sweep(const SweepContext& context, const SpeedCase& speed, double friction,
                     double speed_max_m_per_s)
 {

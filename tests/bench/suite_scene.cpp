@@ -157,7 +157,7 @@ private:
     {
         for (std::uint32_t tool = 0; tool < output.tools.size(); ++tool)
         {
-            const Vec3 center = rig.frame().tool(tool).stance().place.translation_m;
+            const Vec3 center = rig.frame().tool(tool).placement().place.translation_m;
             double nearest_other_m = kInfinity;
             for (std::uint32_t object = 0; object < options_.objects.size(); ++object)
             {

@@ -100,8 +100,8 @@ FrameRun make_run(const CaseContext& context, const SkipCase& test_case, const S
                               static_cast<std::size_t>(test_case.pool_mib * 0x1p20), 1);
     run.goals_m = touch_motion(scene.touch(), frames);
     run.lead_in = 0;
-    run.rig.tools[0].passes_through = true; // The path does not depend on known data.
-    run.rig.courier_steps_per_frame = 1;
+    run.rig.tools[0].query_only = true; // The path does not depend on known data.
+    run.rig.chunk_loader_steps_per_frame = 1;
     run.rig.faults.delay_polls_min = run.rig.faults.delay_polls_max = 10;
     run.models = test_case.models;
     for (std::uint32_t i = 0; i < run.models; ++i)

@@ -37,7 +37,7 @@ using Report = std::function<void(const TrialFigures&)>;
 struct Sizes
 {
     int kernel_cases;             ///< Cases of each of 15 classes.
-    std::uint32_t bracket_frames; ///< Frames for each model and hardship.
+    std::uint32_t bounded_frames; ///< Frames for each model and hardship.
     std::uint32_t twin_frames;    ///< Frames for each model.
     std::uint64_t operations;     ///< Splits and merges for each model.
     std::uint32_t touches;        ///< Touches of test::kTouchFrames frames of 1 ms.
@@ -110,14 +110,14 @@ void try_brackets(const Sizes& sizes, bool full, const Report& report)
     {
         const test::CenterOracle oracle(*model);
         TrialFigures all;
-        all.name = "bracket, " + model->name;
-        all.unit = "of an exact answer's bracket";
+        all.name = "bounds, " + model->name;
+        all.unit = "of an exact answer's bounds";
         for (const test::Hardship& hardship : test::hardships(*model))
         {
             const std::uint64_t seed = test::seed_of(++own);
             all.add(test::run_bracket_trial(
-                        {*model, oracle.tree(), oracle, hardship, seed, sizes.bracket_frames})
-                        .bracket);
+                        {*model, oracle.tree(), oracle, hardship, seed, sizes.bounded_frames})
+                        .bounded);
         }
         report(all);
     }
@@ -146,8 +146,8 @@ void try_liars(const Sizes& sizes, bool /*full*/, const Report& report)
         const test::CenterOracle oracle(model);
         judge(without, test::run_bracket_trial(
                            {model, oracle.tree(), oracle, test::hardship_named(model, "K-1"),
-                            test::seed_of(kStabilitySeed), 10 * sizes.bracket_frames})
-                           .bracket);
+                            test::seed_of(kStabilitySeed), 10 * sizes.bounded_frames})
+                           .bounded);
     }
     report(smaller);
     report(without);
@@ -233,11 +233,12 @@ void try_pop_through(const Sizes& sizes, bool full, const Report& report)
     {
         report(all.crossings);
         report(all.run_over);
-        fmt::print(stderr,
-                   "{}: {} frames in contact, {} felt smooth, {} frozen, {} squeezed, {} run "
-                   "over\n",
-                   all.crossings.name, all.in_contact, all.felt_smooth, all.frozen, all.squeezed,
-                   all.run_over.trials);
+        fmt::print(
+            stderr,
+            "{}: {} frames in contact, {} felt shaded, {} halted, {} over-constrained, {} run "
+            "over\n",
+            all.crossings.name, all.in_contact, all.felt_shaded, all.halted, all.over_constrained,
+            all.run_over.trials);
     };
     for (const bool is_smooth : {false, true})
     {
@@ -281,10 +282,11 @@ void try_rigid_tools(const Sizes& sizes, bool /*full*/, const Report& report)
             {
                 report(figures.steps);
             }
-            fmt::print(stderr,
-                       "{}: {} frames in contact, {} frozen, {} squeezed, {} run over and told\n",
-                       figures.crossings.name, figures.contacts, figures.frozen, figures.squeezed,
-                       figures.run_over);
+            fmt::print(
+                stderr,
+                "{}: {} frames in contact, {} halted, {} over-constrained, {} run over and told\n",
+                figures.crossings.name, figures.contacts, figures.halted, figures.over_constrained,
+                figures.run_over);
         }
     }
 }
@@ -321,9 +323,9 @@ void try_force_twins(const Sizes& sizes, bool full, const Report& report)
             report(all.after_waits);
             fmt::print(stderr,
                        "{}: {:.2g} N apart, {} frames of splits, {} of merges, {} of pages; {} "
-                       "fading, {} held back with steps to {:.2g} N\n",
+                       "fading, {} data-limited with steps to {:.2g} N\n",
                        all.steps.name, all.apart_n, all.refining, all.coarsening, all.adopting,
-                       all.fading, all.held_back, all.held_back_n);
+                       all.fading, all.data_limited, all.data_limited_n);
         }
     }
 }

@@ -34,7 +34,7 @@ void run_starve_case(const CaseContext& context, const test::GreedyCase& greedy)
     common.frames = frames;
     CaseRows rows(context.rows, common);
     rows.add("exact", figures.exact_percent(), "%", 100.0).is_least = true;
-    rows.add("held back", figures.held_back_percent(), "%", shares_contact ? 5.0 : 0.0);
+    rows.add("data-limited", figures.data_limited_percent(), "%", shares_contact ? 5.0 : 0.0);
     rows.add("force step", figures.force_step_n, "N", shares_contact ? 0.1 : 0.05);
     rows.add("splits, most of a frame", figures.splits_max, "", greedy.splits);
     rows.add("shed", 100.0 * figures.shed / frames, "%");

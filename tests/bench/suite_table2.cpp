@@ -181,7 +181,7 @@ private:
     {
         const auto open = std::ranges::count_if(
             frames.answers, [](const PairOutput& answer)
-            { return answer.kind != AnswerKind::exact && answer.kind != AnswerKind::decided; });
+            { return answer.kind != AnswerKind::exact && answer.kind != AnswerKind::separated; });
         return 100.0 * static_cast<double>(open) / static_cast<double>(frames.answers.size());
     }
 
@@ -201,7 +201,7 @@ private:
             {
                 throw Failure(run.object.model.name + ": an answer does not hold the truth");
             }
-            const double error = answer.kind == AnswerKind::decided
+            const double error = answer.kind == AnswerKind::separated
                                      ? run.radius_m - truth
                                      : std::max(answer.upper_m - truth, truth - answer.lower_m);
             largest = std::max(largest, error);

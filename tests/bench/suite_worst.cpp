@@ -180,10 +180,10 @@ const std::vector<ToolCases>& all_tools()
     using Tool = WorstTool;
     static const std::vector<ToolCases> kTools{
         {"ball",
-         {{"sunk by a stall", Tool::ball, Motion::sinks},
-          {"everything late", Tool::ball, Motion::waits},
-          {"teleports", Tool::ball, Motion::teleports, true},
-          {"among 32 objects", Tool::ball, Motion::in_crowd}}},
+         {{"sunk by a stall", Tool::sphere, Motion::sinks},
+          {"everything late", Tool::sphere, Motion::waits},
+          {"teleports", Tool::sphere, Motion::teleports, true},
+          {"among 32 objects", Tool::sphere, Motion::in_crowd}}},
         {"capsule", {{"sunk by a stall", Tool::capsule, Motion::sinks}}},
         {"box",
          {{"sunk by a stall", Tool::box, Motion::sinks},
@@ -203,7 +203,7 @@ const std::vector<ToolCases>& all_tools()
           {"a comb in a comb", Tool::mesh, Motion::in_comb},
           {"measures, a comb in a comb", Tool::mesh, Motion::in_comb, true}}},
         {"16 on one spot",
-         {{"balls", Tool::ball, Motion::sinks, false, 16},
+         {{"spheres", Tool::sphere, Motion::sinks, false, 16},
           {"boxes", Tool::box, Motion::sinks, false, 16},
           {"meshes", Tool::mesh, Motion::sinks, false, 16}}},
     };

@@ -37,8 +37,8 @@ public:
     {
         for (std::uint32_t tap = 0; tap < manner_.taps; ++tap)
         {
-            glide(kRadius_diag + kTapFlight_diag, 0, kFlightSteps);
-            glide(kRadius_diag, kDeepest, kSlideSteps);
+            blend(kRadius_diag + kTapFlight_diag, 0, kFlightSteps);
+            blend(kRadius_diag, kDeepest, kSlideSteps);
         }
         TapTour tour;
         tour.goals_m = std::move(goals_m_);
@@ -52,7 +52,7 @@ private:
     static constexpr std::uint32_t kDeepest = test::SurfaceSlide::kSwingFrames / 2;
 
     /// Moves straight to the start of the slide, then along the surface.
-    void glide(double radius_diag, std::uint32_t first_frame, std::uint32_t steps)
+    void blend(double radius_diag, std::uint32_t first_frame, std::uint32_t steps)
     {
         go_to_distance(test::SurfaceSlide::wanted_distance_diag(radius_diag, first_frame));
         test::SlideManner slide;
@@ -61,7 +61,7 @@ private:
         slide.step_m = step_m_;
         slide.turn_rad = kTapTurn_rad_per_s * kPeriod_s;
         slide.first_frame = first_frame;
-        slide.turn_rate = [seed = kSeed + goals_m_.size()](std::uint64_t turn)
+        slide.rotation_rate = [seed = kSeed + goals_m_.size()](std::uint64_t turn)
         { return test::signed_unit(seed, turn); };
         test::SurfaceSlide along(scene_.tree, slide, goals_m_.back());
         for (std::uint32_t i = 0; i < steps; ++i)

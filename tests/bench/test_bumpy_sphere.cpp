@@ -93,7 +93,7 @@ Vec3 rest_by_trial(const test::FaceTree& tree, const Vec3& goal, const Vec3& nor
 }
 
 /// The bounds hold for a sphere that rests on the mesh, and are not far too large.
-TEST(Faceting, bounds_the_force_of_a_ball_that_rests_on_the_mesh)
+TEST(Faceting, bounds_the_force_of_a_sphere_that_rests_on_the_mesh)
 {
     const std::vector<test::Face> faces = faces_of(make_shape(Shape::bumpy_sphere, 5'120).value());
     const test::FaceTree tree(faces);

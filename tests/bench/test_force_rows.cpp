@@ -46,10 +46,10 @@ struct PlaneTouch
     std::vector<Vec3> rests_m;
 };
 
-TEST(ForceRows, a_ball_is_stuck_when_it_is_frozen_lost_behind_or_nowhere)
+TEST(ForceRows, a_sphere_is_stuck_when_it_is_frozen_lost_behind_or_nowhere)
 {
     PlaneTouch sut;
-    sut.trace.outputs[1].frozen = true;
+    sut.trace.outputs[1].halted = true;
     sut.trace.outputs[3].in_contact = false;
     sut.trace.outputs[5].proxy_m = sut.rests_m[5] - Vec3(0.19e-3, 0.0, 0.0);
     EXPECT_EQ(sut.measure().stuck, 2U);
@@ -83,7 +83,7 @@ TEST(ForceRows, each_law_that_is_broken_misses_its_goal)
     EXPECT_EQ(missed(sut), 0U);
     sut.trace.allocations = 1;
     EXPECT_EQ(missed(sut), 1U);
-    sut.trace.outputs[2].frozen = true;
+    sut.trace.outputs[2].halted = true;
     EXPECT_EQ(missed(sut), 2U);
     sut.trace.outputs[9].force_n.x() = 0.2;
     EXPECT_EQ(missed(sut), 5U); // Missed: p99 and maximum of ten, and the step.
@@ -93,7 +93,7 @@ TEST(ForceRows, each_law_that_is_broken_misses_its_goal)
     EXPECT_EQ(missed(sut), 6U);
 }
 
-TEST(ForceRows, tell_how_far_behind_a_fast_hand_a_ball_was_and_when_it_is_on_it_again)
+TEST(ForceRows, tell_how_far_behind_a_fast_hand_a_sphere_was_and_when_it_is_on_it_again)
 {
     PlaneTouch sut;
     sut.trace.planes = {1, 2, 3, 4, 5, 6, 7, 8, 9, 99};

@@ -88,7 +88,7 @@ TEST(Judges, of_a_trial_miss_a_goal_by_a_violation_and_by_an_error_above_its_bou
     const auto missed = [](double worst, std::uint64_t violations)
     {
         Rows rows;
-        add_trial_rows({"bracket", 10, worst, 1.0, "of the law", violations, {}}, "brackets", rows);
+        add_trial_rows({"bounded", 10, worst, 1.0, "of the law", violations, {}}, "brackets", rows);
         const GoalCount count = count_goals(rows);
         return count.goals - count.met;
     };

@@ -48,7 +48,7 @@ void slide(std::vector<Vec3>& path, const TouchScene& scene, double speed_diag_p
     manner.radius_diag = kRadius_diag;
     manner.step_m = speed_diag_per_s * scene.diagonal_m * kPeriod_s;
     manner.turn_rad = kTurn_rad_per_s * kPeriod_s;
-    manner.turn_rate = [](std::uint64_t turn) { return test::signed_unit(kSeed, turn); };
+    manner.rotation_rate = [](std::uint64_t turn) { return test::signed_unit(kSeed, turn); };
     test::SurfaceSlide slide(scene.tree, manner, path.back());
     for (std::uint32_t i = 0; i < frames; ++i)
     {
@@ -60,10 +60,10 @@ void fly(std::vector<Vec3>& path, const TouchScene& scene, const Vec3& middle, s
 {
     const double radius_m = kFlight_diag * scene.diagonal_m;
     Vec3 outward = (path.back() - middle).normalized();
-    const Vec3 wish(test::signed_unit(kSeed + 1, 3 * cycle),
-                    test::signed_unit(kSeed + 1, 3 * cycle + 1),
-                    test::signed_unit(kSeed + 1, 3 * cycle + 2));
-    Vec3 heading = test::tangent(wish, outward);
+    const Vec3 request(test::signed_unit(kSeed + 1, 3 * cycle),
+                       test::signed_unit(kSeed + 1, 3 * cycle + 1),
+                       test::signed_unit(kSeed + 1, 3 * cycle + 2));
+    Vec3 heading = test::tangent(request, outward);
     for (std::uint32_t i = 0; i < kFlightFrames; ++i)
     {
         outward = (outward + kFlight_diag_per_s * kPeriod_s / kFlight_diag * heading).normalized();

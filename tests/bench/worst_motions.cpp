@@ -98,7 +98,7 @@ ToolSpec tool_of(const WorstCase& worst, double diagonal_m)
     ToolSpec tool;
     switch (worst.tool)
     {
-    case WorstTool::ball:
+    case WorstTool::sphere:
         tool.radius_m = 0.01;
         break;
     case WorstTool::capsule:
@@ -118,7 +118,7 @@ ToolSpec tool_of(const WorstCase& worst, double diagonal_m)
         tool.radius_m = kMeshSkin_diag * diagonal_m;
         break;
     }
-    tool.passes_through = tool.wants_contacts = worst.measures;
+    tool.query_only = tool.wants_contacts = worst.measures;
     tool.wants_pairs = worst.measures && worst.tool == WorstTool::mesh;
     return tool;
 }
@@ -260,7 +260,7 @@ WorstRun make_worst_run(const WorstCase& worst, std::int64_t period_ns, SceneSto
     }
     Hands hands(worst, run, object);
     const bool waits = worst.motion == WorstMotion::waits;
-    run.rig.courier_steps_per_frame = waits ? 64 : 4;
+    run.rig.chunk_loader_steps_per_frame = waits ? 64 : 4;
     for (std::uint32_t frame = 0; frame < kWorstFrames; ++frame)
     {
         WorstMoment& moment = run.moments.emplace_back();

@@ -16,7 +16,7 @@ namespace tactus::bench
 /// Shapes of tools; lengths of those that slide over an object of 0.1 m.
 enum class WorstTool : std::uint8_t
 {
-    ball,    ///< Radius 10 mm: about 2,000 faces of a fine object are in its reach.
+    sphere,  ///< Radius 10 mm: about 2,000 faces of a fine object are in its reach.
     capsule, ///< 40 mm long.
     box,     ///< 30 x 16 x 10 mm.
     hull,    ///< Spike, 30 mm long.

@@ -57,8 +57,8 @@ warned fault "non-'nonblocking' function 'malloc'" '#include <cstdlib>' \
     'static_cast<void>(std::malloc(1));'
 warned fault 'allocate' '' 'delete new int(1);'
 warned fault "std::mutex::lock" '#include <mutex>' 'static std::mutex m; m.lock();'
-warned fault "static local" '' 'static int n = static_cast<int>(lead_s); static_cast<void>(n);'
-warned fault 'throw' '' 'if (lead_s < 0.0) throw 1;'
+warned fault "static local" '' 'static int n = static_cast<int>(horizon_s); static_cast<void>(n);'
+warned fault 'throw' '' 'if (horizon_s < 0.0) throw 1;'
 warned fault 'pointer' 'void (*hook)() noexcept;' 'hook();'
 warned fault "non-'nonblocking' function 'elsewhere'" 'void elsewhere() noexcept;' 'elsewhere();'
 

@@ -166,8 +166,8 @@ class Layers(House):
                     'rt_core/basement/old.hpp:1: in no module')
 
     def test_modules_in_a_circle_are_refused(self):
-        self.source('platform/devices/udp/link.hpp', '#include "platform/devices/dhd/door.hpp"')
-        self.source('platform/devices/dhd/door.hpp', '#include "platform/devices/device.hpp"')
+        self.source('platform/devices/udp/link.hpp', '#include "platform/devices/dhd/queues.hpp"')
+        self.source('platform/devices/dhd/queues.hpp', '#include "platform/devices/device.hpp"')
         self.accept('layers')
         self.source('platform/devices/dhd/key.hpp', '#include "platform/devices/udp/link.hpp"')
         self.refuse('layers', 'platform/devices/dhd/key.hpp:4: closes a circle: '
@@ -240,6 +240,15 @@ class Text(House):
                     'rt_core/base/good.hpp:5: Nobody in a comment')
         self.source('rt_core/base/good.hpp', 'int a; ///< Value of the last frame.', '// Often.')
         self.accept('plain_comments')
+
+    def test_names_that_were_renamed_are_refused(self):
+        self.accept('old_names')
+        self.text('docs/internals/renamed.tsv', 'kind\told\tnew\noption\t--old\t--new\n'
+                  'class\tOldName\tNewName\nclass\tWord\tTerm\nreport key\told_key\tkey\n')
+        self.text('page.md', '# A page\n`--old`, `--older`, `--an-old`, old_key, Word\n')
+        self.source('rt_core/base/good.hpp', 'OldName a;', 'OldNames b; // of AnOldName')
+        self.refuse('old_names', 'page.md:2: --old has another name: see',
+                    'rt_core/base/good.hpp:4: OldName has another name: see')
 
     def test_marks_of_unfinished_work_are_refused(self):
         for mark in ('TO' 'DO', 'FIX' 'ME', 'X' 'XX', 'HA' 'CK'):

@@ -153,12 +153,12 @@ Reading read_frames(View bytes)
         }
     } while (!reader.at_end());
     const RecordedFrame& frame = decoder.frame();
-    const DoorTake door{frame.events, frame.wish_room};
+    const QueueTake queues{frame.events, frame.request_room};
     ModelOutput model;
     model.state_hash = frame.state_hashes[0];
     FrameEncoder encoder;
     const auto again = encoder.encode(
-        frame.input(), {{}, {}, {&model, 1}, {}, FrameFault::none, door, {}}, frame.devices);
+        frame.input(), {{}, {}, {&model, 1}, {}, FrameFault::none, queues, {}}, frame.devices);
     const std::size_t told = again.size() - sizeof(OutputHashes);
     return {"", again.size() == bytes.size() &&
                     std::ranges::equal(again.first(told), bytes.first(told)) &&

@@ -71,7 +71,7 @@ struct Run
     const char* name;
     std::vector<const TestModel*> models;
     Vec3 (*motion)(const TestModel&,
-                   std::uint32_t){nullptr}; ///< Motion; null: each tool has a WanderingHand.
+                   std::uint32_t){nullptr}; ///< Motion; null: each tool has a WanderingOperator.
     RigOptions options;
     Budgets budgets;
     std::uint32_t frames{kFrames};
@@ -86,7 +86,7 @@ RigOptions with_core(RigOptions options, const ToolCore& core)
 {
     options.tools = {{1e-4, 500.0, 8.0, 1.0, core, true}};
     // Query-only, so that faces meet.
-    options.tools[0].passes_through = std::holds_alternative<MeshCore>(core);
+    options.tools[0].query_only = std::holds_alternative<MeshCore>(core);
     return options;
 }
 
@@ -97,7 +97,7 @@ RigOptions crowd(RigOptions options)
     options.tools = {{0.003}, {0.001}, {1e-4}};
     options.tools[1].core = Segment{-half, half};
     options.tools[2].core = Box{half};
-    options.tools[2].passes_through = true;
+    options.tools[2].query_only = true;
     options.objects = {{ModelId{0}, {300.0, 0.4, 0.3, 0.5}}, {ModelId{1}}};
     return options;
 }
@@ -113,7 +113,7 @@ RigOptions with_room(RigOptions options)
 RigOptions held_mesh(RigOptions options, const MeshCore& core)
 {
     options = with_core(options, core);
-    options.tools[0].passes_through = false;
+    options.tools[0].query_only = false;
     return options;
 }
 
@@ -238,7 +238,7 @@ bool record(const Run& run, const std::filesystem::path& folder)
     FrameRig rig(run.models, run.options);
     std::vector<ToolState> tools(std::max<std::size_t>(run.options.tools.size(), 1));
     std::deque<Random> randoms; // The hands keep their addresses.
-    std::deque<WanderingHand> hands;
+    std::deque<WanderingOperator> hands;
     for (std::uint32_t i = 0; i < tools.size(); ++i)
     {
         randoms.push_back(Random::seeded(20'261'127 + i));

@@ -66,7 +66,7 @@ void parse_index(std::span<const std::byte> file, const ModelHeader& header)
         for (std::uint32_t i = 0; i < page.chunks; ++i)
         {
             const QuantumBox of_chunk = box_of(page, box, i);
-            require(meets({{0.0, 0.0, 0.0}, 1e300}, of_chunk), "a ball of all meets every box");
+            require(meets({{0.0, 0.0, 0.0}, 1e300}, of_chunk), "a sphere of all meets every box");
         }
     }
 }

@@ -17,7 +17,7 @@ force_figures() {
         NR == 1 {
             for (i = 1; i <= NF; ++i) at[$i] = i
             force = "tool0.sent_force_world_n"
-            hand = "tool0.goal_world_m"
+            hand = "tool0.device_world_m"
             beyond = -1
             next
         }

@@ -39,7 +39,7 @@ case $attack in
         poses=(--poses swing.txt --poses-loop)
         touch_it --motion slide
         end_well 2500
-        check report.json models.0.pose.outran_frames '>' 100 wire.host_lost == 0
+        check report.json models.0.pose.rate_limited_frames '>' 100 wire.host_lost == 0
         # Steps of the force are checked by test_hrtc MovedObject, on a lasting touch: here the hand
         # sometimes releases, and the object it meets then moves freely, 1 mm a frame, with or
         # without the guard.

@@ -30,9 +30,9 @@ std::int64_t now_ns()
     return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
 }
 
-std::string log_of(const DeviceWish& wish)
+std::string log_of(const DeviceRequest& request)
 {
-    const std::string_view words = wish.words;
+    const std::string_view words = request.words;
     return std::string(words.substr(0, words.find(',')));
 }
 
@@ -65,8 +65,8 @@ private:
 class Recording final : public HapticDevice
 {
 public:
-    explicit Recording(const DeviceWish& wish)
-        : frame_(wish.frame), motors_(log_of(wish)), start_ns_(now_ns())
+    explicit Recording(const DeviceRequest& request)
+        : frame_(request.frame), motors_(log_of(request)), start_ns_(now_ns())
     {
         DeviceInfo info;
         info.name = "recording";
@@ -121,16 +121,16 @@ private:
     std::atomic<bool> is_braked_{false};
 };
 
-Result<std::unique_ptr<HapticDevice>, Refusal> make_recording(const DeviceWish& wish)
+Result<std::unique_ptr<HapticDevice>, Refusal> make_recording(const DeviceRequest& request)
 {
-    return std::unique_ptr<HapticDevice>(std::make_unique<Recording>(wish));
+    return std::unique_ptr<HapticDevice>(std::make_unique<Recording>(request));
 }
 
 #ifndef HAS_NO_GUARD
 class Guard final : public DeviceGuard
 {
 public:
-    explicit Guard(const DeviceWish& wish) : motors_(log_of(wish)) {}
+    explicit Guard(const DeviceRequest& request) : motors_(log_of(request)) {}
 
     [[nodiscard]] bool brake() noexcept override
     {
@@ -142,13 +142,13 @@ private:
     Motors motors_;
 };
 
-Result<std::unique_ptr<DeviceGuard>, Refusal> make_guard(const DeviceWish& wish)
+Result<std::unique_ptr<DeviceGuard>, Refusal> make_guard(const DeviceRequest& request)
 {
-    if (std::string_view(wish.words).ends_with(",refuse"))
+    if (std::string_view(request.words).ends_with(",refuse"))
     {
         return Refusal{"its motors have one line, which is taken"};
     }
-    return std::unique_ptr<DeviceGuard>(std::make_unique<Guard>(wish));
+    return std::unique_ptr<DeviceGuard>(std::make_unique<Guard>(request));
 }
 #endif
 

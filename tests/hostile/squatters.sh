@@ -79,7 +79,7 @@ case $attack in
         wait_for_more "$controller" 6000
         stop_hrtc
         check report.json servers.lost == 1 servers.replaced == 0 servers.namesake '>=' 1 \
-            servers.not_followed '>=' 1 scene.came == 0 scene.went == 0 scene.objects == 1 \
+            servers.not_followed '>=' 1 scene.added == 0 scene.removed == 0 scene.objects == 1 \
             safety.begun.stale '>=' 1 answers.stale '>' 500
         grep -q '^servers .*not followed' hrtc.log || fault 'the summary does not tell'
         check_force
@@ -100,7 +100,8 @@ case $attack in
         echo "followed $(($(now_ms) - began)) ms after it was ready"
         wait_for_contact publish.log victim
         stop_hrtc
-        check report.json servers.lost == 1 servers.replaced == 1 scene.came == 1 scene.went == 1
+        check report.json servers.lost == 1 servers.replaced == 1 \
+            scene.added == 1 scene.removed == 1
         check_force
         stop_publisher
         ;;

@@ -57,13 +57,13 @@ bool Truth::is_linkable(RecordId record) const
 bool Truth::depends_on_linkable(std::uint32_t id) const
 {
     const VsplitRecord& record = model.records[id];
-    const auto is_here = [&](VertexId vertex)
+    const auto is_resident = [&](VertexId vertex)
     { return model.counts.is_base(vertex) || is_linkable(model.counts.record_of(vertex)); };
-    bool all = is_here(record.parent) && is_here(model.rings[id].w[record.fan_size]);
+    bool all = is_resident(record.parent) && is_resident(model.rings[id].w[record.fan_size]);
     for (std::uint32_t i = 0; i < record.fan_size; ++i)
     {
         const FaceState state = record.before[i];
-        all = all && is_here(model.rings[id].w[i]) &&
+        all = all && is_resident(model.rings[id].w[i]) &&
               (state.is_base() || is_linkable(state.record()));
     }
     return all;
@@ -80,11 +80,11 @@ void SlotLedger::receive(ContentKey key, std::span<const std::byte> /*bytes*/)
     ++(key.kind == ContentKind::chunk ? handed_chunks_ : handed_indices_);
 }
 
-void SlotLedger::adopted(const DoorTake& take)
+void SlotLedger::adopted(const QueueTake& take)
 {
-    for (const DoorEvent& event : take.events)
+    for (const QueueEvent& event : take.events)
     {
-        if (event.kind == DoorEventKind::link_update)
+        if (event.kind == QueueEventKind::link_update)
         {
             update(event);
             continue;
@@ -93,7 +93,7 @@ void SlotLedger::adopted(const DoorTake& take)
     }
 }
 
-void SlotLedger::adopt(const DoorEvent& arrival)
+void SlotLedger::adopt(const QueueEvent& arrival)
 {
     const std::uint32_t number = arrival.key.number;
     require(!on_their_way_.empty(), "adopted what was never handed over", number);
@@ -122,7 +122,7 @@ void SlotLedger::adopt(const DoorEvent& arrival)
     slot.told = arrival.linked;
 }
 
-void SlotLedger::update(const DoorEvent& update)
+void SlotLedger::update(const QueueEvent& update)
 {
     require(update.key.kind == ContentKind::chunk, "an update of an index page");
     Slot& slot = slots_.at(update.slot);
@@ -148,17 +148,18 @@ void SlotLedger::find_freed()
     }
 }
 
-void SlotLedger::check(const Courier& courier, const SlotDoor& door, const ChunkCache& cache)
+void SlotLedger::check(const ChunkLoader& chunk_loader, const SlotQueues& queues,
+                       const ChunkCache& cache)
 {
     // Freed slots are of pages alone: no index page returns here.
-    const std::size_t freed = door.freed.size();
-    require(courier.free_pages() + handed_chunks_ + table_.used() + freed == slots_.size(),
+    const std::size_t freed = queues.freed.size();
+    require(chunk_loader.free_pages() + handed_chunks_ + table_.used() + freed == slots_.size(),
             "a page slot is in no place or in two");
-    require(courier.free_index_pages() + handed_indices_ + cache.index_pages_used() ==
+    require(chunk_loader.free_index_pages() + handed_indices_ + cache.index_pages_used() ==
                 pages_.index_pages.size(),
             "a slot of index pages is in no place or in two");
-    require(door.arrived.size() <= door.arrived.capacity(), "too many arrivals");
-    require(door.wanted.size() <= door.wanted.capacity(), "too many wishes");
+    require(queues.arrived.size() <= queues.arrived.capacity(), "too many arrivals");
+    require(queues.wanted.size() <= queues.wanted.capacity(), "too many requests");
     for (std::uint32_t slot = 0; slot < slots_.size(); ++slot)
     {
         const PageTable::Meta& meta = table_.meta(slot);

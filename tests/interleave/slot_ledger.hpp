@@ -6,7 +6,7 @@
 #include "rt_core/spm/page_table.hpp"
 #include "tests/unit/transport/tiny_model.hpp"
 #include "transport/chunk_link.hpp"
-#include "transport/courier.hpp"
+#include "transport/chunk_loader.hpp"
 
 #include <array>
 #include <cstdint>
@@ -40,16 +40,16 @@ class SlotLedger final : public PieceSink
 public:
     SlotLedger(const Truth& truth, const PageSlots& slots, const PageTable& pages);
 
-    /// Receives a piece that the loader is about to hand over (Courier::copy_pieces_to()).
+    /// Receives a piece that the loader is about to hand over (ChunkLoader::copy_pieces_to()).
     void receive(ContentKey key, std::span<const std::byte> bytes) override;
     /// Marks the start of a step, which will take back all slots freed so far.
     void begin_step() { freed_at_step_ = freed_; }
     /// Checks after the cache adopted.
-    void adopted(const DoorTake& take);
+    void adopted(const QueueTake& take);
     /// Finds pages freed by a verb of the haptic thread.
     void find_freed();
     /// Checks after any verb that every slot is in one place and every page equals the model's.
-    void check(const Courier& courier, const SlotDoor& door, const ChunkCache& cache);
+    void check(const ChunkLoader& chunk_loader, const SlotQueues& queues, const ChunkCache& cache);
 
     /// Keeps `what` with `number` if it does not hold and nothing failed before.
     void require(bool holds, const char* what, std::uint32_t number = 0);
@@ -74,8 +74,8 @@ private:
         std::uint32_t freed{0}; ///< Slots that the loader had taken back.
     };
 
-    void adopt(const DoorEvent& arrival);
-    void update(const DoorEvent& update);
+    void adopt(const QueueEvent& arrival);
+    void update(const QueueEvent& update);
     void check_page(std::uint32_t slot);
     void check_links(const VsplitRecord& record, std::uint32_t id);
     [[nodiscard]] bool is_told(std::uint32_t record) const;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "tests/interleave/choices.hpp"
-#include "tests/interleave/door_world.hpp"
+#include "tests/interleave/queue_world.hpp"
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@
 #include <vector>
 
 /// Life of pages between the two threads: the product's loader, linker, cache and page table,
-/// driven through every sequence of verbs up to a length (see DoorWorld).
+/// driven through every sequence of verbs up to a length (see QueueWorld).
 namespace tactus::interleave
 {
 namespace
@@ -56,16 +56,16 @@ struct FreeDeleter
 /// Events in all sequences, so that none remains untested.
 struct Tally
 {
-    void add(const DoorWorld& world)
+    void add(const QueueWorld& world)
     {
-        const CourierCounters& counters = world.counters();
+        const ChunkLoaderCounters& counters = world.counters();
         for (const auto& [name, count] : {std::pair{"delivered", counters.delivered},
                                           {"evicted", world.evictions()},
                                           {"linked after arrival", world.ledger().updates()},
                                           {"linked after eviction", world.ledger().late_updates()},
                                           {"asked again", counters.asked_again},
                                           {"damaged", counters.refused_hash},
-                                          {"unasked", counters.dropped_unasked},
+                                          {"unrequested", counters.dropped_unasked},
                                           {"without a slot", counters.dropped_no_slot},
                                           {"forgotten", counters.forgotten}})
         {
@@ -96,7 +96,7 @@ protected:
         Tally tally;
         do
         {
-            DoorWorld world(truth_, {memory_.get(), DoorWorld::kBytes});
+            QueueWorld world(truth_, {memory_.get(), QueueWorld::kBytes});
             verbs_so_far.clear();
             for (const Verb verb : beginning)
             {
@@ -129,16 +129,16 @@ protected:
     Truth truth_{model_};
 
 private:
-    [[nodiscard]] static bool run(DoorWorld& world, Choices& choices, int length,
+    [[nodiscard]] static bool run(QueueWorld& world, Choices& choices, int length,
                                   std::span<const Verb> allowed);
 
     std::unique_ptr<std::byte, FreeDeleter> memory_{
-        static_cast<std::byte*>(std::aligned_alloc(Arena::kAlignment, DoorWorld::kBytes))};
+        static_cast<std::byte*>(std::aligned_alloc(Arena::kAlignment, QueueWorld::kBytes))};
     AssertHandler before_;
 };
 
 /// Runs one sequence; false if a verb had the same result as another that is also tried.
-bool PageLife::run(DoorWorld& world, Choices& choices, int length, std::span<const Verb> allowed)
+bool PageLife::run(QueueWorld& world, Choices& choices, int length, std::span<const Verb> allowed)
 {
     for (int i = 0; i < length && world.failure().empty(); ++i)
     {
@@ -175,19 +175,20 @@ TEST_F(PageLife, of_a_model_whose_pages_need_each_other)
 TEST_F(PageLife, is_sound_from_the_start)
 {
     explore("every verb, from the start", {}, 4,
-            {"delivered", "asked again", "damaged", "unasked"});
+            {"delivered", "asked again", "damaged", "unrequested"});
 }
 
 TEST_F(PageLife, is_sound_with_the_index_page_here)
 {
     explore("every verb, the index page here", std::span(kAllHere).first(kIndexHere), 4,
-            {"evicted", "linked after arrival", "linked after eviction", "damaged", "unasked"});
+            {"evicted", "linked after arrival", "linked after eviction", "damaged", "unrequested"});
 }
 
 TEST_F(PageLife, is_sound_with_one_page_here_and_one_on_its_way)
 {
     explore("every verb, one page here and one on its way", std::span(kAllHere).first(kOneOnItsWay),
-            4, {"evicted", "linked after arrival", "linked after eviction", "damaged", "unasked"});
+            4,
+            {"evicted", "linked after arrival", "linked after eviction", "damaged", "unrequested"});
 }
 
 TEST_F(PageLife, is_sound_with_every_slot_taken)
@@ -203,7 +204,7 @@ TEST_F(PageLife, is_sound_in_longer_sequences_of_usual_verbs)
             {"evicted", "linked after arrival"}, usual);
 }
 
-TEST_F(PageLife, is_sound_when_wishes_expire_and_are_answered_late)
+TEST_F(PageLife, is_sound_when_requests_expire_and_are_answered_late)
 {
     constexpr std::array beginning{Verb::want_a, Verb::step,   Verb::adopt,
                                    Verb::want_a, Verb::want_b, Verb::step_holding};

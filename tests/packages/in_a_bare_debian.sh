@@ -62,7 +62,7 @@ cat test.log
 python3 -c '
 import tactus
 model = tactus.Model("torus.spm")
-frame = tactus.Frame([model], [tactus.Tool(0.02, passes_through=True)], [tactus.Object()])
+frame = tactus.Frame([model], [tactus.Tool(0.02, query_only=True)], [tactus.Object()])
 place = [(low + high) / 2 for low, high in zip(model.low_m, model.high_m)]
 answer = frame.run([place], rounds=1000)
 assert answer.lower_m[0, 0] > 0.0, answer.lower_m

@@ -41,7 +41,7 @@ PATIENCE_S = 900
 RAMP = numpy.array([[168, 178, 196], [96, 146, 208], [46, 168, 158], [244, 190, 66],
                     [222, 88, 62]]) / 255
 TOOL, FORCE = "#d8822b", "#c94c4c"
-LOADED, FORETOLD, PRESENT, TREE = "#2f9e6e", "#a855c7", "#c94c4c", "#3b78d8"
+LOADED, PREDICTED, PRESENT, TREE = "#2f9e6e", "#a855c7", "#c94c4c", "#3b78d8"
 RADIUS_M = 0.002
 LIGHT = numpy.array([0.35, 0.45, 0.82])
 
@@ -237,7 +237,7 @@ def save(figure, path, dpi=110):
     image = to_image(figure, dpi)
     colours = [[round(255 * part) for part in colour] for colour in (
         *RAMP, *map(matplotlib.colors.to_rgb, (
-            "white", "black", TOOL, FORCE, LOADED, FORETOLD, PRESENT, TREE)))]
+            "white", "black", TOOL, FORCE, LOADED, PREDICTED, PRESENT, TREE)))]
     palette = Image.new("P", (1, 1))
     palette.putpalette(sum(colours, []) + image.quantize(160).getpalette()[:3 * 160])
     # The palette's nearest colour is only approximate.
@@ -490,10 +490,10 @@ def regions(studio, path):
         centre = camera.see(turned(numpy.array([region["center_m"]]), object_)[0])
         axes[1].add_patch(pyplot.Circle(
             centre[:2], region["radius_m"], fill=False, linewidth=1.8, zorder=6,
-            color=FORETOLD if region["is_foretold"] else PRESENT))
+            color=PREDICTED if region["is_predicted"] else PRESENT))
     tool_mark(axes[1], camera, state["tools"][0], 0)
     frame_axes(axes[1], place, half)
-    axes[1].set_title("where chunks are looked for: at the tool, foretold", fontsize=11)
+    axes[1].set_title("where chunks are looked for: at the tool, predicted", fontsize=11)
     save(figure, path)
 
 
@@ -515,7 +515,7 @@ def bracket(studio, path):
                         if not line.startswith("#")])
     rounding = 1e-9
     if not ((lower[frames] <= true + rounding) & (true <= upper[frames] + rounding)).all():
-        sys.exit("pictures: a bracket doesn't hold the true distance")
+        sys.exit("pictures: the bounds don't hold the true distance")
     seconds = frames * 1e-3
     figure, axes = pyplot.subplots(2, 1, figsize=(9.0, 4.6), sharex=True,
                                    gridspec_kw={"height_ratios": [2, 1]})
@@ -525,7 +525,7 @@ def bracket(studio, path):
     axes[0].plot(seconds, 1e3 * true, color="black", linewidth=1, label="the true distance")
     axes[0].set_ylabel("distance of the centre, mm")
     axes[0].legend(frameon=False)
-    for kind, colour in (("decided", "#3b78d8"), ("exact", "#2f9e6e"), ("bracket", "#d8822b")):
+    for kind, colour in (("separated", "#3b78d8"), ("exact", "#2f9e6e"), ("bounded", "#d8822b")):
         of_kind = kinds[frames] == kind
         if of_kind.any():
             axes[1].plot(seconds[of_kind], 1e3 * (upper - lower)[frames][of_kind], ".",
@@ -548,7 +548,7 @@ def force(studio, path):
     axes[1].plot(seconds, take.column("model0.faces_used"), color=TREE, linewidth=1)
     axes[1].set_ylabel("active faces")
     axes[2].plot(seconds, take.column("splits"), color=LOADED, linewidth=0.8, label="splits")
-    axes[2].plot(seconds, take.column("merges"), color=FORETOLD, linewidth=0.8, label="merges")
+    axes[2].plot(seconds, take.column("merges"), color=PREDICTED, linewidth=0.8, label="merges")
     axes[2].set(xlabel="s", ylabel="a frame")
     axes[2].legend(frameon=False, ncol=2)
     for one in axes:
@@ -709,7 +709,7 @@ def stages(studio, path):
     smoothed = numpy.array([smooth(numpy.array(times[name])) for name in names])
     axes.stackplot(seconds, smoothed, linewidth=0,
                    labels=("T_L load", "T_R refine", "T_B refit", "T_Q query", "force"),
-                   colors=(LOADED, TREE, FORETOLD, TOOL, FORCE))
+                   colors=(LOADED, TREE, PREDICTED, TOOL, FORCE))
     half = window_frames // 2  # There are fewer frames at the ends.
     axes.set(xlabel="s", ylabel="us", xlim=(seconds[half], seconds[-1 - half]),
              ylim=(0, 1.2 * smoothed.sum(axis=0)[half:-half].max()))
@@ -740,7 +740,7 @@ def bursts(studio, path):
                 width=frames_a_bar * 1e-3, align="edge", color=LOADED, zorder=2)
         most = int(take.column("model0.pages_used").max())
         room = "all" if cache_mib is None else f"{most} pages"
-        is_open = numpy.isin(kinds, ("bracket", "stale")).mean()
+        is_open = numpy.isin(kinds, ("bounded", "stale")).mean()
         one.set_title(f"room for {room}: {int(came.sum()):,} came, {100 * is_open:.1f} % of "
                       "the frames open", fontsize=10, loc="left")
         one.grid(color="#dddddd", axis="y")

@@ -29,7 +29,7 @@ ToolSpec measuring_tool(double radius_m, const ToolCore& core = PointCore{})
     ToolSpec spec;
     spec.radius_m = radius_m;
     spec.core = core;
-    spec.passes_through = true;
+    spec.query_only = true;
     spec.wants_distance = true;
     return spec;
 }
@@ -182,7 +182,7 @@ TEST(FarDistance, is_a_bracket_where_nobody_asks)
     {
         output = sut.step(Vec3(2.0, 0.3, 0.2) * model.diagonal_m);
     }
-    EXPECT_EQ(output.pairs[0].kind, AnswerKind::decided);
+    EXPECT_EQ(output.pairs[0].kind, AnswerKind::separated);
     EXPECT_GT(output.pairs[0].upper_m - output.pairs[0].lower_m, 0.01 * model.diagonal_m);
 }
 

@@ -4,7 +4,7 @@
 /// Models of which a frame starts with the header alone: they are loaded when a tool is near, enter
 /// in slices, answer correctly from the first frame on, and are removed again.
 
-#include "platform/recording/replay_door.hpp"
+#include "platform/recording/replay_queues.hpp"
 #include "tests/property/replay_checks.hpp"
 #include "tests/shared/face_tree.hpp"
 #include "tests/shared/frame_rig.hpp"
@@ -53,7 +53,7 @@ ModelCapacities room_for(const std::vector<const TestModel*>& models, std::uint3
 struct Row
 {
     Row(std::uint32_t count, std::uint32_t meshes, const LoopbackFaults& faults = {},
-        bool passes_through = false, bool record = false, std::uint32_t kinds = 3,
+        bool query_only = false, bool record = false, std::uint32_t kinds = 3,
         std::uint32_t tools = 1)
     {
         options.record = record;
@@ -65,10 +65,10 @@ struct Row
             pose.translation_m = Vec3(kSide_m * i, 0.0, 0.0);
             options.poses.push_back(pose);
         }
-        options.for_guests = room_for(models, meshes);
+        options.for_streamed_models = room_for(models, meshes);
         options.faults = faults;
         options.tools.assign(tools, ToolSpec{0.01 * models[0]->diagonal_m, 500.0, 8.0, 1.0});
-        options.tools[0].passes_through = passes_through;
+        options.tools[0].query_only = query_only;
         rig.emplace(models, options);
     }
     /// Place above the model's highest vertex.
@@ -139,7 +139,8 @@ TEST(ModelLife, goes_from_known_to_known_by_way_of_every_stage)
     const std::vector<ModelStage> expected{ModelStage::known,    ModelStage::wanted,
                                            ModelStage::arriving, ModelStage::resident,
                                            ModelStage::leaving,  ModelStage::known};
-    const std::uint32_t slots = sut.options.for_guests.pages + sut.options.for_guests.index_pages;
+    const std::uint32_t slots =
+        sut.options.for_streamed_models.pages + sut.options.for_streamed_models.index_pages;
     EXPECT_GE(leaving, (slots + kLeavingSlotsPerFrame - 1) / kLeavingSlotsPerFrame);
     // The model may enter within one frame, and is then never seen arriving.
     std::erase(stages, ModelStage::arriving);
@@ -220,7 +221,7 @@ TEST(ModelLife, a_tool_stops_before_a_model_whose_host_is_gone_and_goes_on_when_
     EXPECT_EQ(sut.output.models[0].stage, ModelStage::wanted);
     sut.rig->link().regain_host();
     EXPECT_LT(sut.until(ModelStage::resident, 0, 0, 0.05), 50U);
-    EXPECT_EQ(sut.rig->courier().counters().overdue, 0U);
+    EXPECT_EQ(sut.rig->chunk_loader().counters().overdue, 0U);
     for (int i = 0; i < 300; ++i)
     {
         sut.step(0, 0.5 * radius_m);
@@ -254,7 +255,7 @@ TEST(ModelLife, a_model_whose_host_is_silent_gives_its_room_to_others_and_comes_
     EXPECT_GT(stages.size(), 4U);
     EXPECT_GT(knows, 200U);
     EXPECT_LT(knows, 1'000U);
-    EXPECT_EQ(sut.rig->courier().counters(0).overdue, stages.size() / 2);
+    EXPECT_EQ(sut.rig->chunk_loader().counters(0).overdue, stages.size() / 2);
     // Another model occupies the memory.
     EXPECT_LT(sut.until(ModelStage::resident, 1, 1, 0.05), 1'500U);
     EXPECT_EQ(sut.output.models[0].stage, ModelStage::known);
@@ -316,8 +317,8 @@ TEST(ModelLife, a_base_mesh_that_is_damaged_on_its_way_is_refused_and_brought_ag
     Row sut(1, 1, {.seed = seed_of(2'401), .damage = 0.7});
     sut.step(0, 0.05);
     EXPECT_LT(sut.until(ModelStage::resident, 0, 0, 0.05), 4'000U);
-    EXPECT_GT(sut.rig->courier().counters().refused_hash, 0U);
-    EXPECT_EQ(sut.rig->courier().counters().refused_content, 0U);
+    EXPECT_GT(sut.rig->chunk_loader().counters().refused_hash, 0U);
+    EXPECT_EQ(sut.rig->chunk_loader().counters().refused_content, 0U);
 }
 
 /// Objects are added, moved and removed, tools wander and jump, pieces are late and lost: the
@@ -330,12 +331,12 @@ TEST(ModelLife, every_answer_is_true_in_any_order_of_coming_and_going)
     options.tools.assign(3, ToolSpec{0.01 * models[0]->diagonal_m, 500.0, 8.0, 1.0});
     options.capacities.objects = 24;
     options.faults = {.loss = 0.02, .delay_polls_max = 16};
-    options.for_guests = room_for(models, 2);
+    options.for_streamed_models = room_for(models, 2);
     SceneFigures all;
     const std::uint64_t first = seed_of(2'410);
     for (std::uint64_t seed = first; seed < first + 12 && all.exact < 20; ++seed)
     {
-        all.add(run_scene_trial({models, {"guests", {}, options}, 3, seed, 250}));
+        all.add(run_scene_trial({models, {"streamed_models", {}, options}, 3, seed, 250}));
     }
     EXPECT_TRUE(all.truth.holds()) << all.truth.summary();
     EXPECT_GE(all.truth.trials, 250U);
@@ -470,9 +471,9 @@ private:
         }
         const ModelPools& pools = row_.rig->frame().pools();
         ASSERT_EQ(cells, pools.base_room.used());
-        ASSERT_LE(cells, row_.options.for_guests.base_cells);
+        ASSERT_LE(cells, row_.options.for_streamed_models.base_cells);
         ASSERT_EQ(faces, pools.faces.used());
-        ASSERT_LE(faces, row_.options.for_guests.faces);
+        ASSERT_LE(faces, row_.options.for_streamed_models.faces);
         for (const PairOutput& pair : output_.pairs)
         {
             const double truth_m = distance_m(pair);
@@ -647,7 +648,7 @@ TEST(ModelLife, a_run_with_models_that_come_and_go_replays_bit_for_bit)
     expect_same_again(sut.rig->finish_recording(), 300);
 }
 
-/// Frame that requests a base mesh, with a replay's door before it.
+/// Frame that requests a base mesh, with a replay's queues before it.
 struct WantedBase : Row
 {
     WantedBase() : Row(1, 1, {}, false, true)
@@ -663,31 +664,31 @@ struct WantedBase : Row
         {
             run();
         }
-        door.emplace(*recording, rig->frame());
+        queues.emplace(*recording, rig->frame());
     }
     void run() { output = rig->step_without_delivery({above(0, 0.05)}, {}, {}); }
-    /// Result of the door for these events of the model's base mesh.
-    std::optional<std::string> open(const std::vector<DoorEventKind>& kinds,
+    /// Result of the queues for these events of the model's base mesh.
+    std::optional<std::string> open(const std::vector<QueueEventKind>& kinds,
                                     std::uint32_t freed_taken = 0)
     {
-        const SpscQueue<PieceWish>& wanted = rig->frame().pools().cache.door.wanted;
+        const SpscQueue<PieceRequest>& wanted = rig->frame().pools().cache.queues.wanted;
         RecordedFrame frame;
-        frame.wish_room = static_cast<std::uint32_t>(wanted.capacity() - wanted.size());
-        for (const DoorEventKind kind : kinds)
+        frame.request_room = static_cast<std::uint32_t>(wanted.capacity() - wanted.size());
+        for (const QueueEventKind kind : kinds)
         {
             frame.events.push_back({{ContentKind::base, 0}, 0, freed_taken, 0, kind, 0});
         }
-        return door->open(frame);
+        return queues->open(frame);
     }
 
     std::optional<Recording> recording;
-    std::optional<ReplayDoor> door;
+    std::optional<ReplayQueues> queues;
 };
 
 /// A frame takes several events at once, and knows none before.
-TEST(ReplayDoor, takes_no_second_event_of_a_base_mesh_until_the_frame_knows_of_the_first)
+TEST(ReplayQueues, takes_no_second_event_of_a_base_mesh_until_the_frame_knows_of_the_first)
 {
-    using enum DoorEventKind;
+    using enum QueueEventKind;
     const std::string back = "model 0: cells are given back that weren't lent";
     const std::string came = "model 0: its base mesh comes where it isn't wanted";
     EXPECT_EQ(WantedBase().open({base_back, base_back}), back);

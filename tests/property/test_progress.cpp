@@ -161,8 +161,8 @@ TEST_P(Progress, a_cache_full_of_pinned_pages_leaves_a_stable_bracket_and_no_thr
         options.cache_bytes = pages * sizeof(Page);
         FrameRig rig(model_, options);
         FrameOutput output;
-        // Unanswered requests are repeated after kWishTimeoutFrames; none may be left by then.
-        for (std::uint32_t frame = 0; frame < 3 * kWishTimeoutFrames; ++frame)
+        // Unanswered requests are repeated after kRequestTimeoutFrames; none may be left by then.
+        for (std::uint32_t frame = 0; frame < 3 * kRequestTimeoutFrames; ++frame)
         {
             output = rig.step(tool.goal);
         }
@@ -180,7 +180,7 @@ TEST_P(Progress, a_cache_full_of_pinned_pages_leaves_a_stable_bracket_and_no_thr
             EXPECT_EQ(output.models[0].state_hash, hash);
         }
         ASSERT_TRUE(answer_is_sound(model_, output));
-        if (settled.kind == AnswerKind::bracket)
+        if (settled.kind == AnswerKind::bounded)
         {
             ++open;
             EXPECT_TRUE(has_fault(output.faults, FrameFault::cache_full)) << pages << " pages";
@@ -249,7 +249,7 @@ TEST(Coarsening, what_a_tool_leaves_behind_is_merged_in_a_small_cache_too)
         test_model("bumpy-40k", make_shape(Shape::bumpy_sphere, 40'000).value());
     RigOptions options = with_room_for_all();
     options.tools = {{kRadius_diag * model.diagonal_m, 500.0, 8.0, 1.0}};
-    options.tools[0].passes_through = true;
+    options.tools[0].query_only = true;
     FrameRig roomy(model, options);
     load_everything(roomy);
     options.cache_bytes = std::size_t{1} << 20U;
@@ -261,7 +261,7 @@ TEST(Coarsening, what_a_tool_leaves_behind_is_merged_in_a_small_cache_too)
     manner.radius_diag = kRadius_diag;
     manner.step_m = 0.004 * model.diagonal_m;
     manner.turn_rad = 0.05;
-    manner.turn_rate = [&](std::uint64_t) { return random.between(-1.0, 1.0); };
+    manner.rotation_rate = [&](std::uint64_t) { return random.between(-1.0, 1.0); };
     SurfaceSlide slide(tree, manner, place_at_distance(model, random, 0.02 * model.diagonal_m));
     Vec3 goal(0.0, 0.0, 0.0);
     std::uint32_t kept = 0;

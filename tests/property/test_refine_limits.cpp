@@ -262,7 +262,7 @@ FrameFault faults_of_long_tools(std::uint32_t tools, std::uint32_t objects)
 
 TEST(RefineLimits, a_frame_says_when_it_does_not_ask_for_what_a_tool_is_at)
 {
-    constexpr std::uint32_t kFive = 5 * kMaxCoverBalls; // Present and four predicted covers.
+    constexpr std::uint32_t kFive = 5 * kMaxCoverSpheres; // Present and four predicted covers.
     static_assert(9 * kFive < kMaxRankedRegions && 10 * kFive > kMaxRankedRegions);
     EXPECT_FALSE(has_fault(faults_of_long_tools(2, 5), FrameFault::ranking_full));
     EXPECT_TRUE(has_fault(faults_of_long_tools(3, 4), FrameFault::ranking_full));
@@ -342,7 +342,7 @@ TEST(RefineLimits, a_frame_has_room_for_so_many_full_surfaces_and_says_when_it_n
     {
         RigOptions options = with_room_for_all();
         options.tools = {{reach_m / 1.06, 500.0, 8.0, 1.0}};
-        options.tools[0].passes_through = true;
+        options.tools[0].query_only = true;
         options.objects.assign(objects, ObjectSpec{ModelId{0}});
         FrameRig rig(model, options);
         const FrameOutput output = fill_surfaces(rig, place);

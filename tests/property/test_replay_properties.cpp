@@ -29,11 +29,11 @@ constexpr int kFrames = 400;
 std::vector<std::byte> record_run(const TestModel& model, const char* name, std::uint64_t seed)
 {
     Random random = Random::seeded(seed);
-    WanderingHand wander(model, random);
+    WanderingOperator wander(model, random);
     const Hardship hardship = hardship_named(model, name);
     RigOptions options = hardship.rig;
     options.faults.seed = seed;
-    options.courier_steps_per_frame = 1 + random.below(4U);
+    options.chunk_loader_steps_per_frame = 1 + random.below(4U);
     options.record = true;
     options.prediction = random.one_in(2) ? Prediction::automatic : Prediction::local_neighbours;
     FrameRig rig(model, options);
@@ -42,7 +42,7 @@ std::vector<std::byte> record_run(const TestModel& model, const char* name, std:
     {
         // Budgets change here as in a real run, where they follow the costs of frames.
         budgets.splits = frame % 50 == 49 ? 1U : hardship.budgets.splits;
-        rig.frame().rehearse();
+        rig.frame().warm_caches();
         static_cast<void>(rig.step(wander.next(), budgets));
         for (std::size_t more = random.below(3); more > 0; --more)
         {
@@ -79,13 +79,13 @@ TEST(ReplayOfTwoModels, gives_every_frame_again_though_they_take_each_other_s_sl
     const std::uint64_t seed = seed_of(590);
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random = Random::seeded(seed);
-    WanderingHand wander(model, random);
+    WanderingOperator wander(model, random);
     RigOptions options;
     options.pool_bytes = std::size_t{700} << 10U;
     options.cache_bytes = 10 * sizeof(Page);
     options.faults.delay_polls_max = 40;
     options.faults.seed = seed;
-    options.courier_steps_per_frame = 2;
+    options.chunk_loader_steps_per_frame = 2;
     options.objects = {{ModelId{0}}, {ModelId{1}}};
     options.record = true;
     FrameRig rig({&model, &model}, options);

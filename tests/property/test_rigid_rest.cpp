@@ -94,7 +94,7 @@ protected:
                 angle > 0.0 ? Mat3(rotation_about(axis_angle, angle) * hand.from) : hand.from;
             rest = rig.step(std::span(&state, 1), {}).tools[0];
         }
-        ASSERT_TRUE(rest.in_contact && !rest.frozen && !rest.squeezed);
+        ASSERT_TRUE(rest.in_contact && !rest.halted && !rest.over_constrained);
         EXPECT_EQ(rest.lag_m, 0.0);
 
         const Rest truth =
@@ -173,7 +173,7 @@ TEST_F(RigidRest, flat_on_a_plate_is_at_the_radius_pushes_by_the_depth_and_lets_
         const ToolOutput pressed = output.tools[0];
         const double radius_m = std::max(tool.radius_m, kLeastSkin * 2.0 * half.norm());
         const double depth_m = pressed.proxy_m.z() - state.position_m.z();
-        EXPECT_TRUE(pressed.in_contact && !pressed.frozen);
+        EXPECT_TRUE(pressed.in_contact && !pressed.halted);
         EXPECT_NEAR(output.pairs[0].lower_m, radius_m, 1e-3 * radius_m);
         EXPECT_GT(depth_m, 0.002);
         EXPECT_LE((pressed.force_n - Vec3(0, 0, 500.0 * depth_m)).norm(), 1e-3);
@@ -274,15 +274,15 @@ TEST_F(RigidRest, a_cylinder_on_a_cylinder)
 
 TEST_F(RigidRest, a_box_a_hull_and_a_mesh_on_bumps_and_on_teeth)
 {
-    TriangleMesh ball = make_uv_sphere(8, 10).value();
-    for (auto& corner : ball.positions)
+    TriangleMesh sphere = make_uv_sphere(8, 10).value();
+    for (auto& corner : sphere.positions)
     {
         for (double& coordinate_m : corner)
         {
             coordinate_m *= 0.2; // Share of the 10 mm.
         }
     }
-    const TestModel& probe = test_model("rest-tool", ball, 60);
+    const TestModel& probe = test_model("rest-tool", sphere, 60);
     const TestModel& bumps =
         test_model("rest-bumps", make_shape(Shape::bumpy_sphere, 2'000).value(), 100);
     const TestModel& gear = test_model("rest-gear", make_shape(Shape::gear, 1'500).value(), 100);

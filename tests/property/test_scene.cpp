@@ -159,7 +159,7 @@ TEST(SceneChanges, an_object_that_comes_round_a_tool_makes_no_force_until_the_to
 
 /// Random depth and speed, with an immediate next touch: from the frame on in which an object
 /// surrounded a tool, the force grows at most by the spring's part of the hand's motion and by the
-/// return of a lost force (SafeState).
+/// return of a lost force (ForceFader).
 TEST(SceneChanges, an_object_that_came_round_a_tool_and_was_left_makes_a_force_without_a_step)
 {
     constexpr double kRiseStep_n = 2.0 * 8.0 * 1e-3 / kRiseTime_s;
@@ -308,7 +308,7 @@ void expect_listed(const ToolSpec& tool, std::span<const ListedCase> cases)
     RigOptions options = with_room_for_all();
     options.tools.assign(2, tool);
     options.tools[0].wants_distance = options.tools[1].wants_distance = true;
-    options.tools[1].passes_through = true;
+    options.tools[1].query_only = true;
     FrameRig rig(model, options);
     Vec3 outermost(-kInfinity, 0.0, 0.0);
     for (const Face& face : model.faces)
@@ -328,7 +328,7 @@ void expect_listed(const ToolSpec& tool, std::span<const ListedCase> cases)
             output = rig.step(std::vector{goal_m, goal_m}, Budgets{});
         }
         ObjectTouches touches;
-        list_touches(rig.frame(), output.pairs, BelievedSpeed{0.5}, touches);
+        list_touches(rig.frame(), output.pairs, ObjectSpeedLimit{0.5}, touches);
         ASSERT_EQ(touches.size(), at.listed) << at.gap_m;
         if (at.listed > 0)
         {
@@ -410,7 +410,7 @@ TEST(SceneChanges, an_object_that_feels_otherwise_changes_the_force_in_small_ste
         sut.rig->change(change);
         // The pressing hand rests: only the material makes steps, a fiftieth of the change each.
         const double most_n =
-            1.05 * 1e-3 / kMaterialGlide_s * std::abs(stiffness_n_per_m * depth_m - from_n);
+            1.05 * 1e-3 / kMaterialBlend_s * std::abs(stiffness_n_per_m * depth_m - from_n);
         Vec3 last_n = sut.output.tools[0].force_n;
         for (int i = 0; i < 60; ++i)
         {
@@ -512,15 +512,15 @@ TEST(SceneCrowd, has_a_pair_of_each_tool_and_object_up_to_the_limit_and_says_wha
 {
     const FrameOutput all = crowd(4, kMaxPairs / 4);
     EXPECT_EQ(all.scene.pairs, kMaxPairs);
-    EXPECT_FALSE(has_fault(all.faults, FrameFault::scene_crowded));
+    EXPECT_FALSE(has_fault(all.faults, FrameFault::scene_over_capacity));
     const FrameOutput full = crowd(4, kMaxPairs / 4 + 1);
-    EXPECT_TRUE(has_fault(full.faults, FrameFault::scene_crowded));
+    EXPECT_TRUE(has_fault(full.faults, FrameFault::scene_over_capacity));
     EXPECT_EQ(full.scene.pairs, kMaxPairs); // All are equally near.
-    EXPECT_FALSE(has_fault(crowd(1, kMaxNear).faults, FrameFault::scene_crowded));
+    EXPECT_FALSE(has_fault(crowd(1, kMaxNear).faults, FrameFault::scene_over_capacity));
     const FrameOutput over = crowd(1, kMaxNear + 1);
-    EXPECT_TRUE(has_fault(over.faults, FrameFault::scene_crowded));
+    EXPECT_TRUE(has_fault(over.faults, FrameFault::scene_over_capacity));
     EXPECT_EQ(over.scene.pairs, kMaxNear);
-    EXPECT_EQ(over.scene.crowded_tools, 1U);
+    EXPECT_EQ(over.scene.tools_over_capacity, 1U);
 }
 
 TEST(SceneCrowd, ends_for_frames_at_rest_with_the_tool_that_was_crowded)
@@ -533,7 +533,7 @@ TEST(SceneCrowd, ends_for_frames_at_rest_with_the_tool_that_was_crowded)
     FrameRig sut(model, options);
     const Vec3 amid_m = to_vec3(model.faces[0][0]);
     const std::vector<Vec3> goals_m{amid_m, amid_m + Vec3(10.0 * model.diagonal_m, 0.0, 0.0)};
-    ASSERT_TRUE(has_fault(sut.step(goals_m, Budgets{}).faults, FrameFault::scene_crowded));
+    ASSERT_TRUE(has_fault(sut.step(goals_m, Budgets{}).faults, FrameFault::scene_over_capacity));
     SceneChange change;
     change.kind = SceneChangeKind::tool_goes;
     sut.change(change);
@@ -542,7 +542,7 @@ TEST(SceneCrowd, ends_for_frames_at_rest_with_the_tool_that_was_crowded)
     {
         const FrameOutput output = sut.step(goals_m, Budgets{});
         rested += output.work.skipped.times()[static_cast<std::size_t>(Skip::frames)];
-        EXPECT_FALSE(has_fault(output.faults, FrameFault::scene_crowded)) << "frame " << i;
+        EXPECT_FALSE(has_fault(output.faults, FrameFault::scene_over_capacity)) << "frame " << i;
     }
     EXPECT_EQ(rested, 2U);
 }
@@ -562,7 +562,7 @@ TEST(SceneCrowd, stops_a_tool_where_what_is_near_is_not_followed)
     rig.place_object(beside, 1);
     Vec3 goal(1.5 * model.diagonal_m, 0.0, 0.0);
     const FaceTree tree(model.faces);
-    bool was_crowded = false;
+    bool exceeded_capacity = false;
     for (int i = 0; i < 3'000; ++i)
     {
         goal.x() -= 0.001 * model.diagonal_m;
@@ -574,9 +574,9 @@ TEST(SceneCrowd, stops_a_tool_where_what_is_near_is_not_followed)
                 << "frame " << i;
         }
         ASSERT_EQ(output.scene.pairs, 1U);
-        was_crowded = was_crowded || output.scene.walled_tools > 0;
+        exceeded_capacity = exceeded_capacity || output.scene.walled_tools > 0;
     }
-    EXPECT_TRUE(was_crowded);
+    EXPECT_TRUE(exceeded_capacity);
 }
 
 /// A row of many models passes under a tool's hand; no tool comes near the others.
@@ -635,7 +635,7 @@ TEST(Scene, a_model_that_a_tool_has_left_is_its_base_mesh_again_before_it_rests)
     const std::vector<const TestModel*> models{&small_model(0), &small_model(1)};
     const double diagonal_m = models[0]->diagonal_m;
     RigOptions options = scene_options(diagonal_m, 1);
-    options.tools[0].passes_through = true;
+    options.tools[0].query_only = true;
     options.objects = {{ModelId{0}, {}}, {ModelId{1}, {}}};
     options.poses.resize(2);
     options.poses[1].translation_m = Vec3(10.0 * diagonal_m, 0.0, 0.0);

@@ -44,7 +44,8 @@ struct Compared
 bool are_near(const ToolOutput& a, const ToolOutput& b)
 {
     return (a.force_n - b.force_n).norm() <= kAlike && (a.proxy_m - b.proxy_m).norm() <= kAlike &&
-           a.in_contact == b.in_contact && a.frozen == b.frozen && a.squeezed == b.squeezed;
+           a.in_contact == b.in_contact && a.halted == b.halted &&
+           a.over_constrained == b.over_constrained;
 }
 
 /// Events of both rigs: tools that rest, wander and press into nearby objects, among objects that
@@ -106,7 +107,7 @@ private:
         ModelId model{};
         ObjectPose pose;
         std::uint32_t generation{0};
-        bool is_here{true};
+        bool is_resident{true};
     };
 
     [[nodiscard]] double diagonal_m() const { return models_[0]->diagonal_m; }
@@ -116,18 +117,18 @@ private:
         Object& object = objects_[number];
         SceneChange change;
         change.number = number;
-        if (!object.is_here)
+        if (!object.is_resident)
         {
             change.kind = SceneChangeKind::object_comes;
             change.object = {object.model, {400.0, 0.4, 0.3, 0.1}};
             object.pose = any_pose(random_, 1.2 * diagonal_m());
             ++object.generation;
-            object.is_here = true;
+            object.is_resident = true;
         }
         else if (random_.one_in(3))
         {
             change.kind = SceneChangeKind::object_goes;
-            object.is_here = false;
+            object.is_resident = false;
         }
         else
         {
@@ -228,7 +229,7 @@ private:
     {
         return std::ranges::none_of(
             output.pairs, [tool](const PairOutput& pair)
-            { return pair.tool == tool && pair.kind == AnswerKind::bracket; });
+            { return pair.tool == tool && pair.kind == AnswerKind::bounded; });
     }
 
     /// A moving or waiting proxy moves as far as is known, which shortcuts do change: it is not
@@ -243,7 +244,7 @@ private:
         {
             const ToolOutput& tool = one.tools[i];
             return tool.under_way ||
-                   (streams_ && (tool.held_back || tool.frozen || !is_known(one, i)));
+                   (streams_ && (tool.data_limited || tool.halted || !is_known(one, i)));
         };
         const bool stays_apart = !is_alike || (streams_ && ours.in_contact);
         has_a_way_[i] = (has_a_way_[i] && stays_apart) || waits(expected) || waits(output);
@@ -388,7 +389,7 @@ TEST(FrameTolerance, splits_less_and_says_less)
     Random random = Random::seeded(seed);
     RigOptions options;
     options.tools = {{0.02 * model.diagonal_m, 500.0, 8.0, 10.0}};
-    options.tools[0].passes_through = true;
+    options.tools[0].query_only = true;
     RigOptions tolerant = options;
     tolerant.variant.tolerance_m = tolerance_m;
     for (int place = 0; place < 20; ++place)
@@ -416,7 +417,7 @@ TEST(FrameFixedRadius, splits_every_face_within_it)
     Random random = Random::seeded(seed);
     RigOptions options;
     options.tools = {{radius_m, 500.0, 8.0, 10.0}};
-    options.tools[0].passes_through = true;
+    options.tools[0].query_only = true;
     std::uint32_t last = 0;
     const Vec3 goal = place_at_distance(model, random, 0.005 * model.diagonal_m);
     for (const double factor : {1.0, 2.0, 4.0})

@@ -102,7 +102,8 @@ TEST(WorstCases, a_full_inbox_is_adopted_a_few_pages_a_frame)
             sut.deliver();
         }
     }
-    const auto waiting = static_cast<std::uint32_t>(sut.frame().pools().cache.door.arrived.size());
+    const auto waiting =
+        static_cast<std::uint32_t>(sut.frame().pools().cache.queues.arrived.size());
     ASSERT_GT(waiting, 12U) << "not enough to fill a frame's share";
     budgets.pages = 3;
     std::uint32_t adopted = 0;
@@ -124,7 +125,7 @@ TEST(SharedPools, a_touch_uses_faces_that_another_model_brought_and_that_keeps_i
     options.cache_bytes = std::size_t{600} << 10U;
     options.objects = {{ModelId{0}}, {ModelId{1}}};
     options.tools = {{0.3 * model.diagonal_m, 500.0, 8.0, 1.0}};
-    options.tools[0].passes_through = true;
+    options.tools[0].query_only = true;
     FrameRig rig({&model, &model}, options);
     const Vec3 place = to_vec3(model.faces[0][0]);
     std::array<std::uint32_t, 2> most{};
@@ -154,7 +155,7 @@ TEST(SharedPools, a_touch_takes_pages_that_are_of_no_use_elsewhere_but_for_those
     options.cache_bytes = 16 * sizeof(Page);
     options.objects = {{ModelId{0}}, {ModelId{1}}};
     options.tools = {{0.3 * model.diagonal_m, 500.0, 8.0, 1.0}};
-    options.tools[0].passes_through = true;
+    options.tools[0].query_only = true;
     FrameRig rig({&model, &model}, options);
     const Vec3 place = to_vec3(model.faces[0][0]);
     const std::uint32_t brought = rig.model({0}).capacities.pages;

@@ -24,7 +24,7 @@ class Starvation : public testing::TestWithParam<GreedyCase>
 {
 };
 
-TEST_P(Starvation, a_touch_stays_exact_and_is_not_held_back)
+TEST_P(Starvation, a_touch_stays_exact_and_is_not_data_limited)
 {
     const TestModel& model =
         test_model("bumpy-200k", make_shape(Shape::bumpy_sphere, 200'000).value(), 500);
@@ -38,7 +38,7 @@ TEST_P(Starvation, a_touch_stays_exact_and_is_not_held_back)
     EXPECT_LE(figures.splits_max, GetParam().splits);
     EXPECT_EQ(figures.exact, figures.frames);
     const bool shares_contact = GetParam().others == GreedyCase::Others::are_held;
-    EXPECT_LE(figures.held_back_percent(), shares_contact ? 5.0 : 0.0);
+    EXPECT_LE(figures.data_limited_percent(), shares_contact ? 5.0 : 0.0);
     EXPECT_LE(figures.force_step_n, shares_contact ? 0.1 : 0.05);
 }
 
@@ -63,7 +63,7 @@ TEST(StarvationOfMany, sixteen_tools_among_a_hundred_objects_leave_a_touch_as_it
         EXPECT_EQ(among_others.broken, "");
         EXPECT_EQ(among_others.frames, alone.frames);
         EXPECT_EQ(among_others.exact, among_others.frames);
-        EXPECT_EQ(among_others.held_back, 0U);
+        EXPECT_EQ(among_others.data_limited, 0U);
         EXPECT_LE(among_others.splits_max, greedy.splits);
         EXPECT_NEAR(among_others.force_step_n, alone.force_step_n, 1e-9);
     }
@@ -85,7 +85,7 @@ TEST(Shedding, begins_where_a_touch_finds_no_room_and_is_told)
     EXPECT_EQ(among_others.broken, "");
     EXPECT_GT(among_others.shed, 300U);
     EXPECT_EQ(among_others.exact, among_others.frames);
-    EXPECT_LE(among_others.held_back_percent(), 1.0);
+    EXPECT_LE(among_others.data_limited_percent(), 1.0);
     EXPECT_EQ(alone.shed, 0U) << "there is nobody else";
     EXPECT_EQ(alone.exact, alone.frames);
 }

@@ -77,7 +77,7 @@ TEST_P(StaticMode, a_model_that_fits_ends_refined_and_frames_only_query)
         EXPECT_EQ(work.blocks_refitted + work.nodes_refitted, 0U);
         EXPECT_EQ(work.pages_adopted + work.requests + work.regions_searched, 0U);
         const PairOutput& pair = output.pairs[0];
-        EXPECT_NE(pair.kind, AnswerKind::bracket);
+        EXPECT_NE(pair.kind, AnswerKind::bounded);
         EXPECT_TRUE(answer_is_sound(model_, output));
         if (pair.kind == AnswerKind::exact)
         {
@@ -138,7 +138,7 @@ TEST(StaticModeFarAway, is_reached_and_what_the_tool_needs_comes_first)
     RigOptions options;
     options.pool_bytes = std::size_t{64} << 20U;
     options.static_when_it_fits = true;
-    options.courier_steps_per_frame = 1;
+    options.chunk_loader_steps_per_frame = 1;
     options.faults.delay_polls_min = options.faults.delay_polls_max = 20;
     FrameRig sut(model, options);
     const Vec3 goal = to_vec3(model.faces[0][0]);
@@ -154,7 +154,7 @@ TEST(StaticModeFarAway, is_reached_and_what_the_tool_needs_comes_first)
     EXPECT_GT(first_exact, 0U);
     EXPECT_LT(first_exact, 300U); // A round trip for each level of the index, and the splits.
     EXPECT_GT(first_static, 0U);
-    EXPECT_EQ(sut.courier().counters().forgotten, 0U);
+    EXPECT_EQ(sut.chunk_loader().counters().forgotten, 0U);
 }
 
 INSTANTIATE_TEST_SUITE_P(small_models, StaticMode,

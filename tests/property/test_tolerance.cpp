@@ -176,7 +176,7 @@ protected:
             if (frame >= kPressed)
             {
                 ++run.frames;
-                run.held += felt.in_contact && !felt.frozen ? 1 : 0;
+                run.held += felt.in_contact && !felt.halted ? 1 : 0;
                 run.known += is_known(pair.kind) ? 1 : 0;
                 run.tolerated += pair.kind == AnswerKind::within_tolerance ? 1 : 0;
             }
@@ -220,7 +220,7 @@ INSTANTIATE_TEST_SUITE_P(
         ToleranceCase{"ball", PointCore{}, 0.05, 0.05, 500, false, true},
         ToleranceCase{"capsule", Segment{{-0.1, 0, 0}, {0.1, 0, 0}}, 0.01, 0.01, 500, false, false},
         ToleranceCase{"box", Box{{0.08, 0.08, 0.02}}, 0.002, 0.022, 1'000, false, true},
-        ToleranceCase{"ball_on_a_whole_model", PointCore{}, 0.7, 0.7, 64 << 10, true, false},
+        ToleranceCase{"sphere_on_a_whole_model", PointCore{}, 0.7, 0.7, 64 << 10, true, false},
         ToleranceCase{"box_on_a_whole_model", Box{{0.1, 0.1, 0.02}}, 0.002, 0.022, 64 << 10, true,
                       false}),
     name_of);

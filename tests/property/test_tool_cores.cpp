@@ -82,7 +82,7 @@ ToolSpec tool_with(const ToolCore& core, double radius_m)
     spec.radius_m = radius_m;
     spec.core = core;
     spec.wants_contacts = true;
-    spec.passes_through = true; // Answers are then requested everywhere.
+    spec.query_only = true; // Answers are then requested everywhere.
     return spec;
 }
 
@@ -229,7 +229,7 @@ TEST(ToolCores, answers_of_frames_with_several_steps_are_of_the_place_that_they_
         RigOptions options;
         ToolSpec spec = scaled_tool(kind, model.diagonal_m);
         spec.radius_m = std::max(spec.radius_m, 0.005 * model.diagonal_m);
-        spec.passes_through = false;
+        spec.query_only = false;
         spec.speed_max_m_per_s = 1e3 * model.diagonal_m;
         options.tools = {spec};
         FrameRig rig(model, options);

@@ -286,30 +286,30 @@ TEST_F(Validators, a_table_whose_index_has_other_pages_is_told)
     EXPECT_EQ(flaw(), "");
 }
 
-TEST_F(Validators, what_is_wished_for_and_here_is_told)
+TEST_F(Validators, what_is_requested_and_here_is_told)
 {
     // The tool is far away, without a delivery.
     const Vec3 elsewhere = to_vec3(model_.faces[0][0]);
     rig_.step_without_delivery({elsewhere}, {}, {});
-    PieceWish wish;
-    while (rig_.frame().pools().cache.door.wanted.try_pop(wish) &&
-           wish.key.kind != ContentKind::chunk)
+    PieceRequest request;
+    while (rig_.frame().pools().cache.queues.wanted.try_pop(request) &&
+           request.key.kind != ContentKind::chunk)
     {
     }
-    ASSERT_EQ(wish.key.kind, ContentKind::chunk);
+    ASSERT_EQ(request.key.kind, ContentKind::chunk);
     ASSERT_EQ(flaw(), "");
-    sut().pages.adopt({wish.key.number}, empty_slot(), ChunkCache::kFirstFrame);
+    sut().pages.adopt({request.key.number}, empty_slot(), ChunkCache::kFirstFrame);
     // The slot's end also reduces the count of those at the transport; evicting another restores
     // it.
     std::uint32_t unpinned = 0;
     while (sut().pages.meta(unpinned).chunk.is_none() ||
-           sut().pages.meta(unpinned).chunk == ChunkId{wish.key.number} ||
+           sut().pages.meta(unpinned).chunk == ChunkId{request.key.number} ||
            sut().pages.meta(unpinned).refined != 0)
     {
         ++unpinned;
     }
     sut().pages.evict(unpinned);
-    EXPECT_EQ(flaw(), "chunk " + std::to_string(wish.key.number) + " is wished for and here");
+    EXPECT_EQ(flaw(), "chunk " + std::to_string(request.key.number) + " is requested and here");
 }
 
 TEST_F(Validators, index_pages_of_a_wrong_size_are_told)
@@ -327,7 +327,7 @@ TEST_F(Validators, index_pages_of_a_wrong_size_are_told)
 
 TEST_F(Validators, slots_that_go_back_twice_are_told)
 {
-    while (rig_.frame().pools().cache.door.freed.try_push({ContentKind::chunk, 0}))
+    while (rig_.frame().pools().cache.queues.freed.try_push({ContentKind::chunk, 0}))
     {
     }
     EXPECT_NE(flaw().find("slots are on their way back, more than are not its own"),

@@ -83,7 +83,7 @@ def check_distances(path, corners):
     rng = np.random.default_rng(int(os.environ.get("TACTUS_SEED", "1")))
     places = rng.uniform(-0.09, 0.09, (300, 3)) * [1, 1, 0.4]
     truth = np.array([distance(place, corners) for place in places])
-    frame = tactus.Frame([tactus.Model(path)], [tactus.Tool(0.02, passes_through=True)],
+    frame = tactus.Frame([tactus.Model(path)], [tactus.Tool(0.02, query_only=True)],
                          [tactus.Object()], memory_mib=8)
     answers = frame.run(places, rounds=1000)
     expect(answers.lower_m.shape == (300, 1) and answers.force_n.shape == (300, 3), "shapes")
@@ -99,7 +99,7 @@ def check_distances(path, corners):
     # A small tool that requests it has the distance from anywhere, another only in reach.
     for wants in (True, False):
         small = tactus.Frame([tactus.Model(path)],
-                             [tactus.Tool(0.001, passes_through=True, wants_distance=wants)],
+                             [tactus.Tool(0.001, query_only=True, wants_distance=wants)],
                              [tactus.Object()], memory_mib=8)
         answers = small.run(places[:60] * 3, rounds=3000)
         exact = answers.kind[:, 0] == tactus.EXACT
@@ -109,7 +109,7 @@ def check_distances(path, corners):
         expect(np.max(off, initial=0) < 1e-6, f"distances from afar are off by {np.max(off, initial=0)}")
     # Two tools, two separate objects, one displaced: the distances are the same.
     shift = np.array([0.3, 0.0, 0.0])
-    two = tactus.Frame([tactus.Model(path)], [tactus.Tool(0.02, passes_through=True)] * 2,
+    two = tactus.Frame([tactus.Model(path)], [tactus.Tool(0.02, query_only=True)] * 2,
                        [tactus.Object(), tactus.Object(translation_m=shift)], memory_mib=8)
     both = np.stack([places[near], places[near] + shift], axis=1)
     answers = two.run(both, rounds=1000)
@@ -206,7 +206,7 @@ def check_shapes(path, corners):
         core, gap = samples(shape, half)
         frame = tactus.Frame(
             [tactus.Model(path)],
-            [tactus.Tool(0.02, shape=shape, half_m=half, passes_through=True)],
+            [tactus.Tool(0.02, shape=shape, half_m=half, query_only=True)],
             [tactus.Object()], memory_mib=8)
         around = rng.uniform(0, 2 * np.pi, 6)
         places = np.stack([0.05 * np.cos(around), 0.05 * np.sin(around),
@@ -282,12 +282,12 @@ def forces_when_shaken(path, speed_m_per_s):
 def check_carried(path, corners):
     """A touched object moves at most at its speed limit, and reaches its target."""
     believed, flags = forces_when_shaken(path, 1e6)
-    expect(believed > 1.5 and not np.any(flags & tactus.OUTRUN), f"a step of {believed} N")
+    expect(believed > 1.5 and not np.any(flags & tactus.RATE_LIMITED), f"a step of {believed} N")
     held, flags = forces_when_shaken(path, 0.5)
     expect(held <= 1.3 * 500 * 0.5 * 1e-3, f"a step of {held} N at 0.5 m/s")
-    expect(not np.any(flags & tactus.OUTRUN), "4 mm are no 20 ms of 0.5 m/s")
+    expect(not np.any(flags & tactus.RATE_LIMITED), "4 mm are no 20 ms of 0.5 m/s")
     # Hand 1 mm deep, and a probe above it that measures the height of the ring's top.
-    probe = tactus.Tool(0.001, passes_through=True, wants_distance=True)
+    probe = tactus.Tool(0.001, query_only=True, wants_distance=True)
     frame = tactus.Frame([tactus.Model(path)], [tactus.Tool(0.002), probe], [tactus.Object()],
                          memory_mib=32, loads_whole=True)
 
@@ -304,8 +304,8 @@ def check_carried(path, corners):
     expect(flags[-1] & tactus.IN_CONTACT, "no touch")
     frame.place(0, translation_m=[0, 0, 0.012])
     height, flags = run(np.full(60, 0.021))
-    outrun = flags & tactus.OUTRUN != 0
-    expect(np.any(outrun[:8]) and not np.any(outrun[8:]), f"outrun in {np.flatnonzero(outrun)}")
+    outrun = flags & tactus.RATE_LIMITED != 0
+    expect(np.any(outrun[:8]) and not np.any(outrun[8:]), f"rate-limited in {np.flatnonzero(outrun)}")
     rise = np.diff(np.concatenate([[0], height]))
     expect(np.all(rise < 0.501e-3), f"carried by {rise.max()} m in a frame")
     expect(abs(height[-1] - 0.012) < 1e-5, f"it is at {height[-1]} m, not where it was put")
@@ -334,7 +334,7 @@ def check_host(path):
         expect(model.hash == tactus.Model(path).hash and model.faces == 5000, "another model")
         pinned = tactus.Model.find(f"torus@{model.hash}", DOMAIN, PATIENCE_S)
         expect(pinned.hash == model.hash, "another model by its hash")
-        frame = tactus.Frame([model], [tactus.Tool(0.02, passes_through=True)],
+        frame = tactus.Frame([model], [tactus.Tool(0.02, query_only=True)],
                              [tactus.Object()], memory_mib=8)
         places = np.array([[0.05, 0, 0.03], [0, 0.05, 0.025]])
         end = time.monotonic() + PATIENCE_S
@@ -342,7 +342,7 @@ def check_host(path):
         while np.any(answers.kind != tactus.EXACT) and time.monotonic() < end:
             frame.load()  # The requested data are in transit.
             answers = frame.run(places)
-        same = tactus.Frame([tactus.Model(path)], [tactus.Tool(0.02, passes_through=True)],
+        same = tactus.Frame([tactus.Model(path)], [tactus.Tool(0.02, query_only=True)],
                             [tactus.Object()], memory_mib=8).run(places, rounds=1000)
         expect(np.all(answers.kind == tactus.EXACT), "never exact")
         expect(np.array_equal(answers.lower_m, same.lower_m), "other distances than the file's")
@@ -366,7 +366,7 @@ def check_begins_inside(path):
     words = ["tool 0 begins inside a closed object, which holds it from within"]
     expect(warned([0.05, 0, 0]) == words, "no warning of a tool inside")
     expect(warned([0, 0, 0]) == [], "a warning of a tool in the hole")
-    expect(warned([0.05, 0, 0], passes_through=True) == [], "a warning of a tool that passes through")
+    expect(warned([0.05, 0, 0], query_only=True) == [], "a warning of a tool that passes through")
 
 
 def check_refusals(path):
@@ -408,13 +408,13 @@ def check_refusals(path):
             lambda: tactus.Frame([tactus.Model(path)], [tactus.Tool(-1)], [tactus.Object()]))
     refuses(ValueError, "tools[0].radius_m: 2; 1e-06 to 1 is allowed",  # The limits of hrtc --tool.
             lambda: tactus.Frame([tactus.Model(path)], [tactus.Tool(2)], [tactus.Object()]))
-    tactus.Frame([tactus.Model(path)], [tactus.Tool(2, passes_through=True)], [tactus.Object()])
-    refuses(ValueError, "tools[0].smooth_m: 1; 0.0001 to 0.1",
-            lambda: tactus.Frame([tactus.Model(path)], [tactus.Tool(1, smooth_m=1)],
+    tactus.Frame([tactus.Model(path)], [tactus.Tool(2, query_only=True)], [tactus.Object()])
+    refuses(ValueError, "tools[0].shading_m: 1; 0.0001 to 0.1",
+            lambda: tactus.Frame([tactus.Model(path)], [tactus.Tool(1, shading_m=1)],
                                  [tactus.Object()]))
-    refuses(ValueError, "tools[0].smooth_m: 0.01; only a sphere feels it",
+    refuses(ValueError, "tools[0].shading_m: 0.01; only a sphere feels it",
             lambda: tactus.Frame([tactus.Model(path)],
-                                 [tactus.Tool(1, shape="box", half_m=[1, 1, 1], smooth_m=0.01)],
+                                 [tactus.Tool(1, shape="box", half_m=[1, 1, 1], shading_m=0.01)],
                                  [tactus.Object()]))
     refuses(ValueError, "objects[0].model: 1; 0 to 0",
             lambda: tactus.Frame([tactus.Model(path)], [tactus.Tool(1)], [tactus.Object(1)]))

@@ -5,7 +5,7 @@
 // doubles, x y z of each; OUT gets a force, lower and upper bound for each. The model is loaded
 // completely first. Prints the CPU time of the loop in seconds.
 #include "rt_core/frame/frame.hpp"
-#include "transport/courier.hpp"
+#include "transport/chunk_loader.hpp"
 #include "transport/store/store_link.hpp"
 
 #include <array>
@@ -79,14 +79,14 @@ int main(int argc, char** argv)
         return 2;
     }
     Model& parts = frame->model({0});
-    Courier courier(arena, frame->pools().slots, frame->pools().cache.door, {});
-    courier.add(parts.header, parts.linker, *model.link, model.name);
+    ChunkLoader chunk_loader(arena, frame->pools().slots, frame->pools().cache.queues, {});
+    chunk_loader.add(parts.header, parts.linker, *model.link, model.name);
     ToolState state;
     state.position_m = {poses[0], poses[1], poses[2]};
     FrameOutput output;
     do
     {
-        courier.step(0);
+        chunk_loader.step(0);
         output = frame->run({.tools = {&state, 1}, .changes = {}, .budgets = {}, .now_ns = 0});
     } while (!output.models[0].is_static);
 

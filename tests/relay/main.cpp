@@ -52,11 +52,11 @@ void stop_on_signals(sigset_t& while_waiting)
     ::sigaction(SIGTERM, &action, nullptr);
     action.sa_handler = SIG_IGN; // A closed reader of the answers is detected by the write.
     ::sigaction(SIGPIPE, &action, nullptr);
-    sigset_t held_back;
-    ::sigemptyset(&held_back);
-    ::sigaddset(&held_back, SIGINT);
-    ::sigaddset(&held_back, SIGTERM);
-    ::sigprocmask(SIG_BLOCK, &held_back, &while_waiting);
+    sigset_t blocked;
+    ::sigemptyset(&blocked);
+    ::sigaddset(&blocked, SIGINT);
+    ::sigaddset(&blocked, SIGTERM);
+    ::sigprocmask(SIG_BLOCK, &blocked, &while_waiting);
     ::sigdelset(&while_waiting, SIGINT);
     ::sigdelset(&while_waiting, SIGTERM);
 }

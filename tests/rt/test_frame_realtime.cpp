@@ -156,7 +156,7 @@ void watch_frames(FrameRig& rig, const Touch& touch, Random& random, Watched& wa
         const FrameInput input{tools, changes, touch.budgets, rig.now_ns()};
         allocation_counter::mark_this_thread(true);
         system_call_trap::mark_frame(true);
-        rig.frame().rehearse();
+        rig.frame().warm_caches();
         const FrameOutput output = rig.frame().run(input, touch.mark);
         system_call_trap::mark_frame(false);
         allocation_counter::mark_this_thread(false);

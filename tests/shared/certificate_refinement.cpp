@@ -143,8 +143,8 @@ CertificateRefinement::Answer CertificateRefinement::find_distance(const Vec3& p
     return Run(*this, point_m).finish(std::nullopt);
 }
 
-CertificateRefinement::Answer CertificateRefinement::certify_ball(const Vec3& center_m,
-                                                                  double radius_m) const
+CertificateRefinement::Answer CertificateRefinement::certify_sphere(const Vec3& center_m,
+                                                                    double radius_m) const
 {
     return Run(*this, center_m).finish(radius_m);
 }

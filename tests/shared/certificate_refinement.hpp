@@ -29,7 +29,7 @@ public:
     /// source, and some microseconds a split.
     [[nodiscard]] Answer find_distance(const Vec3& point_m) const;
     /// Splits until every source face that meets the sphere is active, as for a tool's contact.
-    [[nodiscard]] Answer certify_ball(const Vec3& center_m, double radius_m) const;
+    [[nodiscard]] Answer certify_sphere(const Vec3& center_m, double radius_m) const;
 
 private:
     class Run;

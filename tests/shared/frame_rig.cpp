@@ -34,7 +34,7 @@ void FrameRig::validate_every(std::uint32_t frames)
 
 FrameRig::FrameRig(const std::vector<const TestModel*>& models, const RigOptions& options)
     : memory_(options.pool_bytes)
-    , courier_steps_(options.courier_steps_per_frame)
+    , chunk_loader_steps_(options.chunk_loader_steps_per_frame)
     , period_ns_(options.period_ns)
 {
     serve(models, options.faults);
@@ -65,19 +65,19 @@ FrameRig::FrameRig(const std::vector<const TestModel*>& models, const RigOptions
     setup.prediction = options.prediction;
     setup.force_tolerance_n = options.force_tolerance_n;
     setup.variant = options.variant;
-    setup.for_guests = options.for_guests;
+    setup.for_streamed_models = options.for_streamed_models;
     const std::vector<ModelSource> sources = plan_pools(setup, options);
     setup.models = sources;
     if (const auto started = Frame::start(frame_, *arena_, setup); !started)
     {
         give_up(refusal_text(started.error()));
     }
-    make_courier();
+    make_chunk_loader();
     tools_.reserve(tools.size());
     if (options.record)
     {
         recorder_ = std::make_unique<RigRecorder>(setup);
-        recorder_->follow(*courier_);
+        recorder_->follow(*chunk_loader_);
     }
 }
 
@@ -102,7 +102,7 @@ std::vector<ModelSource> FrameRig::plan_pools(const FrameSetup& setup,
                                               const RigOptions& options) const
 {
     std::vector<ModelSource> sources;
-    if (options.for_guests.faces > 0)
+    if (options.for_streamed_models.faces > 0)
     {
         for (const Line& line : lines_)
         {
@@ -128,15 +128,15 @@ std::vector<ModelSource> FrameRig::plan_pools(const FrameSetup& setup,
     return sources;
 }
 
-void FrameRig::make_courier()
+void FrameRig::make_chunk_loader()
 {
     ModelPools& pools = frame_->pools();
-    courier_.emplace(*arena_, pools.slots, pools.cache.door, Log{});
+    chunk_loader_.emplace(*arena_, pools.slots, pools.cache.queues, Log{});
     for (std::uint32_t i = 0; i < lines_.size(); ++i)
     {
         Model& model = frame_->model({i});
         Line& line = lines_[i];
-        courier_->add(model.header, model.linker, *line.link, line.served.name);
+        chunk_loader_->add(model.header, model.linker, *line.link, line.served.name);
     }
 }
 
@@ -229,19 +229,19 @@ void FrameRig::validate()
 
 void FrameRig::deliver()
 {
-    for (std::uint32_t i = 0; i < courier_steps_; ++i)
+    for (std::uint32_t i = 0; i < chunk_loader_steps_; ++i)
     {
-        now_ns_ += period_ns_ / courier_steps_;
-        courier_->step(now_ns_);
+        now_ns_ += period_ns_ / chunk_loader_steps_;
+        chunk_loader_->step(now_ns_);
     }
 }
 
-std::uint32_t FrameRig::wishes_under_way() const
+std::uint32_t FrameRig::requests_under_way() const
 {
     std::uint32_t sum = 0;
     for (std::uint32_t i = 0; i < frame_->model_count(); ++i)
     {
-        sum += frame_->model(ModelId{i}).cache.wishes_under_way();
+        sum += frame_->model(ModelId{i}).cache.requests_under_way();
     }
     return sum;
 }
@@ -252,7 +252,7 @@ std::uint32_t FrameRig::settle(const Vec3& goal_m, const Budgets& budgets, std::
     {
         const FrameOutput output = step(goal_m, budgets);
         const bool quiet = output.work.splits == 0 && output.work.requests == 0 &&
-                           output.work.pages_adopted == 0 && wishes_under_way() == 0 &&
+                           output.work.pages_adopted == 0 && requests_under_way() == 0 &&
                            output.faults == FrameFault::none;
         if (quiet && i > 10)
         {
@@ -291,7 +291,7 @@ void load_region(FrameRig& rig, const RankedRegion& region)
                                     faults);
         rig.deliver();
         const bool is_quiet =
-            work.requests == 0 && work.pages_adopted == 0 && model.cache.wishes_under_way() == 0;
+            work.requests == 0 && work.pages_adopted == 0 && model.cache.requests_under_way() == 0;
         quiet = is_quiet ? quiet + 1 : 0;
     }
     if (frame == 10'000 || (faults & FrameFault::cache_full) != FrameFault::none)

@@ -6,7 +6,7 @@
 #include "rt_core/frame/frame.hpp"
 #include "tests/shared/rig_recorder.hpp"
 #include "tests/shared/test_model.hpp"
-#include "transport/courier.hpp"
+#include "transport/chunk_loader.hpp"
 #include "transport/loopback/loopback_link.hpp"
 #include "transport/store/store_link.hpp"
 
@@ -28,9 +28,9 @@ struct RigOptions
     std::vector<ObjectPose> poses;
     SceneCapacities capacities;
     /// Capacities of streamed models; if its faces are not 0, all models are streamed.
-    ModelCapacities for_guests;
+    ModelCapacities for_streamed_models;
     LoopbackFaults faults; ///< Faults of every model's link, each with its own seed.
-    std::uint32_t courier_steps_per_frame{4};
+    std::uint32_t chunk_loader_steps_per_frame{4};
     std::int64_t period_ns{1'000'000};
     bool cache_off{false};
     bool static_when_it_fits{false};
@@ -92,7 +92,7 @@ public:
     [[nodiscard]] Frame& frame() { return *frame_; }
     [[nodiscard]] const Frame& frame() const { return *frame_; }
     [[nodiscard]] Model& model(ModelId id = ModelId{0}) { return frame_->model(id); }
-    [[nodiscard]] Courier& courier() { return *courier_; }
+    [[nodiscard]] ChunkLoader& chunk_loader() { return *chunk_loader_; }
     [[nodiscard]] LoopbackLink& link(ModelId id = ModelId{0}) { return *lines_[id.value].link; }
     /// Recorder of all frames so far. finish_recording() is for the end, once, and only with
     /// RigOptions::record.
@@ -111,17 +111,17 @@ private:
     [[nodiscard]] std::vector<ModelSource> plan_pools(const FrameSetup& setup,
                                                       const RigOptions& options) const;
     [[nodiscard]] ObjectPose source_pose(const ObjectPose& pose, ModelId model) const;
-    void make_courier();
-    [[nodiscard]] std::uint32_t wishes_under_way() const;
+    void make_chunk_loader();
+    [[nodiscard]] std::uint32_t requests_under_way() const;
     void validate();
 
     std::vector<Line> lines_; ///< Transport of each model.
     PoolMemory memory_;
     std::optional<Arena> arena_;
     std::optional<Frame> frame_;
-    std::optional<Courier> courier_;
+    std::optional<ChunkLoader> chunk_loader_;
     std::unique_ptr<RigRecorder> recorder_; ///< Recorder; null unless the rig records.
-    std::uint32_t courier_steps_;
+    std::uint32_t chunk_loader_steps_;
     std::int64_t period_ns_;
     std::int64_t now_ns_{0};
     std::uint64_t frames_{0};

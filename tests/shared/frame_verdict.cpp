@@ -90,13 +90,13 @@ Verdict unexplained(const FrameOutput& output)
         return "a record is said to contradict the mesh";
     }
     const PairOutput& pair = output.pairs[0];
-    if (pair.kind != AnswerKind::bracket || has_fault(output.faults, kReasons))
+    if (pair.kind != AnswerKind::bounded || has_fault(output.faults, kReasons))
     {
         return std::nullopt;
     }
-    return "a bracket, and nothing is said to have run out: L " + std::to_string(pair.lower_m) +
-           ", U " + std::to_string(pair.upper_m) + ", certified to " +
-           std::to_string(pair.certified_radius_m) + ", faults " +
+    return "a bounded answer, and nothing is said to have run out: L " +
+           std::to_string(pair.lower_m) + ", U " + std::to_string(pair.upper_m) +
+           ", certified to " + std::to_string(pair.certified_radius_m) + ", faults " +
            std::to_string(static_cast<std::uint32_t>(output.faults)) + ", splits " +
            std::to_string(output.work.splits) + ", nodes " +
            std::to_string(output.work.nodes_visited) + ", triangles " +

@@ -33,7 +33,7 @@ SlideManner manner_of(const TestModel& model, double speed_diag_per_s, std::uint
     manner.diagonal_m = model.diagonal_m;
     manner.radius_diag = kRadius_diag;
     manner.step_m = speed_diag_per_s * kPeriod_s * model.diagonal_m;
-    manner.turn_rate = [seed](std::uint64_t turn)
+    manner.rotation_rate = [seed](std::uint64_t turn)
     { return Random::seeded(1'000 * seed + turn).between(-1.0, 1.0); };
     return manner;
 }
@@ -66,8 +66,8 @@ RigOptions options_of(const TestModel& model, const GreedyCase& greedy)
     for (std::uint32_t i = 0; i < others_of(greedy); ++i)
     {
         ToolSpec other = own;
-        other.passes_through = greedy.others != Others::are_held;
-        other.speed_max_m_per_s = other.passes_through ? 10.0 : greedy.follow_m_per_s;
+        other.query_only = greedy.others != Others::are_held;
+        other.speed_max_m_per_s = other.query_only ? 10.0 : greedy.follow_m_per_s;
         options.tools.push_back(other);
     }
     for (std::uint32_t i = 0; i < greedy.objects; ++i)
@@ -76,7 +76,7 @@ RigOptions options_of(const TestModel& model, const GreedyCase& greedy)
         options.poses.emplace_back();
         options.poses.back().translation_m = place_of(model, greedy, i);
     }
-    options.courier_steps_per_frame = 1;
+    options.chunk_loader_steps_per_frame = 1;
     options.faults.delay_polls_min = options.faults.delay_polls_max = 10;
     return options;
 }
@@ -198,7 +198,7 @@ GreedyFigures run_greedy(const TestModel& model, const GreedyCase& greedy, std::
         {
             ++figures.frames;
             figures.exact += output.pairs[0].kind == AnswerKind::exact ? 1U : 0U;
-            figures.held_back += own.held_back ? 1U : 0U;
+            figures.data_limited += own.data_limited ? 1U : 0U;
         }
     }
     return figures;

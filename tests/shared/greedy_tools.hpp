@@ -45,17 +45,17 @@ struct GreedyCase
 /// Figures of the first tool while its hand is in the surface.
 struct GreedyFigures
 {
-    std::uint32_t frames{0};     ///< Frames with the hand in the surface.
-    std::uint32_t exact{0};      ///< Frames of these with an exact answer.
-    std::uint32_t held_back{0};  ///< Frames of these that are data-limited.
-    double force_step_n{0.0};    ///< Greatest change of the force between frames.
-    std::uint32_t shed{0};       ///< Frames in which another tool's pair had to wait.
-    std::uint32_t full{0};       ///< Frames in which a pool was full.
-    std::uint32_t splits_max{0}; ///< Most splits of a frame, all tools together.
-    std::string broken;          ///< Budget or bound that did not hold; empty: none.
+    std::uint32_t frames{0};       ///< Frames with the hand in the surface.
+    std::uint32_t exact{0};        ///< Frames of these with an exact answer.
+    std::uint32_t data_limited{0}; ///< Frames of these that are data-limited.
+    double force_step_n{0.0};      ///< Greatest change of the force between frames.
+    std::uint32_t shed{0};         ///< Frames in which another tool's pair had to wait.
+    std::uint32_t full{0};         ///< Frames in which a pool was full.
+    std::uint32_t splits_max{0};   ///< Most splits of a frame, all tools together.
+    std::string broken;            ///< Budget or bound that did not hold; empty: none.
 
     [[nodiscard]] double exact_percent() const { return percent(exact); }
-    [[nodiscard]] double held_back_percent() const { return percent(held_back); }
+    [[nodiscard]] double data_limited_percent() const { return percent(data_limited); }
 
 private:
     [[nodiscard]] double percent(std::uint32_t count) const

@@ -30,7 +30,7 @@ bool meets(const BoxInQuanta& zone, const QuantumBox& box)
     return overlaps;
 }
 
-QuantumBall in_quanta(const BallZone& zone, double per_metre)
+QuantumSphere in_quanta(const SphereZone& zone, double per_metre)
 {
     const Vec3 center = zone.center_m * per_metre;
     return {{center.x(), center.y(), center.z()}, zone.radius_m * per_metre};

@@ -104,7 +104,8 @@ public:
 private:
     static Triangle placed(const Triangle& part, const Similarity& place)
     {
-        return {place.to_there(part[0]), place.to_there(part[1]), place.to_there(part[2])};
+        return {place.local_to_world(part[0]), place.local_to_world(part[1]),
+                place.local_to_world(part[2])};
     }
     static double distance(const Triangle& part, const Triangle& face)
     {

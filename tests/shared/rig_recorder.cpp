@@ -5,12 +5,12 @@
 namespace tactus::test
 {
 
-void RigRecorder::follow(Courier& courier)
+void RigRecorder::follow(ChunkLoader& chunk_loader)
 {
-    for (std::uint32_t model = 0; model < courier.model_count(); ++model)
+    for (std::uint32_t model = 0; model < chunk_loader.model_count(); ++model)
     {
         lines_.push_back(std::make_unique<Line>(writer_, model));
-        courier.copy_pieces_to(lines_.back().get(), model);
+        chunk_loader.copy_pieces_to(lines_.back().get(), model);
     }
 }
 

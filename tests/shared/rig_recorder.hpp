@@ -5,7 +5,7 @@
 #include "platform/recording/frame_encoder.hpp"
 #include "platform/recording/recording_writer.hpp"
 #include "rt_core/frame/frame.hpp"
-#include "transport/courier.hpp"
+#include "transport/chunk_loader.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -23,9 +23,9 @@ class RigRecorder
 public:
     explicit RigRecorder(const FrameSetup& setup) : writer_(to_recorded(setup)) {}
 
-    /// Copies each piece that `courier` hands over from now on; the courier must not be used after
-    /// the recorder's end.
-    void follow(Courier& courier);
+    /// Copies each piece that `chunk_loader` hands over from now on; the chunk loader must not be
+    /// used after the recorder's end.
+    void follow(ChunkLoader& chunk_loader);
 
     void add_name(const RecordedName& what, std::string_view name) { writer_.add_name(what, name); }
     void add(const FrameInput& input, const FrameOutput& output);

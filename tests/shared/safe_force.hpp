@@ -2,13 +2,13 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "rt_core/force/safe_state.hpp"
+#include "rt_core/force/force_fader.hpp"
 #include "rt_core/records/frame_output.hpp"
 
 namespace tactus::test
 {
 
-/// Force and torque of one tool as its device gets them: the frame's through SafeState.
+/// Force and torque of one tool as its device gets them: the frame's through ForceFader.
 class SafeForce
 {
 public:
@@ -41,7 +41,7 @@ public:
     [[nodiscard]] double gain() const { return safe_.gain(); }
 
 private:
-    SafeState safe_;
+    ForceFader safe_;
     double period_s_;
 };
 

@@ -71,7 +71,7 @@ int crossings(const SolidCore& solid, const Similarity& place, const TestModel& 
     {
         for (Vec3& corner : face)
         {
-            corner = place.to_there(corner);
+            corner = place.local_to_world(corner);
         }
         lows.push_back(least_of(least_of(face[0], face[1]), face[2]));
         highs.push_back(greatest_of(greatest_of(face[0], face[1]), face[2]));
@@ -97,7 +97,7 @@ int crossings(const SolidCore& solid, const Similarity& place, const TestModel& 
 int crossings_on_way(const SolidCore& solid, const Similarity& from, const Similarity& to,
                      const Vec3& center, const TestModel& model, int places)
 {
-    const Vec3 way = to.to_there(center) - from.to_there(center);
+    const Vec3 way = to.local_to_world(center) - from.local_to_world(center);
     const Eigen::AngleAxisd turned(to.rotation * from.rotation.transpose());
     int met = 0;
     for (int i = 1; i <= places; ++i)
@@ -110,7 +110,7 @@ int crossings_on_way(const SolidCore& solid, const Similarity& from, const Simil
                 Eigen::AngleAxisd(share * turned.angle(), turned.axis()).toRotationMatrix() *
                 from.rotation;
             place.translation_m =
-                from.to_there(center) + share * way - place.scale * (place.rotation * center);
+                from.local_to_world(center) + share * way - place.scale * (place.rotation * center);
         }
         met += crossings(solid, place, model);
     }

@@ -55,7 +55,8 @@ Vec3 SurfaceSlide::next()
 {
     const double mix = static_cast<double>(frame_ % kTurnFrames) / kTurnFrames;
     const std::uint64_t turn = frame_ / kTurnFrames;
-    const double rate = (1.0 - mix) * manner_.turn_rate(turn) + mix * manner_.turn_rate(turn + 1);
+    const double rate =
+        (1.0 - mix) * manner_.rotation_rate(turn) + mix * manner_.rotation_rate(turn + 1);
     heading_ = tangent(heading_ + manner_.turn_rad * rate * normal_.cross(heading_), normal_);
     center_ += manner_.step_m * heading_;
     const Vec3 foot = tree_.nearest(center_).point_m;

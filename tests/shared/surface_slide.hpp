@@ -23,7 +23,7 @@ struct SlideManner
     double turn_rad{3.0e-3};      ///< Greatest rotation of the heading in a frame.
     std::uint32_t first_frame{0}; ///< Start within the turns and swings.
     /// Rate of each turn of kTurnFrames, in -1 .. 1.
-    std::function<double(std::uint64_t turn)> turn_rate;
+    std::function<double(std::uint64_t turn)> rotation_rate;
 };
 
 /// Centre of a probe that slides along a true surface: each step follows a rotating heading, then

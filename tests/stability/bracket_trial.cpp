@@ -36,8 +36,8 @@ public:
         , motion_(trial.model, trial.tree, radius_m_, scale_, random_)
         , rig_(trial.model, with_seed(with_tool(trial.hardship.rig, scale_ * radius_m_)))
     {
-        figures_.bracket.name = trial.model.name + ", " + trial.hardship.name;
-        figures_.bracket.unit = "of the bracket";
+        figures_.bounded.name = trial.model.name + ", " + trial.hardship.name;
+        figures_.bounded.unit = "of the bounds";
     }
 
     [[nodiscard]] BracketFigures run()
@@ -61,11 +61,11 @@ private:
     void check(const FrameOutput& output, const ObjectPose& pose)
     {
         const PairOutput& pair = output.pairs[0];
-        ++figures_.bracket.trials;
+        ++figures_.bounded.trials;
         figures_.seen |= output.faults;
         const bool is_exact = pair.kind == AnswerKind::exact;
         figures_.exact += is_exact ? 1 : 0;
-        figures_.answered += is_exact || pair.kind == AnswerKind::decided ? 1 : 0;
+        figures_.answered += is_exact || pair.kind == AnswerKind::separated ? 1 : 0;
         // A point in its first frame has no reach, so it requests nothing.
         const bool reaches_nothing = frame_ == 0 && radius_m_ == 0.0;
         for (const Verdict& verdict : {broken_budget(output, trial_.hardship.budgets),
@@ -79,7 +79,7 @@ private:
         const BracketVerdict verdict = judge_bracket(trial_.oracle, pair, pose);
         if (is_exact || verdict.error > 1.0)
         {
-            figures_.bracket.observe(verdict.error);
+            figures_.bounded.observe(verdict.error);
         }
         if (verdict.error > 1.0)
         {
@@ -101,7 +101,7 @@ private:
 
     void flag(const std::string& what)
     {
-        figures_.bracket.flag(figures_.bracket.name +
+        figures_.bounded.flag(figures_.bounded.name +
                               ", TACTUS_SEED=" + std::to_string(trial_.seed) + ", frame " +
                               std::to_string(frame_) + " (" + motion_.activity() + "): " + what);
     }

@@ -27,7 +27,7 @@ struct BracketFigures
 {
     /// L <= d <= U, budgets kept, and open answers explained. The error is that of exact answers,
     /// as a share of their bounds' width.
-    TrialFigures bracket;
+    TrialFigures bounded;
     std::uint64_t answered{0}; ///< Frames with an exact or separated answer.
     std::uint64_t exact{0};
     FrameFault seen{FrameFault::none};

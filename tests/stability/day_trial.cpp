@@ -86,7 +86,7 @@ Touch touch_at(const TestModel& model, const FaceTree& tree, const Vec3& rest, R
     manner.diagonal_m = diag;
     manner.radius_diag = kRadius_diag;
     manner.step_m = random.between(0.05e-3, 0.5e-3) * diag;
-    manner.turn_rate = [rate = random.between(-1.0, 1.0)](std::uint64_t) { return rate; };
+    manner.rotation_rate = [rate = random.between(-1.0, 1.0)](std::uint64_t) { return rate; };
     const Vec3 corner = to_vec3(model.faces[random.below(model.faces.size())][0]);
     // The descent is radial from the distance of the rest, so that nothing is in the way.
     const Vec3 middle = 0.5 * (tree.low_m() + tree.high_m());

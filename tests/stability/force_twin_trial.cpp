@@ -32,7 +32,7 @@ constexpr std::size_t kCache_bytes = 40 * sizeof(Page);
 
 bool touches(const ToolOutput& tool)
 {
-    return tool.in_contact && !tool.frozen && !tool.squeezed;
+    return tool.in_contact && !tool.halted && !tool.over_constrained;
 }
 
 std::string text_of(const Vec3& v)
@@ -122,7 +122,7 @@ private:
         const std::span<const Vec3> path = rig.frame().tool(tool).path_m();
         const double end_m = (path.back() - path.front()).norm() + radius_m();
         const double known_m = std::max(pair.certified_radius_m, pair.lower_m);
-        return (pair.kind == AnswerKind::exact || pair.kind == AnswerKind::decided) &&
+        return (pair.kind == AnswerKind::exact || pair.kind == AnswerKind::separated) &&
                known_m - end_m > kStepEnd_m + kStepEnd * radius_m();
     }
 
@@ -131,7 +131,7 @@ private:
     {
         const ToolOutput& a = ours.tools[tool];
         const ToolOutput& b = full.tools[tool];
-        figures_.fading += a.frozen || a.squeezed ? 1 : 0;
+        figures_.fading += a.halted || a.over_constrained ? 1 : 0;
         judge_wait(tool, a, goal_m);
         const bool is_answered = is_certified(rig_, ours, tool) &&
                                  is_certified(whole_, full, tool) && !a.under_way && !b.under_way;
@@ -142,8 +142,8 @@ private:
         }
         if (!step->is_certified)
         {
-            ++figures_.held_back;
-            figures_.held_back_n = std::max(figures_.held_back_n, step->newtons);
+            ++figures_.data_limited;
+            figures_.data_limited_n = std::max(figures_.data_limited_n, step->newtons);
             return;
         }
         ++figures_.steps.trials;
@@ -178,7 +178,7 @@ private:
                     ", then " + text_of(now.force_n));
             }
         }
-        last = {now.force_n, goal_m, now.frozen || now.squeezed || now.held_back};
+        last = {now.force_n, goal_m, now.halted || now.over_constrained || now.data_limited};
     }
 
     void flag(std::uint32_t tool, const FrameOutput& ours, const FrameOutput& full,

@@ -68,8 +68,8 @@ struct ForceTwinFigures
     std::uint64_t adopting{0};   ///< Those frames with adopted pages.
     /// Other frames in contact: the proxy is data-limited or needs more than a frame's steps, or
     /// was so and came to another place.
-    std::uint64_t held_back{0};
-    double held_back_n{0.0}; ///< Greatest step in those.
+    std::uint64_t data_limited{0};
+    double data_limited_n{0.0}; ///< Greatest step in those.
     /// Frames in contact right after one in which the proxy waited for data: change of the force
     /// beyond that of the hand's motion, in newtons.
     TrialFigures after_waits;
@@ -86,8 +86,8 @@ struct ForceTwinFigures
         coarsening += other.coarsening;
         adopting += other.adopting;
         fading += other.fading;
-        held_back += other.held_back;
-        held_back_n = std::max(held_back_n, other.held_back_n);
+        data_limited += other.data_limited;
+        data_limited_n = std::max(data_limited_n, other.data_limited_n);
         after_waits.add(other.after_waits);
     }
 

@@ -120,7 +120,7 @@ private:
         // The tool is always in contact, so that there is force.
         manner.radius_diag = kPressed * kRadius_diag;
         manner.step_m = 0.1e-3 * model.diagonal_m;
-        manner.turn_rate = [](std::uint64_t turn) { return turn % 2 == 0 ? 0.5 : -0.5; };
+        manner.rotation_rate = [](std::uint64_t turn) { return turn % 2 == 0 ? 0.5 : -0.5; };
         return manner;
     }
     static Vec3 start_of(const FaceTree& tree, const TestModel& model)
@@ -145,7 +145,8 @@ private:
         const bool has_jumped =
             episodes_.is_one() && has_fault(output.faults, FrameFault::tool_jumped);
         episodes_.expect(!has_jumped || force_n < kForceMax_n, "a jump pulls with all force");
-        const bool is_answered = pair.kind == AnswerKind::exact || pair.kind == AnswerKind::decided;
+        const bool is_answered =
+            pair.kind == AnswerKind::exact || pair.kind == AnswerKind::separated;
         episodes_.expect(!episodes_.is_recovered() || is_answered,
                          "no answer long after the episode");
         episodes_.check(output, force_n != 0.0);

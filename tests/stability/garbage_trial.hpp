@@ -43,7 +43,7 @@ inline constexpr std::size_t kGarbageKinds = 9;
 
 /// A box lies on a plate, pressed on it, is dragged around and rotated, while its device repeatedly
 /// sends garbage. In each frame force and torque must be finite and within the device's range;
-/// while their gain is below one neither may change faster than the ramps of SafeState; without a
+/// while their gain is below one neither may change faster than the ramps of ForceFader; without a
 /// sample both fade to zero; the box never meets the plate, by exact arithmetic; the fault is
 /// reported and everything recovers soon after. The error is the greatest force or torque divided
 /// by the allowed one.

@@ -35,7 +35,7 @@ SlideManner slide_manner(const TestModel& object, double radius_m, Random& rando
     manner.diagonal_m = object.diagonal_m;
     manner.radius_diag = radius_m / object.diagonal_m;
     manner.step_m = kSlideStep_diag * object.diagonal_m;
-    manner.turn_rate = [seed = random.bits()](std::uint64_t turn)
+    manner.rotation_rate = [seed = random.bits()](std::uint64_t turn)
     { return Random::seeded(seed + turn).between(-1.0, 1.0); };
     return manner;
 }
@@ -49,7 +49,7 @@ ObjectPose pose_of_scale(double scale)
 
 } // namespace
 
-ToolBall ball_round(const TestModel& tool)
+ToolSphere sphere_round(const TestModel& tool)
 {
     Vec3 low = to_vec3(tool.faces[0][0]);
     Vec3 high = low;
@@ -75,9 +75,9 @@ ToolBall ball_round(const TestModel& tool)
 
 RandomMeshMotion::RandomMeshMotion(const TestModel& tool, const TestModel& object,
                                    const FaceTree& tree, double scale, Random& random)
-    : ball_(ball_round(tool))
+    : sphere_(sphere_round(tool))
     , random_(random)
-    , hand_(object, tree, ball_.radius_m / scale, scale, random)
+    , hand_(object, tree, sphere_.radius_m / scale, scale, random)
 {
 }
 
@@ -98,7 +98,7 @@ void RandomMeshMotion::change_grip()
 {
     frames_left_ = 5 + random_.below(kLongestGrip);
     const Vec3 direction = random_.in_cube(1.0).normalized();
-    grip_m_ = ball_.middle_m + random_.between(0.3, 1.1) * ball_.radius_m * direction;
+    grip_m_ = sphere_.middle_m + random_.between(0.3, 1.1) * sphere_.radius_m * direction;
     axis_ = random_.in_cube(1.0).normalized();
     rate_rad_ = kTurns_rad[random_.below(kTurns_rad.size())];
     if (random_.one_in(4))
@@ -128,12 +128,12 @@ MeshMoment CoincidentMotion::next()
 
 MeshSlide::MeshSlide(const TestModel& tool, const TestModel& object, const FaceTree& tree,
                      double scale, Random& random)
-    : ball_(ball_round(tool))
+    : sphere_(sphere_round(tool))
     , tree_(tree)
     , step_m_(kSlideStep_diag * object.diagonal_m * scale)
     , pose_(pose_of_scale(scale))
     , axis_(random.in_cube(1.0).normalized())
-    , slide_(tree, slide_manner(object, ball_.radius_m / scale, random),
+    , slide_(tree, slide_manner(object, sphere_.radius_m / scale, random),
              Vec3(0.0, 0.0, tree.high_m().z()) + 0.5 * (tree.low_m() + tree.high_m()))
 {
 }
@@ -145,7 +145,7 @@ MeshMoment MeshSlide::next()
         Eigen::Quaterniond(Eigen::AngleAxisd(kSlideTurn_rad * frame_, axis_)).toRotationMatrix();
     const Vec3 place_m = slide_.next();
     const Vec3 up = (place_m - tree_.nearest(place_m).point_m).normalized();
-    return {held(ball_.middle_m, to_world(pose_, place_m) - sunk_m_ * up, rotation), pose_};
+    return {held(sphere_.middle_m, to_world(pose_, place_m) - sunk_m_ * up, rotation), pose_};
 }
 
 void MeshSlide::feel(double distance_m)

@@ -15,12 +15,12 @@ struct MeshMoment
 };
 
 /// Smallest sphere around the centre of a tool's box, in the tool frame.
-struct ToolBall
+struct ToolSphere
 {
     Vec3 middle_m{0.0, 0.0, 0.0};
     double radius_m{0.0};
 };
-[[nodiscard]] ToolBall ball_round(const TestModel& tool);
+[[nodiscard]] ToolSphere sphere_round(const TestModel& tool);
 
 /// Motion of a mesh tool around an object.
 class MeshMotion
@@ -55,7 +55,7 @@ public:
 private:
     void change_grip();
 
-    ToolBall ball_;
+    ToolSphere sphere_;
     Random& random_;
     RandomMotion hand_;
     Eigen::Quaterniond rotation_{Eigen::Quaterniond::Identity()};
@@ -95,7 +95,7 @@ public:
     [[nodiscard]] const char* activity() const override { return "slow slide"; }
 
 private:
-    ToolBall ball_;
+    ToolSphere sphere_;
     const FaceTree& tree_;
     double step_m_; ///< Step of a frame, in the world.
     ObjectPose pose_;

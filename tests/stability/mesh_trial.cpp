@@ -31,7 +31,7 @@ RigOptions rig_options(const MeshTrial& trial)
     tool.core = MeshCore{ModelId{1}};
     tool.wants_contacts = true;
     tool.wants_pairs = true;
-    tool.passes_through = true; // A tool with a proxy would never meet the object.
+    tool.query_only = true; // A tool with a proxy would never meet the object.
     options.tools = {tool};
     return options;
 }
@@ -55,7 +55,7 @@ std::string where(const MeshTrial& trial, std::uint32_t frame, const char* activ
 
 bool is_answered(const PairOutput& pair)
 {
-    return pair.kind == AnswerKind::exact || pair.kind == AnswerKind::decided;
+    return pair.kind == AnswerKind::exact || pair.kind == AnswerKind::separated;
 }
 
 /// Frames of one trial and their evaluation.

@@ -172,7 +172,7 @@ private:
         Mat3 rotation{Mat3::Identity()};
         double scale{1.0};
         std::uint32_t generation{0};
-        bool is_here{true};
+        bool is_resident{true};
 
         [[nodiscard]] ObjectPose pose() const
         {
@@ -201,11 +201,11 @@ private:
         ToolSpec spec;
         spec.core = tool_.core;
         spec.radius_m = tool_.radius_m;
-        spec.smooth_m = tool_.smooth_m;
+        spec.shading_m = tool_.shading_m;
         spec.angular_stiffness_nm_per_rad = tool_.angular_stiffness_nm_per_rad;
-        spec.passes_through = tool_.passes_through;
-        spec.wants_contacts = tool_.passes_through || random_.one_in(4);
-        spec.wants_distance = tool_.passes_through;
+        spec.query_only = tool_.query_only;
+        spec.wants_contacts = tool_.query_only || random_.one_in(4);
+        spec.wants_distance = tool_.query_only;
         spec.force_max_n = kForceMax_n;
         spec.torque_max_nm = kCrampedTorqueMax_nm;
         spec.stiffness_n_per_m = random_.one_in(10) ? 0.0 : kWall_n_per_m;
@@ -347,14 +347,14 @@ private:
         Object& object = objects_[number];
         SceneChange change;
         change.number = number;
-        if (object.is_here && random_.one_in(2))
+        if (object.is_resident && random_.one_in(2))
         {
             object.place_m = spot();
             rig_.place_object(object.pose(), number);
             return;
         }
-        object.is_here = !object.is_here;
-        if (object.is_here)
+        object.is_resident = !object.is_resident;
+        if (object.is_resident)
         {
             ++object.generation;
             object.place_m = random_.one_in(2) ? place_m_ : spot();
@@ -522,7 +522,7 @@ std::span<const CrampedTool> cramped_tools()
     static const std::vector<CrampedTool> tools{
         {"point", PointCore{}},
         {"sphere", PointCore{}, kCrampedSize_m},
-        {"sphere with smooth normals", PointCore{}, kCrampedSize_m, 0.004},
+        {"sphere with force shading", PointCore{}, kCrampedSize_m, 0.004},
         {"capsule", axis, kCrampedSize_m},
         {"capsule without a radius", axis},
         {"box", box, 0.0005},

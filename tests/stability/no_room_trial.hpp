@@ -17,8 +17,8 @@ struct CrampedTool
     const char* name;
     ToolCore core;
     double radius_m{0.0};
-    double smooth_m{0.0};                     ///< See ToolSpec.
-    bool passes_through{false};               ///< True for a query-only tool without force.
+    double shading_m{0.0};                    ///< See ToolSpec.
+    bool query_only{false};                   ///< True for a query-only tool without force.
     double angular_stiffness_nm_per_rad{0.0}; ///< See ToolSpec.
 };
 

@@ -31,10 +31,10 @@ constexpr std::uint32_t kRestFrames = 100;
 constexpr double kFastestJaw_m_per_s = 20.0;
 
 /// Width with a logarithmic distribution.
-double any_smooth_width_m(Random& random)
+double any_shading_width_m(Random& random)
 {
-    return kSmoothWidthMin_m *
-           std::pow(kSmoothWidthMax_m / kSmoothWidthMin_m, random.between(0.0, 1.0));
+    return kShadingWidthMin_m *
+           std::pow(kShadingWidthMax_m / kShadingWidthMin_m, random.between(0.0, 1.0));
 }
 
 /// Compares the frames of one tool with its trail past each object.
@@ -62,9 +62,9 @@ public:
         activity_ = activity;
         ++figures_.crossings.trials;
         figures_.in_contact += tool.in_contact ? 1 : 0;
-        figures_.frozen += tool.frozen ? 1 : 0;
-        figures_.squeezed += tool.squeezed ? 1 : 0;
-        figures_.felt_smooth +=
+        figures_.halted += tool.halted ? 1 : 0;
+        figures_.over_constrained += tool.over_constrained ? 1 : 0;
+        figures_.felt_shaded +=
             tool.stiffness_n_per_m > kWall_n_per_m * (1.0 + kStiffnessRounding) ? 1 : 0;
         for (std::size_t object = 0; object < trails_.size(); ++object)
         {
@@ -106,7 +106,7 @@ private:
     void judge_run_over(const Crossing& crossing, const ToolOutput& tool)
     {
         ++figures_.run_over.trials;
-        if (!tool.squeezed)
+        if (!tool.over_constrained)
         {
             flag(figures_.run_over, crossing.text());
             flag(figures_.crossings, crossing.text());
@@ -125,7 +125,7 @@ private:
 RigOptions options_of(const PopThroughTrial& trial, double diagonal_m, Random& random)
 {
     RigOptions options = with_tool(trial.hardship.rig, trial.hardship.radius_diag * diagonal_m);
-    options.tools[0].smooth_m = trial.is_smooth ? any_smooth_width_m(random) : 0.0;
+    options.tools[0].shading_m = trial.is_smooth ? any_shading_width_m(random) : 0.0;
     options.faults.seed = trial.seed + 1;
     return options;
 }
@@ -232,13 +232,13 @@ public:
         const FrameOutput output = rig_.step(Vec3(0.0, 0.0, 0.0));
         const ToolOutput& tool = output.tools[0];
         judge_.judge(rig_, output, activity);
-        squeezed_s_ = tool.squeezed ? squeezed_s_ + kPeriod_s : 0.0;
-        if (tool.squeezed != has_fault(output.faults, FrameFault::proxy_squeezed))
+        over_constrained_s_ = tool.over_constrained ? over_constrained_s_ + kPeriod_s : 0.0;
+        if (tool.over_constrained != has_fault(output.faults, FrameFault::proxy_over_constrained))
         {
             judge_.flag("the frame's fault and the tool's differ");
         }
         const Vec3 safe_n = safe_.step(tool, Vec3(0.0, 0.0, 0.0));
-        if (squeezed_s_ > kFadeTime_s + kPeriod_s)
+        if (over_constrained_s_ > kFadeTime_s + kPeriod_s)
         {
             ++judge_.figures().faded;
             if (safe_n.norm() > kForceRounding_n)
@@ -246,15 +246,15 @@ public:
                 judge_.flag("there is still a force");
             }
         }
-        return tool.squeezed;
+        return tool.over_constrained;
     }
     /// Ends the round. A tool that an object ran over may be inside it, in a corner without free
     /// space.
     void end()
     {
-        judge_.figures().let_go += squeezed_s_ > 0.0 ? 0 : 1;
+        judge_.figures().let_go += over_constrained_s_ > 0.0 ? 0 : 1;
         const bool is_run_over = judge_.figures().run_over.trials > run_over_before_;
-        if (squeezed_s_ > 0.0 && !is_run_over)
+        if (over_constrained_s_ > 0.0 && !is_run_over)
         {
             judge_.flag("there is room again, but not for the tool");
         }
@@ -265,7 +265,7 @@ private:
     SafeForce safe_;
     Jaws& jaws_;
     PopThroughJudge& judge_;
-    double squeezed_s_{0.0};
+    double over_constrained_s_{0.0};
     std::uint64_t run_over_before_{0};
 };
 
@@ -276,11 +276,11 @@ void close_and_open(ClosingRound& round, double open_m, double speed_m_per_s)
         round.step(open_m, "open");
     }
     double half_gap_m = open_m;
-    bool is_squeezed = false;
-    while (half_gap_m > 0.0 && !is_squeezed)
+    bool is_over_constrained = false;
+    while (half_gap_m > 0.0 && !is_over_constrained)
     {
         half_gap_m -= speed_m_per_s * kPeriod_s;
-        is_squeezed = round.step(half_gap_m, "closing");
+        is_over_constrained = round.step(half_gap_m, "closing");
     }
     for (std::uint32_t frame = 0; frame < kRestFrames; ++frame)
     {
@@ -313,9 +313,9 @@ PopThroughFigures run_closing_trial(const ClosingTrial& trial)
         const double open_m = 0.5 * diagonal_m + 2.0 * radius_m;
         const std::optional<double> stays_m = i % 2 == 1 ? std::optional(open_m) : std::nullopt;
         Jaws jaws(trial.tree, diagonal_m / trial.model.diagonal_m, stays_m, random);
-        RigOptions with_ball = with_tool(options, radius_m);
-        with_ball.tools[0].smooth_m = trial.is_smooth ? any_smooth_width_m(random) : 0.0;
-        ClosingRound round(trial, with_ball, jaws, judge);
+        RigOptions with_sphere = with_tool(options, radius_m);
+        with_sphere.tools[0].shading_m = trial.is_smooth ? any_shading_width_m(random) : 0.0;
+        ClosingRound round(trial, with_sphere, jaws, judge);
         const double fastest_m_per_s = stays_m ? kFastestJaw_m_per_s : 1.0;
         close_and_open(round, open_m, random.between(0.05, fastest_m_per_s));
     }

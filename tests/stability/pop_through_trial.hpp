@@ -34,11 +34,11 @@ struct PopThroughFigures
     /// Frames in which an object ran over the proxy; a violation unless the frame reports it.
     TrialFigures run_over;
     std::uint64_t in_contact{0};
-    std::uint64_t frozen{0};
-    std::uint64_t squeezed{0};
+    std::uint64_t halted{0};
+    std::uint64_t over_constrained{0};
     std::uint64_t faded{0};       ///< Frames after kFadeTime_s of an over-constrained proxy.
     std::uint64_t let_go{0};      ///< Rounds after which the tool was no longer over-constrained.
-    std::uint64_t felt_smooth{0}; ///< Frames in which force shading stiffened the wall.
+    std::uint64_t felt_shaded{0}; ///< Frames in which force shading stiffened the wall.
 
     /// Adds figures of the same claims from other trials.
     void add(const PopThroughFigures& other)
@@ -46,10 +46,10 @@ struct PopThroughFigures
         crossings.add(other.crossings);
         run_over.add(other.run_over);
         in_contact += other.in_contact;
-        frozen += other.frozen;
-        squeezed += other.squeezed;
+        halted += other.halted;
+        over_constrained += other.over_constrained;
         faded += other.faded;
-        felt_smooth += other.felt_smooth;
+        felt_shaded += other.felt_shaded;
     }
 };
 

@@ -14,7 +14,7 @@ namespace
 {
 
 /// Radius of the sphere that slides along the surface, for every tool.
-constexpr double kGuide_diag = 0.01;
+constexpr double kFixture_diag = 0.01;
 constexpr double kLeastDepth_m = 0.5e-3;
 constexpr double kMostDepth_m = 1e-3;
 constexpr double kLifted_m = -3e-3;
@@ -39,7 +39,7 @@ PressMotion::PressMotion(const TestModel& model, const FaceTree& tree, double ra
     , depth_m_(kLifted_m)
 {
     const Vec3 middle = 0.5 * (tree.low_m() + tree.high_m());
-    const double above = 2.0 * kGuide_diag * model.diagonal_m;
+    const double above = 2.0 * kFixture_diag * model.diagonal_m;
     slide_from(Vec3(middle.x(), middle.y(), tree.high_m().z() + above), kHop_diag_per_s);
     guide_m_ = slide_->next();
     begin();
@@ -49,9 +49,9 @@ void PressMotion::slide_from(const Vec3& place_m, double speed_diag_per_s)
 {
     SlideManner manner;
     manner.diagonal_m = model_.diagonal_m;
-    manner.radius_diag = kGuide_diag;
+    manner.radius_diag = kFixture_diag;
     manner.step_m = speed_diag_per_s * kPeriod_s * model_.diagonal_m;
-    manner.turn_rate = [rate = random_.between(-1.0, 1.0)](std::uint64_t) { return rate; };
+    manner.rotation_rate = [rate = random_.between(-1.0, 1.0)](std::uint64_t) { return rate; };
     slide_.emplace(tree_, manner, place_m);
 }
 

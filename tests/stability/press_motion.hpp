@@ -47,7 +47,7 @@ private:
     Random& random_;
     std::optional<SurfaceSlide> slide_;
     Vec3 guide_m_{0.0, 0.0, 0.0}; ///< Centre of a sliding sphere; the goal is beside it.
-    Vec3 normal_{0.0, 0.0, 1.0};  ///< Normal from the surface to the guide.
+    Vec3 normal_{0.0, 0.0, 1.0};  ///< Normal from the surface to that sphere.
     double depth_m_{0.0}; ///< Depth of the sphere in the surface, in the world; negative above it.
     double pressed_m_{0.0};
     double change_m_{0.0}; ///< Change of the depth in a frame.

@@ -80,7 +80,7 @@ void RandomMotion::begin_slide()
     manner.diagonal_m = model_.diagonal_m;
     manner.radius_diag = std::min(0.05, radius_m_ / model_.diagonal_m);
     manner.step_m = random_.between(kSlowest_diag, kFastest_diag) * model_.diagonal_m;
-    manner.turn_rate = [rate = random_.between(-1.0, 1.0)](std::uint64_t) { return rate; };
+    manner.rotation_rate = [rate = random_.between(-1.0, 1.0)](std::uint64_t) { return rate; };
     const Vec3 corner = random_corner();
     slide_.emplace(tree_, manner, Vec3(corner + random_.in_cube(0.01 * model_.diagonal_m)));
 }
@@ -156,12 +156,12 @@ void RandomMotion::carry_object()
     pose.translation_m = moment_.goal_m - pose.scale * (pose.rotation * place);
 }
 
-WanderingHand::WanderingHand(const TestModel& model, Random& random)
+WanderingOperator::WanderingOperator(const TestModel& model, Random& random)
     : tree_(model.faces), motion_(model, tree_, 0.01 * model.diagonal_m, 1.0, random)
 {
 }
 
-Vec3 WanderingHand::next()
+Vec3 WanderingOperator::next()
 {
     const Moment moment = motion_.next();
     return to_model(moment.pose, moment.goal_m);

@@ -87,12 +87,12 @@ private:
 
 /// Hand of RandomMotion over a resting object, with a sphere of 1 % of the model's diagonal. Model
 /// and random numbers must outlive it, and it must stay at its address.
-class WanderingHand
+class WanderingOperator
 {
 public:
-    WanderingHand(const TestModel& model, Random& random);
-    WanderingHand(const WanderingHand&) = delete;
-    WanderingHand& operator=(const WanderingHand&) = delete;
+    WanderingOperator(const TestModel& model, Random& random);
+    WanderingOperator(const WanderingOperator&) = delete;
+    WanderingOperator& operator=(const WanderingOperator&) = delete;
 
     /// Place of the next frame, in the model frame.
     [[nodiscard]] Vec3 next();

@@ -26,9 +26,10 @@ constexpr std::int64_t kBodyFrame_ns = 1'000'000;
 constexpr double kBodyForceMax_n = 8.0;
 constexpr double kBodyTorqueMax_nm = 0.3;
 constexpr double kBodyRounding = 1e-12;
-/// Greatest change per frame that SafeState permits while fading and returning.
+/// Greatest change per frame that ForceFader permits while fading and returning.
 constexpr double kMostOfRange = kPeriod_s / kFadeTime_s + 2.0 * kPeriod_s / kRiseTime_s;
-constexpr double kSecondTurn_rad = 1.5; ///< Greater than kJumpTurning_rad_per_s permits in a frame.
+constexpr double kSecondTurn_rad =
+    1.5; ///< Greater than kJumpRotation_rad_per_s permits in a frame.
 
 Mat3 turned_about(const Vec3& axis, double angle_rad)
 {
@@ -65,7 +66,7 @@ public:
         figures_.name = "box on a plate, " + std::string(garbage.name);
         figures_.unit = "of the largest force or torque";
         figures_.bound = 1.0 + kBodyRounding;
-        center_ = rig_.frame().tool(0).ball().center;
+        center_ = rig_.frame().tool(0).sphere().center;
         for (const Face& face : model_.faces)
         {
             for (const Vec3f& corner : face)
@@ -133,7 +134,7 @@ private:
             figures_.observe(std::isfinite(norm) ? norm / most : kInfinity);
             expect(norm <= most * (1.0 + kBodyRounding), std::to_string(norm) + " N or N m");
         }
-        if (safe_.gain() < 1.0 && !tool.frozen && !tool.squeezed)
+        if (safe_.gain() < 1.0 && !tool.halted && !tool.over_constrained)
         {
             expect((safe.push.force_n - sent_.push.force_n).norm() <=
                        kMostOfRange * kBodyForceMax_n + kBodyRounding,

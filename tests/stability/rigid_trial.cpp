@@ -199,12 +199,12 @@ public:
         options.poses.resize(stage_.objects());
         last_places_.resize(stage_.objects());
         FrameRig rig(models, options);
-        center_ = rig.frame().tool(0).ball().center; // The tool is in its own frame at the start.
-        arm_m_ = rig.frame().tool(0).ball().radius + rig.frame().tool(0).radius_m();
+        center_ = rig.frame().tool(0).sphere().center; // The tool is in its own frame at the start.
+        arm_m_ = rig.frame().tool(0).sphere().radius + rig.frame().tool(0).radius_m();
         for (std::uint32_t i = 0; i < trial_.frames; ++i)
         {
             ToolState state = hand_.next();
-            state.position_m = stage_.at_rest().to_there(state.position_m);
+            state.position_m = stage_.at_rest().local_to_world(state.position_m);
             state.rotation = stage_.at_rest().rotation * state.rotation;
             if (stage_.moves())
             {
@@ -248,8 +248,8 @@ private:
             figures_.crossings.flag(where(frame) + "a force that is none, too large or of nothing");
         }
         figures_.contacts += output.in_contact ? 1 : 0;
-        figures_.frozen += output.frozen ? 1 : 0;
-        figures_.squeezed += output.squeezed ? 1 : 0;
+        figures_.halted += output.halted ? 1 : 0;
+        figures_.over_constrained += output.over_constrained ? 1 : 0;
         int met = 0;
         for (std::size_t i = 0; i < last_places_.size(); ++i)
         {
@@ -262,8 +262,8 @@ private:
         }
         // A single object always leaves space.
         const bool may_be = trial_.stage == RigidStage::closing;
-        is_run_over_ = met > 0 ? may_be && (is_run_over_ || output.squeezed)
-                               : is_run_over_ && (output.frozen || !output.in_contact);
+        is_run_over_ = met > 0 ? may_be && (is_run_over_ || output.over_constrained)
+                               : is_run_over_ && (output.halted || !output.in_contact);
         figures_.run_over += met > 0 && is_run_over_ ? 1 : 0;
         figures_.crossings.trials += frame > 0 ? 1 : 0;
         figures_.crossings.observe(is_run_over_ ? 0 : met);
@@ -277,8 +277,8 @@ private:
     /// square of the arm.
     void judge_step(std::uint32_t frame, const ToolState& hand, const ToolOutput& output)
     {
-        const bool has_no_room = output.squeezed || last_output_.squeezed;
-        if (frame > 0 && has_no_room && output.in_contact && !output.frozen)
+        const bool has_no_room = output.over_constrained || last_output_.over_constrained;
+        if (frame > 0 && has_no_room && output.in_contact && !output.halted)
         {
             const Eigen::AngleAxisd turn(hand.rotation * last_hand_.rotation.transpose());
             const double way_m =
@@ -326,9 +326,9 @@ void RigidFigures::add(const RigidFigures& other)
     crossings.add(other.crossings);
     steps.add(other.steps);
     run_over += other.run_over;
-    squeezed += other.squeezed;
+    over_constrained += other.over_constrained;
     contacts += other.contacts;
-    frozen += other.frozen;
+    halted += other.halted;
 }
 
 std::vector<RigidTrial> rigid_trials(RigidStage stage)

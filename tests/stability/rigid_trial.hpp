@@ -45,9 +45,9 @@ struct RigidFigures
     /// Frames with such faces that are no violation: objects had run over the tool, and the frame
     /// reported it as over-constrained.
     std::uint64_t run_over{0};
-    std::uint64_t squeezed{0};
+    std::uint64_t over_constrained{0};
     std::uint64_t contacts{0};
-    std::uint64_t frozen{0};
+    std::uint64_t halted{0};
 
     void add(const RigidFigures& other);
 };

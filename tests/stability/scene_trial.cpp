@@ -238,7 +238,7 @@ private:
     void judge_tool(const FrameRig& rig, const FrameOutput& output, std::uint32_t tool,
                     const std::string& where)
     {
-        const Vec3 center = rig.frame().tool(tool).stance().place.translation_m;
+        const Vec3 center = rig.frame().tool(tool).placement().place.translation_m;
         std::size_t near = 0;
         for (const auto& entry : known_.things)
         {

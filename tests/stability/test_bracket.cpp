@@ -34,8 +34,8 @@ void expect_sound_brackets(const TestModel& model, std::uint64_t own_seed, std::
         const BracketFigures figures =
             run_bracket_trial({model, oracle.tree(), oracle, hardship, seed, frames});
         std::printf("seed %llu, %s\n", static_cast<unsigned long long>(seed),
-                    figures.bracket.summary().c_str());
-        EXPECT_TRUE(figures.bracket.holds());
+                    figures.bounded.summary().c_str());
+        EXPECT_TRUE(figures.bounded.holds());
         if (hardship.has_all)
         {
             EXPECT_GT(static_cast<double>(figures.answered), kAnswered * frames);
@@ -81,7 +81,7 @@ TrialFigures bracket_with_bounds_times(double factor)
     const CenterOracle oracle(model);
     const Hardship hardship = hardship_named(model, "K-1");
     return run_bracket_trial({model, oracle.tree(), oracle, hardship, seed_of(20'261'290), 1'000})
-        .bracket;
+        .bounded;
 }
 
 TEST(BracketsOfALiar, are_flagged_when_the_plain_coarse_distance_is_taken)

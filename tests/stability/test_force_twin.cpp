@@ -22,13 +22,13 @@ constexpr std::uint32_t kForceFrames = 2'500;
 void print(const ForceTwinFigures& figures)
 {
     std::printf("%s; %.2g N apart, %llu frames of splits, %llu of merges, %llu of pages, "
-                "%llu fading, %llu held back with steps to %.2g N\n",
+                "%llu fading, %llu data-limited with steps to %.2g N\n",
                 figures.steps.summary().c_str(), figures.apart_n,
                 static_cast<unsigned long long>(figures.refining),
                 static_cast<unsigned long long>(figures.coarsening),
                 static_cast<unsigned long long>(figures.adopting),
                 static_cast<unsigned long long>(figures.fading),
-                static_cast<unsigned long long>(figures.held_back), figures.held_back_n);
+                static_cast<unsigned long long>(figures.data_limited), figures.data_limited_n);
 }
 
 class ForceTwin : public testing::TestWithParam<std::size_t>
@@ -90,11 +90,11 @@ TEST(ForceStepJudge, sees_a_step_that_the_twin_does_not_make_and_no_other)
 
 TEST(ForceStepJudge, waits_for_two_frames_in_contact)
 {
-    ToolOutput frozen = pressed_with(0.5);
-    frozen.frozen = true;
-    ToolOutput squeezed = pressed_with(0.5);
-    squeezed.squeezed = true;
-    for (const ToolOutput& open : {ToolOutput{}, frozen, squeezed})
+    ToolOutput halted = pressed_with(0.5);
+    halted.halted = true;
+    ToolOutput over_constrained = pressed_with(0.5);
+    over_constrained.over_constrained = true;
+    for (const ToolOutput& open : {ToolOutput{}, halted, over_constrained})
     {
         ForceStepJudge sut;
         EXPECT_EQ(certified_step(sut, 2.0, 2.0), -1.0);

@@ -57,7 +57,7 @@ TEST(FlushedDenormals, leave_brackets_true)
     const BracketFigures sut = run_bracket_trial(
         {model, oracle.tree(), oracle, hardship_named(model, "usual"), seed_of(20'261'520), 1'000});
     _mm_setcsr(before);
-    EXPECT_TRUE(sut.bracket.holds()) << sut.bracket.summary();
+    EXPECT_TRUE(sut.bounded.holds()) << sut.bounded.summary();
 }
 #endif
 

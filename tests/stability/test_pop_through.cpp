@@ -38,7 +38,7 @@ void expect_no_crossing(const TestModel& model, std::uint64_t own_seed)
     for (const bool is_smooth : {false, true})
     {
         std::uint64_t in_contact = 0;
-        std::uint64_t felt_smooth = 0;
+        std::uint64_t felt_shaded = 0;
         for (const Hardship& hardship : hardships(model))
         {
             own += 100;
@@ -47,10 +47,10 @@ void expect_no_crossing(const TestModel& model, std::uint64_t own_seed)
             EXPECT_TRUE(sut.crossings.holds()) << sut.crossings.summary();
             EXPECT_TRUE(sut.run_over.holds()) << sut.run_over.summary();
             in_contact += sut.in_contact;
-            felt_smooth += sut.felt_smooth;
+            felt_shaded += sut.felt_shaded;
         }
         EXPECT_GT(in_contact, 20U);
-        EXPECT_EQ(felt_smooth > 0, is_smooth);
+        EXPECT_EQ(felt_shaded > 0, is_smooth);
     }
 }
 
@@ -85,10 +85,10 @@ TEST(PopThroughClosing, objects_that_leave_no_room_are_told_and_the_force_fades)
 
         std::printf("%s\n", sut.crossings.summary().c_str());
         EXPECT_TRUE(sut.crossings.holds()) << sut.crossings.summary();
-        EXPECT_GT(sut.squeezed, 200U);
+        EXPECT_GT(sut.over_constrained, 200U);
         EXPECT_GT(sut.faded, 100U);
         EXPECT_GE(sut.let_go, 39U) << "of 40";
-        EXPECT_EQ(sut.felt_smooth > 0, is_smooth);
+        EXPECT_EQ(sut.felt_shaded > 0, is_smooth);
     }
 }
 
@@ -109,7 +109,7 @@ struct LeaningStart
         const double radius_m = random.between(0.005, 0.06) * model.diagonal_m;
         RigOptions options;
         options.tools = {{radius_m, 500.0, 8.0, 60.0 * model.diagonal_m}};
-        options.tools[0].smooth_m = is_smooth ? random.between(0.5, 5.0) * radius_m : 0.0;
+        options.tools[0].shading_m = is_smooth ? random.between(0.5, 5.0) * radius_m : 0.0;
         options.objects = {{ModelId{0}, {500.0, 0.4, 0.3}}};
         options.static_when_it_fits = random.one_in(2);
         FrameRig rig(model, options);

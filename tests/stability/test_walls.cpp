@@ -6,12 +6,12 @@
 /// page.
 
 #include "platform/devices/simulated/device_classes.hpp"
-#include "platform/devices/simulated/hand_turn.hpp"
+#include "platform/devices/simulated/operator_rotation.hpp"
 #include "platform/machine/allocation_counter.hpp"
 #include "rt_core/force/force_conditioner.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
 #include "rt_core/math/infinity.hpp"
-#include "tests/shared/force_wish.hpp"
+#include "tests/shared/commanded_force.hpp"
 #include "tests/shared/random.hpp"
 #include "tests/stability/wall_trial.hpp"
 
@@ -45,14 +45,14 @@ constexpr double kDepth_m = 0.01;
 
 /// Finger without damping of its own that leans on a device without Coulomb friction: only b
 /// prevents a limit cycle.
-HandLimb worst_hand()
+OperatorLimb worst_hand()
 {
     return {0.0, 200.0, 0.0, 1e5, 0.0};
 }
 
 /// Trial at `share` of the predicted limit, ignoring the stiffness that the device's maker permits.
 WallTrial pressed(const DeviceLimits& device, double period_s, double share, bool has_friction,
-                  const HandLimb& hand)
+                  const OperatorLimb& hand)
 {
     WallTrial trial;
     trial.device = device;
@@ -150,11 +150,11 @@ TEST(Walls, rest_within_a_quantum_when_the_device_has_its_friction_or_a_hand_its
     {
         for (const double period_s : kPeriods_s)
         {
-            const double cap = stiffness_cap(one.device, period_s);
+            const double cap = stiffness_limit(one.device, period_s);
             for (const bool has_friction : {true, false})
             {
                 WallTrial trial = pressed(one.device, period_s, 0.9, has_friction,
-                                          has_friction ? worst_hand() : HandLimb{});
+                                          has_friction ? worst_hand() : OperatorLimb{});
                 trial.stiffness_n_per_m = cap;
                 const WallFigures figures = run_wall_trial(trial);
                 std::printf("%s %7.0f Hz, cap %5.0f N/m, %s: swing %.2f um\n", one.name,
@@ -171,10 +171,10 @@ TEST(Walls, of_3000_newtons_a_metre_rest_on_the_omega_class)
 {
     for (const double period_s : kPeriods_s)
     {
-        EXPECT_GE(stiffness_cap(kOmegaClass, period_s), 3'000.0);
+        EXPECT_GE(stiffness_limit(kOmegaClass, period_s), 3'000.0);
         for (const bool is_conditioned : {false, true})
         {
-            WallTrial trial = pressed(kOmegaClass, period_s, 0.9, true, HandLimb{});
+            WallTrial trial = pressed(kOmegaClass, period_s, 0.9, true, OperatorLimb{});
             trial.device = kOmegaClass;
             trial.stiffness_n_per_m = 3'000.0;
             trial.is_conditioned = is_conditioned;
@@ -200,11 +200,11 @@ TEST(Walls, rest_with_surface_damping_and_delay_that_the_rule_knows)
             trial.duration_s = 8.0;
             trial.surface_damping_n_s_per_m = 0.4 * device.damping_n_s_per_m;
             trial.stiffness_n_per_m =
-                stiffness_cap(trial.device, period_s, trial.surface_damping_n_s_per_m);
+                stiffness_limit(trial.device, period_s, trial.surface_damping_n_s_per_m);
             EXPECT_LT(run_wall_trial(trial).swing_m, 1e-6) << delay_periods << " " << period_s;
             // The same wall with a rule that ignores the delay.
             trial.surface_damping_n_s_per_m = 0.0;
-            trial.stiffness_n_per_m = 1.5 * stiffness_cap(kOmegaClass, period_s);
+            trial.stiffness_n_per_m = 1.5 * stiffness_limit(kOmegaClass, period_s);
             EXPECT_GT(run_wall_trial(trial).swing_m, 5e-5) << delay_periods << " " << period_s;
         }
     }
@@ -251,7 +251,7 @@ TEST(PassivityController, holds_the_energy_of_a_wall_that_comes_late)
             for (const std::uint32_t late : {1U, 2U, 3U})
             {
                 WallTrial trial = pressed(one.device, period_s, 0.9, true,
-                                          HandLimb{0.05, 200.0, 0.5, 2'000.0, 0.5});
+                                          OperatorLimb{0.05, 200.0, 0.5, 2'000.0, 0.5});
                 trial.is_conditioned = true;
                 trial.wall_delay_periods = late;
                 trial.controls_passivity = false;
@@ -313,7 +313,7 @@ TEST(PassivityObserver, counts_the_energy_of_the_continuous_motion)
     {
         for (const std::uint32_t late : {0U, 2U})
         {
-            WallTrial trial = pressed(kOmegaClass, 1e-3, 0.9, true, HandLimb{});
+            WallTrial trial = pressed(kOmegaClass, 1e-3, 0.9, true, OperatorLimb{});
             trial.device.quantum_m = 0.0;
             trial.device.delay_s = delay_periods * 1e-3;
             trial.is_conditioned = true;
@@ -328,7 +328,7 @@ TEST(PassivityObserver, counts_the_energy_of_the_continuous_motion)
 
 TEST(PassivityObserver, is_off_by_no_more_than_the_quantum_explains)
 {
-    WallTrial trial = pressed(kOmegaClass, 1e-3, 0.9, true, HandLimb{});
+    WallTrial trial = pressed(kOmegaClass, 1e-3, 0.9, true, OperatorLimb{});
     trial.is_conditioned = true;
     trial.target_x_m = tap(0.01, 4.0);
     const WallFigures figures = run_wall_trial(trial);
@@ -350,15 +350,15 @@ TEST(ForceConditioner, leaves_the_heap_alone)
     const std::uint64_t before = allocation_counter::of_this_thread().allocations;
     for (int i = 0; i < 1'000; ++i)
     {
-        ForceWish wish;
-        wish.force_n = random.in_cube(5.0);
-        wish.position_m = random.in_cube(1e-3);
-        wish.stiffness_n_per_m = 1'000.0;
-        static_cast<void>(condition(sut, wish));
+        CommandedForce commanded;
+        commanded.force_n = random.in_cube(5.0);
+        commanded.position_m = random.in_cube(1e-3);
+        commanded.stiffness_n_per_m = 1'000.0;
+        static_cast<void>(condition(sut, commanded));
         if (i % 100 == 99)
         {
-            wish.force_n = random.in_cube(5.0);
-            sut.follow(wish.spring(), i % 200 == 99);
+            commanded.force_n = random.in_cube(5.0);
+            sut.follow(commanded.spring(), i % 200 == 99);
         }
     }
     const std::uint64_t after = allocation_counter::of_this_thread().allocations;
@@ -380,12 +380,12 @@ TEST(DeviceClasses, have_the_caps_of_the_page)
                         limits.cap_n_per_m);
         }
     }
-    EXPECT_DOUBLE_EQ(stiffness_cap(kTouchClass, 1e-3), 400.0);
-    EXPECT_DOUBLE_EQ(stiffness_cap(kTouchClass, 0.25e-3), 400.0);
-    EXPECT_DOUBLE_EQ(stiffness_cap(kOmegaClass, 1e-3), 3'060.0);
-    EXPECT_DOUBLE_EQ(stiffness_cap(kOmegaClass, 0.25e-3), 5'000.0);
-    EXPECT_DOUBLE_EQ(stiffness_cap(kDeltaClass, 1e-3), 3'060.0);
-    EXPECT_DOUBLE_EQ(stiffness_cap(kDeltaClass, 0.25e-3), 5'000.0);
+    EXPECT_DOUBLE_EQ(stiffness_limit(kTouchClass, 1e-3), 400.0);
+    EXPECT_DOUBLE_EQ(stiffness_limit(kTouchClass, 0.25e-3), 400.0);
+    EXPECT_DOUBLE_EQ(stiffness_limit(kOmegaClass, 1e-3), 3'060.0);
+    EXPECT_DOUBLE_EQ(stiffness_limit(kOmegaClass, 0.25e-3), 5'000.0);
+    EXPECT_DOUBLE_EQ(stiffness_limit(kDeltaClass, 1e-3), 3'060.0);
+    EXPECT_DOUBLE_EQ(stiffness_limit(kDeltaClass, 0.25e-3), 5'000.0);
 }
 
 namespace
@@ -395,11 +395,11 @@ namespace
 struct TurningTrial
 {
     DeviceLimits device{kDeskClass};
-    HandLimb wrist{.mass_kg = 0.0,
-                   .stiffness_n_per_m = 0.2,
-                   .damping_n_s_per_m = 0.0,
-                   .grip_stiffness_n_per_m = 100.0,
-                   .grip_damping_n_s_per_m = 0.0};
+    OperatorLimb wrist{.mass_kg = 0.0,
+                       .stiffness_n_per_m = 0.2,
+                       .damping_n_s_per_m = 0.0,
+                       .grip_stiffness_n_per_m = 100.0,
+                       .grip_damping_n_s_per_m = 0.0};
     double stiffness_nm_per_rad{1.0};
     std::size_t late_periods{0}; ///< Delay of the wall's own torque, which makes it active.
     bool controls_passivity{false};
@@ -417,8 +417,8 @@ struct TurningFigures
 TurningFigures turn_into_wall(const TurningTrial& trial)
 {
     const Vec3 axis = Vec3(2.0, -1.0, 2.0) / 3.0;
-    auto sim = std::move(HandTurn::create({trial.device.turn, trial.device.delay_s, trial.wrist,
-                                           1e-3, Mat3::Identity()}))
+    auto sim = std::move(OperatorRotation::create({trial.device.rotation, trial.device.delay_s,
+                                                   trial.wrist, 1e-3, Mat3::Identity()}))
                    .value();
     ConditionerSetup setup;
     setup.device = trial.device;
@@ -462,9 +462,9 @@ TurningFigures turn_into_wall(const TurningTrial& trial)
 TurningTrial turned_into(double share)
 {
     TurningTrial trial;
-    trial.device.turn.stiffness_max_nm_per_rad = 1e3;
+    trial.device.rotation.stiffness_max_nm_per_rad = 1e3;
     trial.stiffness_nm_per_rad =
-        share * stiffness_limits(turning_of(trial.device), 1e-3).sampling_n_per_m;
+        share * stiffness_limits(rotational_limits_of(trial.device), 1e-3).sampling_n_per_m;
     return trial;
 }
 
@@ -500,7 +500,7 @@ TEST(TurningWalls, that_come_late_are_held_by_the_passivity_controller)
 TEST(TurningWalls, that_are_too_stiff_are_scaled_down_with_their_force)
 {
     WrenchConditioner sut({.device = kDeskClass});
-    const double cap = stiffness_cap(turning_of(kDeskClass), 1e-3);
+    const double cap = stiffness_limit(rotational_limits_of(kDeskClass), 1e-3);
     const ToolForce out = condition(sut, {{Vec3(0.0, 0.0, 4.0), {}, 100.0, 0.0, 1},
                                           {Vec3(0.1, 0.0, 0.0), {}, 2.0 * cap, 0.0, 1}});
     EXPECT_NEAR(out.turn.force_n.x(), 0.05, 1e-12);

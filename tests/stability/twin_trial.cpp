@@ -200,7 +200,7 @@ SurfaceSlide slide_over(const TwinTrial& trial, Random& random)
     manner.diagonal_m = trial.model.diagonal_m;
     manner.radius_diag = kRadius_diag;
     manner.step_m = kSpeed_diag * trial.model.diagonal_m;
-    manner.turn_rate = [seed = random.bits()](std::uint64_t turn)
+    manner.rotation_rate = [seed = random.bits()](std::uint64_t turn)
     { return Random::seeded(seed + turn).between(-1.0, 1.0); };
     // The slide begins above the model, where nothing is in the proxy's way.
     const Vec3 top = trial.tree.high_m() + Vec3(0.0, 0.0, 0.01 * trial.model.diagonal_m);
@@ -242,7 +242,7 @@ TwinFigures run_twin_trial(const TwinTrial& trial)
             continue;
         }
         ++figures.uncertified.trials;
-        if (pair.kind != AnswerKind::exact && pair.kind != AnswerKind::decided)
+        if (pair.kind != AnswerKind::exact && pair.kind != AnswerKind::separated)
         {
             ++open;
             continue;

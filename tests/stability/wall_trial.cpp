@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "tests/stability/wall_trial.hpp"
 
-#include "tests/shared/force_wish.hpp"
+#include "tests/shared/commanded_force.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -38,7 +38,7 @@ struct ContactLedger
     bool is_open{false};
     double entry_m_per_s{0.0}; ///< Greatest speed around the first sample.
     double way_m{0.0};
-    HandAndDeviceEnergy begin;
+    OperatorAndDeviceEnergy begin;
 };
 
 class WallRun
@@ -46,7 +46,7 @@ class WallRun
 public:
     explicit WallRun(const WallTrial& trial)
         : trial_(trial)
-        , sim_(HandAndDevice::create({trial.device, trial.hand, trial.period_s, trial.start_m})
+        , sim_(OperatorAndDevice::create({trial.device, trial.hand, trial.period_s, trial.start_m})
                    .value())
         , conditioner_({trial.device, trial.period_s, 0.0, trial.controls_passivity})
         , pipeline_(pipeline_of(trial))
@@ -96,24 +96,25 @@ private:
 
     Vec3 force_for(const Vec3& measured)
     {
-        const Vec3 wished(wall_force(measured.x()), 0.0, 0.0);
+        const Vec3 requested(wall_force(measured.x()), 0.0, 0.0);
         if (!trial_.is_conditioned)
         {
-            return wished;
+            return requested;
         }
         const double claimed = trial_.claimed_stiffness_n_per_m > 0.0
                                    ? trial_.claimed_stiffness_n_per_m
                                    : trial_.stiffness_n_per_m;
         const SpringForce out =
-            trial_.is_piped
-                ? piped(wished, measured, claimed)
-                : condition(conditioner_, {wished, measured, claimed, std::max(0.0, -measured.x()),
-                                           1, std::abs(trial_.surface_damping_n_s_per_m)});
+            trial_.is_piped ? piped(requested, measured, claimed)
+                            : condition(conditioner_,
+                                        {requested, measured, claimed, std::max(0.0, -measured.x()),
+                                         1, std::abs(trial_.surface_damping_n_s_per_m)});
         figures_.held_periods += has_action(out.actions, ForceAction::change_limited) ? 1U : 0U;
         const double true_work_j = sim_.energy().force_work_j;
         figures_.observer_error_j =
             std::max(figures_.observer_error_j, std::abs(out.work_j - true_work_j));
-        figures_.surplus_max_j = std::max(figures_.surplus_max_j, out.surplus_j);
+        figures_.observed_energy_max_j =
+            std::max(figures_.observed_energy_max_j, out.observed_energy_j);
         figures_.damping_max_n_s_per_m =
             std::max(figures_.damping_max_n_s_per_m, out.damping_n_s_per_m);
         return out.force_n;
@@ -126,15 +127,15 @@ private:
         setup.limits.damping_n_s_per_m = 0.0;
         return setup;
     }
-    SpringForce piped(const Vec3& wished, const Vec3& measured, double stiffness)
+    SpringForce piped(const Vec3& requested, const Vec3& measured, double stiffness)
     {
         ToolState tool;
         tool.position_m = measured;
         ToolOutput output;
-        output.force_n = wished;
+        output.force_n = requested;
         output.proxy_m = Vec3(std::max(0.0, measured.x()), measured.y(), measured.z());
         output.stiffness_n_per_m = stiffness;
-        output.in_contact = wished != Vec3(0.0, 0.0, 0.0);
+        output.in_contact = requested != Vec3(0.0, 0.0, 0.0);
         const double damping = std::abs(trial_.surface_damping_n_s_per_m);
         return pipeline_
             .step(tool, output, {}, {},
@@ -159,7 +160,7 @@ private:
 
     void close_contact()
     {
-        const HandAndDeviceEnergy& end = sim_.energy();
+        const OperatorAndDeviceEnergy& end = sim_.energy();
         const double net = end.force_work_j - ledger_.begin.force_work_j -
                            (end.viscous_loss_j - ledger_.begin.viscous_loss_j) -
                            (end.friction_loss_j - ledger_.begin.friction_loss_j);
@@ -186,7 +187,7 @@ private:
     }
 
     WallTrial trial_;
-    HandAndDevice sim_;
+    OperatorAndDevice sim_;
     ForceConditioner conditioner_;
     ForcePipeline pipeline_;
     std::vector<double> late_n_;

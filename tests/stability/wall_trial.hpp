@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/devices/simulated/hand_and_device.hpp"
+#include "platform/devices/simulated/operator_and_device.hpp"
 #include "rt_core/force/force_pipeline.hpp"
 
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace tactus::test
 struct WallTrial
 {
     DeviceLimits device;
-    HandLimb hand;
+    OperatorLimb hand;
     double period_s{1e-3};
     double stiffness_n_per_m{1'000.0};
     double surface_damping_n_s_per_m{0.0};
@@ -43,7 +43,7 @@ struct WallFigures
     double largest_work_j{0.0};
     /// Greatest difference between the conditioner's work and the simulation's at the same time.
     double observer_error_j{0.0};
-    double surplus_max_j{0.0};
+    double observed_energy_max_j{0.0};
     double damping_max_n_s_per_m{0.0};
     std::uint32_t held_periods{0}; ///< Periods in which ChangeLimit acted.
     std::uint32_t contacts{0};

@@ -21,7 +21,7 @@ RigOptions whole_options(std::size_t faces)
     RigOptions options;
     options.pool_bytes = (std::size_t{16} << 20U) + 512 * faces;
     options.static_when_it_fits = true;
-    options.courier_steps_per_frame = 16;
+    options.chunk_loader_steps_per_frame = 16;
     return options;
 }
 

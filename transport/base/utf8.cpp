@@ -15,7 +15,7 @@ namespace
 using Range = std::pair<std::string_view, std::string_view>;
 
 /// First and last characters of ranges without letters, all rare.
-constexpr std::array<Range, 20> kNoLetters{{
+constexpr std::array<Range, 20> kNoPoseSamples{{
     {"\u0080", "\u00A9"}, // Controls, blanks and signs of Latin-1, except for its three letters.
     {"\u00AB", "\u00B4"}, {"\u00B6", "\u00B9"},         {"\u00BB", "\u00BF"},
     {"\u034F", "\u034F"}, {"\u061C", "\u061C"},         {"\u115F", "\u1160"},
@@ -78,7 +78,7 @@ bool is_letter(std::string_view character) noexcept
     const std::size_t bytes = character_bytes(character);
     return bytes > 1 && bytes == character.size() &&
            std::ranges::none_of(
-               kNoLetters,
+               kNoPoseSamples,
                [character](const Range& range) { // Bytes of UTF-8 sort like the characters.
                    return character >= range.first && character <= range.second;
                });

@@ -43,7 +43,7 @@ Authority::Authority(Catalogue& catalogue, const ModelSelector& name, bool is_sc
 void Authority::pin(std::uint64_t host_epoch)
 {
     host_epoch_ = host_epoch;
-    is_here_ = true;
+    is_resident_ = true;
     const std::vector<const Catalogue::Offer*> offers = catalogue_.offers_of(host_epoch);
     if (!offers.empty())
     {
@@ -63,10 +63,10 @@ void Authority::step()
     seen_catalogue_ = catalogue_.version();
     const std::vector<const Catalogue::Offer*> offers = candidates();
     const bool was_here = std::exchange(
-        is_here_,
+        is_resident_,
         std::ranges::any_of(offers, [this](const Catalogue::Offer* offer)
                             { return offer->host_epoch == host_epoch_ && has_hash(*offer); }));
-    if (was_here && !is_here_)
+    if (was_here && !is_resident_)
     {
         named_.clear();
         tell(ServerNews::lost, host_name_,
@@ -75,17 +75,17 @@ void Authority::step()
                                      what_, host_name_)
                        : "");
     }
-    if (!was_here && is_here_)
+    if (!was_here && is_resident_)
     {
         named_.clear();
         tell(ServerNews::back, host_name_,
              is_scene_ ? fmt::format("the server of {}, {}, is back", what_, host_name_) : "");
     }
-    if (!is_here_)
+    if (!is_resident_)
     {
         look_for_another(offers);
     }
-    if (is_here_)
+    if (is_resident_)
     {
         name_others(offers);
     }
@@ -124,7 +124,7 @@ void Authority::look_for_another(const std::vector<const Catalogue::Offer*>& off
         const Catalogue::Offer& offer = **next;
         host_epoch_ = offer.host_epoch;
         host_ = offer.host;
-        is_here_ = true;
+        is_resident_ = true;
         named_.clear();
         catalogue_.keep(host_epoch_);
         const std::string last =

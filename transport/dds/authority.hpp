@@ -60,7 +60,7 @@ public:
     /// Epoch of the server with authority, present or not.
     [[nodiscard]] std::uint64_t host() const noexcept { return host_epoch_; }
     /// True if that server is present.
-    [[nodiscard]] bool is_here() const noexcept { return is_here_; }
+    [[nodiscard]] bool is_resident() const noexcept { return is_resident_; }
 
     /// Updates the state from the catalogue. Cheap if that has not changed.
     void step();
@@ -87,7 +87,7 @@ private:
     ParticipantId host_{};
     /// Name of that server, stored because it cannot be looked up once the server is gone.
     std::string host_name_;
-    bool is_here_{false};
+    bool is_resident_{false};
     std::uint64_t seen_catalogue_{0};
     std::set<ParticipantId> named_; ///< Other servers that were logged since the last change.
     std::vector<ServerEvent> events_;

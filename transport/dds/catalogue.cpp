@@ -205,7 +205,7 @@ void Catalogue::look_at_disputed()
     for (const auto& [key, offer] : offers_)
     {
         if (offer.is_disputed &&
-            !(participants_->is_writing(offer.writer) && participants_->is_here(offer.host)))
+            !(participants_->is_writing(offer.writer) && participants_->is_resident(offer.host)))
         {
             gone.push_back(key);
         }

@@ -34,8 +34,8 @@ public:
 
     /// Waits until all these models are published and their headers have arrived, verified, each
     /// from the first of its servers that answers. The results, in the order of the selectors, have
-    /// no base meshes: bring_bases() fetches them, or a Courier those of streamed models. Waits at
-    /// most `timeout`, or until `go_on` (called every few milliseconds) returns false. Refused
+    /// no base meshes: bring_bases() fetches them, or a ChunkLoader those of streamed models. Waits
+    /// at most `timeout`, or until `go_on` (called every few milliseconds) returns false. Refused
     /// then, or after a second in which every server's header is damaged. The client must outlive
     /// the models' links.
     [[nodiscard]] Result<std::vector<ServedModel>, Refusal>

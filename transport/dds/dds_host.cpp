@@ -292,7 +292,7 @@ void DdsHost::on_request(const ControllerId& controller, const tactus_v5_Wanted&
     {
         renew_motion(*client);
     }
-    take_wishes(*client, wanted);
+    take_requests(*client, wanted);
 }
 
 /// Handles a controller that hears this server but no motion: a packet in the writer's name with a
@@ -323,7 +323,7 @@ bool DdsHost::try_heal(Client& client)
     return true;
 }
 
-void DdsHost::take_wishes(Client& client, const tactus_v5_Wanted& wanted)
+void DdsHost::take_requests(Client& client, const tactus_v5_Wanted& wanted)
 {
     const std::uint32_t asked = wanted.pieces._length;
     client.process->asked += asked;
@@ -338,10 +338,10 @@ void DdsHost::take_wishes(Client& client, const tactus_v5_Wanted& wanted)
         const ContentKey key{static_cast<ContentKind>(name.kind), name.number};
         if (name.model >= models_.size() || !models_[name.model].has(key))
         {
-            refuse(client.subscription.controller(), Refused::wish);
+            refuse(client.subscription.controller(), Refused::request);
             continue;
         }
-        client.subscription.wish({name.model, key}, wanted.generation);
+        client.subscription.request({name.model, key}, wanted.generation);
     }
 }
 
@@ -421,7 +421,7 @@ void DdsHost::look_for_gone()
         const bool is_its_turn = i >= looked_at_ && i < turn_end;
         if ((is_its_turn || client.is_disputed) &&
             !(domain_.participants().is_writing(client.writer) &&
-              domain_.participants().is_here(controller)))
+              domain_.participants().is_resident(controller)))
         {
             gone.push_back(controller);
         }

@@ -107,7 +107,7 @@ private:
     void announce();
     void take_requests(Clock::time_point end);
     void on_request(const ControllerId& controller, const tactus_v5_Wanted& wanted);
-    void take_wishes(Client& client, const tactus_v5_Wanted& wanted);
+    void take_requests(Client& client, const tactus_v5_Wanted& wanted);
     void renew_motion(Client& client);
     bool try_heal(Client& client);
     void refuse(const ControllerId& controller, Refused reason);

@@ -39,7 +39,7 @@ void DdsLink::request(std::span<const ContentKey> keys, std::uint32_t generation
 {
     if (state_ != LinkState::connected)
     {
-        return; // The Courier repeats the request in the next session.
+        return; // The ChunkLoader repeats the request in the next session.
     }
     const auto now = Clock::now();
     for (const ContentKey key : keys)

@@ -29,10 +29,10 @@ namespace
 constexpr std::array kBudgetOrder{&Budgets::splits,   &Budgets::merges,    &Budgets::scanned,
                                   &Budgets::nodes,    &Budgets::triangles, &Budgets::pages,
                                   &Budgets::requests, &Budgets::regions,   &Budgets::work};
-static_assert(std::size(tactus_v5_Front{}.budgets) == kBudgetOrder.size());
+static_assert(std::size(tactus_v5_RefinementState{}.budgets) == kBudgetOrder.size());
 // `planes`, the budget of proxies, is not sent.
 static_assert(sizeof(Budgets) == (kBudgetOrder.size() + 1) * sizeof(std::uint32_t));
-static_assert(std::size(tactus_v5_Front{}.times) == kFrontTimes);
+static_assert(std::size(tactus_v5_RefinementState{}.times) == kFrontTimes);
 
 template <typename From, typename To>
 void copy_head(const From& from, To& to)
@@ -54,7 +54,7 @@ bool is_amount(double x)
     return std::isfinite(x) && x >= 0.0;
 }
 
-std::optional<FrontTool> tool_from(const tactus_v5_FrontTool& wire)
+std::optional<RefinementStateTool> tool_from(const tactus_v5_RefinementStateTool& wire)
 {
     const std::string_view shape = text_of(wire.shape);
     constexpr std::uint32_t known = (1U << kForceOffs) - 1;
@@ -63,11 +63,13 @@ std::optional<FrontTool> tool_from(const tactus_v5_FrontTool& wire)
     {
         return std::nullopt;
     }
-    return FrontTool{static_cast<SafetyState>(wire.state), static_cast<ForceOff>(wire.causes),
-                     std::string(shape), wire.radius_m, wire.begins_inside};
+    return RefinementStateTool{static_cast<SafetyState>(wire.state),
+                               static_cast<ForceOff>(wire.causes), std::string(shape),
+                               wire.radius_m, wire.begins_inside};
 }
 
-std::optional<FrontObject> object_from(const tactus_v5_FrontObject& wire, std::uint32_t models)
+std::optional<RefinementStateObject> object_from(const tactus_v5_RefinementStateObject& wire,
+                                                 std::uint32_t models)
 {
     // A model may be farther from its frame's origin than an object may be moved.
     const Pose told = from_wire(wire.pose);
@@ -77,8 +79,8 @@ std::optional<FrontObject> object_from(const tactus_v5_FrontObject& wire, std::u
     {
         return std::nullopt;
     }
-    return FrontObject{wire.host_epoch, wire.object, wire.number, wire.model,
-                       pose ? pose.value() : told};
+    return RefinementStateObject{wire.host_epoch, wire.object, wire.number, wire.model,
+                                 pose ? pose.value() : told};
 }
 
 /// True if the chunk's number is possible and above the last one of its list.
@@ -89,18 +91,19 @@ bool is_next_chunk(ChunkId chunk, const Last& last)
 }
 
 /// Models with their pages and requests; none if the counts are inconsistent or the order is wrong.
-std::optional<std::vector<FrontModel>> models_from(const tactus_v5_Front& sample)
+std::optional<std::vector<RefinementStateModel>>
+models_from(const tactus_v5_RefinementState& sample)
 {
-    std::vector<FrontModel> models;
+    std::vector<RefinementStateModel> models;
     std::uint32_t next = 0;
-    std::uint32_t next_wish = 0;
+    std::uint32_t next_request = 0;
     for (std::uint32_t i = 0; i < sample.models._length; ++i)
     {
-        const tactus_v5_FrontModel& wire = sample.models._buffer[i];
-        FrontModel& model = models.emplace_back();
+        const tactus_v5_RefinementStateModel& wire = sample.models._buffer[i];
+        RefinementStateModel& model = models.emplace_back();
         std::memcpy(model.hash.data(), wire.hash, model.hash.size());
         if (wire.pages > sample.chunks._length - next ||
-            wire.wished > sample.wished._length - next_wish)
+            wire.requested > sample.requested._length - next_request)
         {
             return std::nullopt;
         }
@@ -115,25 +118,28 @@ std::optional<std::vector<FrontModel>> models_from(const tactus_v5_Front& sample
             }
             model.pages.push_back({chunk, sample.refined._buffer[next]});
         }
-        for (const std::uint32_t end = next_wish + wire.wished; next_wish < end; ++next_wish)
+        for (const std::uint32_t end = next_request + wire.requested; next_request < end;
+             ++next_request)
         {
-            const ChunkId chunk{sample.wished._buffer[next_wish]};
-            if (!is_next_chunk(chunk, model.wished.empty() ? std::nullopt
-                                                           : std::optional(model.wished.back())))
+            const ChunkId chunk{sample.requested._buffer[next_request]};
+            if (!is_next_chunk(chunk, model.requested.empty()
+                                          ? std::nullopt
+                                          : std::optional(model.requested.back())))
             {
                 return std::nullopt;
             }
-            model.wished.push_back(chunk);
+            model.requested.push_back(chunk);
         }
     }
-    return next == sample.chunks._length && next_wish == sample.wished._length
+    return next == sample.chunks._length && next_request == sample.requested._length
                ? std::optional(std::move(models))
                : std::nullopt;
 }
 
-std::optional<FrontRegion> region_from(const tactus_v5_FrontRegion& wire, std::uint32_t models)
+std::optional<RefinementStateRegion> region_from(const tactus_v5_RefinementStateRegion& wire,
+                                                 std::uint32_t models)
 {
-    FrontRegion region{wire.model, wire.is_foretold, {}, wire.radius_m};
+    RefinementStateRegion region{wire.model, wire.is_predicted, {}, wire.radius_m};
     std::ranges::copy(wire.center_m, region.center_m.begin());
     const bool is_sound =
         wire.model < models && is_amount(static_cast<double>(region.radius_m)) &&
@@ -141,19 +147,20 @@ std::optional<FrontRegion> region_from(const tactus_v5_FrontRegion& wire, std::u
     return is_sound ? std::optional(region) : std::nullopt;
 }
 
-std::optional<Front> front_from(const tactus_v5_Front& sample)
+std::optional<RefinementState> front_from(const tactus_v5_RefinementState& sample)
 {
     const bool is_in_bounds =
         sample.tools._length <= kMaxTools && sample.models._length <= kMaxModels &&
-        sample.objects._length <= kMaxFrontObjects && sample.chunks._length <= kMaxFrontPages &&
+        sample.objects._length <= kMaxStateObjects && sample.chunks._length <= kMaxStatePages &&
         sample.refined._length == sample.chunks._length &&
-        sample.wished._length <= kMaxFrontWishes && sample.regions._length <= kMaxFrontRegions &&
-        sample.sweep_begin <= sample.sweep_end && sample.sweep_end <= kMaxObjects;
+        sample.requested._length <= kMaxStateRequests &&
+        sample.regions._length <= kMaxStateRegions && sample.sweep_begin <= sample.sweep_end &&
+        sample.sweep_end <= kMaxObjects;
     if (!is_in_bounds || !is_valid_name(std::string(text_of(sample.controller_name))))
     {
         return std::nullopt;
     }
-    Front front;
+    RefinementState front;
     copy_head(sample, front);
     for (std::size_t i = 0; i < kBudgetOrder.size(); ++i)
     {
@@ -197,9 +204,9 @@ std::optional<Front> front_from(const tactus_v5_Front& sample)
     return front;
 }
 
-tactus_v5_FrontTool to_wire(const FrontTool& tool)
+tactus_v5_RefinementStateTool to_wire(const RefinementStateTool& tool)
 {
-    tactus_v5_FrontTool wire = {};
+    tactus_v5_RefinementStateTool wire = {};
     wire.state = static_cast<std::uint8_t>(tool.state);
     wire.causes = static_cast<std::uint32_t>(tool.causes);
     tool.shape.copy(static_cast<char*>(wire.shape), kMaxShapeBytes);
@@ -208,9 +215,9 @@ tactus_v5_FrontTool to_wire(const FrontTool& tool)
     return wire;
 }
 
-tactus_v5_FrontObject to_wire(const FrontObject& object)
+tactus_v5_RefinementStateObject to_wire(const RefinementStateObject& object)
 {
-    tactus_v5_FrontObject wire = {};
+    tactus_v5_RefinementStateObject wire = {};
     wire.host_epoch = object.host_epoch;
     wire.object = object.object;
     wire.number = object.number;
@@ -219,11 +226,11 @@ tactus_v5_FrontObject to_wire(const FrontObject& object)
     return wire;
 }
 
-tactus_v5_FrontRegion to_wire(const FrontRegion& region)
+tactus_v5_RefinementStateRegion to_wire(const RefinementStateRegion& region)
 {
-    tactus_v5_FrontRegion wire = {};
+    tactus_v5_RefinementStateRegion wire = {};
     wire.model = static_cast<std::uint16_t>(region.model);
-    wire.is_foretold = region.is_foretold;
+    wire.is_predicted = region.is_predicted;
     std::ranges::copy(region.center_m, std::begin(wire.center_m));
     wire.radius_m = region.radius_m;
     return wire;
@@ -238,69 +245,70 @@ Sequence sequence_of(std::vector<Element>& elements)
 
 } // namespace
 
-Result<std::unique_ptr<FrontWriter>, Refusal> FrontWriter::create(const Domain& domain,
-                                                                  std::string controller_name)
+Result<std::unique_ptr<RefinementStateWriter>, Refusal>
+RefinementStateWriter::create(const Domain& domain, std::string controller_name)
 {
     auto endpoint = make_writer(domain, Topic::front, controller_name);
     if (!endpoint)
     {
         return endpoint.error();
     }
-    std::unique_ptr<FrontWriter> writer(
-        new FrontWriter(domain.participants().own(), std::move(controller_name)));
+    std::unique_ptr<RefinementStateWriter> writer(
+        new RefinementStateWriter(domain.participants().own(), std::move(controller_name)));
     writer->writer_ = std::move(endpoint).value();
     return writer;
 }
 
-FrontWriter::FrontWriter(const ControllerId& controller, std::string controller_name)
+RefinementStateWriter::RefinementStateWriter(const ControllerId& controller,
+                                             std::string controller_name)
     : controller_(controller), controller_name_(std::move(controller_name))
 {
     TACTUS_ASSERT(is_valid_name(controller_name_));
 }
 
-void FrontWriter::write(const Front& front)
+void RefinementStateWriter::write(const RefinementState& front)
 {
     TACTUS_ASSERT(front.tools.size() <= kMaxTools);
     TACTUS_ASSERT(front.models.size() <= kMaxModels);
-    TACTUS_ASSERT(front.objects.size() <= kMaxFrontObjects);
-    TACTUS_ASSERT(front.regions.size() <= kMaxFrontRegions);
-    std::vector<tactus_v5_FrontTool> tools;
-    std::vector<tactus_v5_FrontModel> models;
-    std::vector<tactus_v5_FrontObject> objects;
+    TACTUS_ASSERT(front.objects.size() <= kMaxStateObjects);
+    TACTUS_ASSERT(front.regions.size() <= kMaxStateRegions);
+    std::vector<tactus_v5_RefinementStateTool> tools;
+    std::vector<tactus_v5_RefinementStateModel> models;
+    std::vector<tactus_v5_RefinementStateObject> objects;
     std::vector<std::uint32_t> chunks;
     std::vector<std::uint64_t> refined;
-    std::vector<std::uint32_t> wished;
-    std::vector<tactus_v5_FrontRegion> regions;
-    for (const FrontTool& tool : front.tools)
+    std::vector<std::uint32_t> requested;
+    std::vector<tactus_v5_RefinementStateRegion> regions;
+    for (const RefinementStateTool& tool : front.tools)
     {
         tools.push_back(to_wire(tool));
     }
-    for (const FrontModel& model : front.models)
+    for (const RefinementStateModel& model : front.models)
     {
-        tactus_v5_FrontModel& wire = models.emplace_back();
+        tactus_v5_RefinementStateModel& wire = models.emplace_back();
         std::memcpy(wire.hash, model.hash.data(), model.hash.size());
         wire.pages = static_cast<std::uint32_t>(model.pages.size());
-        for (const FrontPage& page : model.pages)
+        for (const RefinementStatePage& page : model.pages)
         {
             chunks.push_back(page.chunk.value);
             refined.push_back(page.refined);
         }
-        wire.wished = static_cast<std::uint32_t>(model.wished.size());
-        std::ranges::transform(model.wished, std::back_inserter(wished), &ChunkId::value);
+        wire.requested = static_cast<std::uint32_t>(model.requested.size());
+        std::ranges::transform(model.requested, std::back_inserter(requested), &ChunkId::value);
     }
-    TACTUS_ASSERT(chunks.size() <= kMaxFrontPages);
-    TACTUS_ASSERT(wished.size() <= kMaxFrontWishes);
-    for (const FrontObject& object : front.objects)
+    TACTUS_ASSERT(chunks.size() <= kMaxStatePages);
+    TACTUS_ASSERT(requested.size() <= kMaxStateRequests);
+    for (const RefinementStateObject& object : front.objects)
     {
         TACTUS_ASSERT(object.model < front.models.size());
         objects.push_back(to_wire(object));
     }
-    for (const FrontRegion& region : front.regions)
+    for (const RefinementStateRegion& region : front.regions)
     {
         TACTUS_ASSERT(region.model < front.models.size());
         regions.push_back(to_wire(region));
     }
-    tactus_v5_Front sample = {};
+    tactus_v5_RefinementState sample = {};
     std::memcpy(sample.controller, controller_.data(), controller_.size());
     controller_name_.copy(static_cast<char*>(sample.controller_name), kMaxNameBytes);
     sample.serial = ++sent_;
@@ -314,33 +322,34 @@ void FrontWriter::write(const Front& front)
     sample.objects = sequence_of<decltype(sample.objects)>(objects);
     sample.chunks = sequence_of<decltype(sample.chunks)>(chunks);
     sample.refined = sequence_of<decltype(sample.refined)>(refined);
-    sample.wished = sequence_of<decltype(sample.wished)>(wished);
+    sample.requested = sequence_of<decltype(sample.requested)>(requested);
     sample.regions = sequence_of<decltype(sample.regions)>(regions);
     // A failed write counts as a lost sample; the next one replaces it.
     dds_write(writer_.handle, &sample);
 }
 
-Result<std::unique_ptr<FrontReader>, Refusal> FrontReader::create(const Domain& domain)
+Result<std::unique_ptr<RefinementStateReader>, Refusal>
+RefinementStateReader::create(const Domain& domain)
 {
     auto reader = make_reader(domain, Topic::front, kAnyPartition);
     if (!reader)
     {
         return reader.error();
     }
-    return std::unique_ptr<FrontReader>(
-        new FrontReader(domain.participants(), std::move(reader).value()));
+    return std::unique_ptr<RefinementStateReader>(
+        new RefinementStateReader(domain.participants(), std::move(reader).value()));
 }
 
-FrontReader::FrontReader(Participants& participants, Endpoint reader)
+RefinementStateReader::RefinementStateReader(Participants& participants, Endpoint reader)
     : participants_(participants), reader_(std::move(reader))
 {
 }
 
-void FrontReader::poll()
+void RefinementStateReader::poll()
 {
-    refused_ += take_newest<tactus_v5_Front>(
+    refused_ += take_newest<tactus_v5_RefinementState>(
         reader_, participants_, kMaxSeen, fronts_,
-        [](const tactus_v5_Front& sample) -> std::optional<SeenFront>
+        [](const tactus_v5_RefinementState& sample) -> std::optional<SeenFront>
         {
             auto front = front_from(sample);
             return front ? std::optional<SeenFront>(

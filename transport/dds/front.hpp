@@ -17,16 +17,16 @@ namespace tactus::dds
 {
 
 /// Publishes a controller's refinement state. One thread, the transport thread.
-class FrontWriter
+class RefinementStateWriter
 {
 public:
     /// `domain` must outlive the writer; `controller_name` is valid (asserted).
-    [[nodiscard]] static Result<std::unique_ptr<FrontWriter>, Refusal>
+    [[nodiscard]] static Result<std::unique_ptr<RefinementStateWriter>, Refusal>
     create(const Domain& domain, std::string controller_name);
 
     /// Sends a refinement state to all readers; never waits. Models, objects, tools and pages are
     /// within their limits, and objects name one of the models (asserted).
-    void write(const Front& front);
+    void write(const RefinementState& front);
 
     /// True if there is a reader.
     [[nodiscard]] bool is_watched() const { return is_matched(writer_); }
@@ -35,7 +35,7 @@ public:
     [[nodiscard]] std::uint64_t sent() const noexcept { return sent_; }
 
 private:
-    FrontWriter(const ControllerId& controller, std::string controller_name);
+    RefinementStateWriter(const ControllerId& controller, std::string controller_name);
 
     ControllerId controller_;
     std::string controller_name_;
@@ -48,21 +48,22 @@ struct SeenFront
 {
     ControllerId id{};
     std::uint64_t serial{0};
-    Front front;
+    RefinementState front;
     std::uint64_t writer{0}; ///< Handle of the last sample's writer.
     /// True if a program, perhaps another one, ended this controller's instance.
     bool is_disputed{false};
 };
 
 /// Reads the newest refinement state of each controller on a domain. One thread.
-class FrontReader
+class RefinementStateReader
 {
 public:
     /// Maximum number of controllers; samples of further ones are ignored.
     static constexpr std::size_t kMaxSeen = 64;
 
     /// `domain` must outlive the reader.
-    [[nodiscard]] static Result<std::unique_ptr<FrontReader>, Refusal> create(const Domain& domain);
+    [[nodiscard]] static Result<std::unique_ptr<RefinementStateReader>, Refusal>
+    create(const Domain& domain);
 
     /// Takes new samples, and removes controllers that left or fell silent (500 ms). Bounded, never
     /// waits.
@@ -75,7 +76,7 @@ public:
     [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }
 
 private:
-    FrontReader(Participants& participants, Endpoint reader);
+    RefinementStateReader(Participants& participants, Endpoint reader);
 
     Participants& participants_;
     Endpoint reader_;

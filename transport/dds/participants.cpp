@@ -253,7 +253,7 @@ bool Participants::is_writing(std::uint64_t publication_handle) const
     return info.valid_data && info.instance_state == DDS_ALIVE_INSTANCE_STATE;
 }
 
-bool Participants::is_here(const ParticipantId& who) const
+bool Participants::is_resident(const ParticipantId& who) const
 {
     bool is_alive = false;
     read_participant(

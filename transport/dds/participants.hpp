@@ -40,7 +40,7 @@ public:
     /// True if the writer that a sample's publication_handle names is present. 10 us.
     [[nodiscard]] bool is_writing(std::uint64_t publication_handle) const;
     /// True if the participant is on the domain: heard within its lease. 10 us.
-    [[nodiscard]] bool is_here(const ParticipantId& who) const;
+    [[nodiscard]] bool is_resident(const ParticipantId& who) const;
 
     /// Program, process and machine of all other participants, sorted and unique. About 10 us each.
     [[nodiscard]] std::set<std::string> names() const;

@@ -66,7 +66,7 @@ void PieceExchange::ask(std::uint64_t host_epoch, std::uint32_t model,
     host.generation = generation;
     for (const ContentKey key : keys)
     {
-        host.wishes.push_back({model, key});
+        host.requests.push_back({model, key});
     }
 }
 
@@ -122,7 +122,7 @@ void PieceExchange::step()
         }
         else
         {
-            host.wishes.clear(); // The requester asks again, then any server of the model.
+            host.requests.clear(); // The requester asks again, then any server of the model.
             host.awaits_pieces = false;
         }
     }
@@ -218,7 +218,7 @@ void PieceExchange::keep_credit(Host& host)
         }
     }
     const bool is_half_used = host.credit.granted() >= host.granted_sent + kCreditPieces / 2;
-    if (!host.wishes.empty() || is_half_used || now - host.last_sent >= kRenewal)
+    if (!host.requests.empty() || is_half_used || now - host.last_sent >= kRenewal)
     {
         send(host);
     }
@@ -229,7 +229,7 @@ void PieceExchange::keep_credit(Host& host)
 void PieceExchange::send(Host& host)
 {
     const auto now = Clock::now();
-    if (!host.wishes.empty() && !host.awaits_pieces)
+    if (!host.requests.empty() && !host.awaits_pieces)
     {
         host.awaits_pieces = true;
         host.last_progress = now;
@@ -244,11 +244,11 @@ void PieceExchange::send(Host& host)
     wanted.granted = host.credit.granted();
     wanted.received = host.credit.received();
     const tactus_v5_Wanted probe = wanted;
-    std::span<const HostPiece> wishes(host.wishes);
+    std::span<const HostPiece> requests(host.requests);
     do
     {
-        std::array<tactus_v5_PieceName, kMaxWishes> names{};
-        const auto part = wishes.first(std::min<std::size_t>(wishes.size(), kMaxWishes));
+        std::array<tactus_v5_PieceName, kMaxRequests> names{};
+        const auto part = requests.first(std::min<std::size_t>(requests.size(), kMaxRequests));
         std::ranges::transform(part, names.begin(),
                                [](const HostPiece& piece)
                                {
@@ -262,9 +262,9 @@ void PieceExchange::send(Host& host)
         {
             host.granted_sent = wanted.granted;
         }
-        wishes = wishes.subspan(part.size());
-    } while (!wishes.empty());
-    host.wishes.clear();
+        requests = requests.subspan(part.size());
+    } while (!requests.empty());
+    host.requests.clear();
     host.last_sent = now;
 }
 

@@ -7,8 +7,8 @@
 #include "transport/dds/catalogue.hpp"
 #include "transport/dds/credit.hpp"
 #include "transport/dds/domain.hpp"
+#include "transport/dds/request_queue.hpp"
 #include "transport/dds/topics.hpp"
-#include "transport/dds/wish_queue.hpp"
 #include "transport/dds/writer_lanes.hpp"
 
 #include <chrono>
@@ -55,8 +55,8 @@ public:
     /// Announces the controller to the server before the first request.
     void meet(std::uint64_t host_epoch) { static_cast<void>(host_of(host_epoch)); }
 
-    /// Requests pieces of one of a server's models, most urgent first; they are sent with the next
-    /// step(). A newer generation goes before requests that still wait.
+    /// Requests pieces of one of a server's models, highest priority first; they are sent with the
+    /// next step(). A newer generation goes before requests that still wait.
     void ask(std::uint64_t host_epoch, std::uint32_t model, std::span<const ContentKey> keys,
              std::uint32_t generation);
 
@@ -92,7 +92,7 @@ private:
     {
         std::uint64_t epoch{0};
         CreditWindow credit{kCreditPieces};
-        std::vector<HostPiece> wishes;
+        std::vector<HostPiece> requests;
         std::uint32_t generation{0};
         std::uint64_t granted_sent{0}; ///< Count in the last request to the server.
         std::uint32_t write_offs{0};   ///< Write-offs since the last sample.

@@ -40,8 +40,8 @@ std::string reason_of(Refused reason, std::uint32_t number)
         return fmt::format("model {}: its name, or its scene's, is not {}", number, kNameForm);
     case Refused::model_room:
         return fmt::format("model {}: there are too many on the domain", number);
-    case Refused::wish:
-        return "a wish for a piece that there is not";
+    case Refused::request:
+        return "a request for a piece that there is not";
     case Refused::telemetry:
         return "telemetry with a name or numbers that are none, or of too many controllers";
     case Refused::rate:
@@ -60,7 +60,7 @@ const std::array<const char*, kRefusedKinds>& refused_names() noexcept
     static constexpr std::array<const char*, kRefusedKinds> names{
         "identity",    "object_number", "model_number", "object_name", "object_material",
         "object_pose", "not_served",    "model_name",   "model_room",  "controller",
-        "wish",        "telemetry",     "rate"};
+        "request",     "telemetry",     "rate"};
     return names;
 }
 

@@ -34,7 +34,7 @@ enum class Refused : std::uint8_t
     model_name,  ///< Invalid name of a model or of its scene.
     model_room,  ///< More models than are remembered.
     controller,  ///< Invalid name of a controller, or too many controllers.
-    wish,        ///< Request for a piece that does not exist.
+    request,     ///< Request for a piece that does not exist.
     /// Telemetry or refinement state with invalid names or numbers, or of too many controllers.
     telemetry,
     rate, ///< More pieces requested in a second than a server accepts.

@@ -106,23 +106,23 @@ std::uint64_t Subscription::fill(std::span<const ModelPieces> models, PieceBuffe
 {
     room.payload.clear();
     std::uint64_t pieces = 0;
-    while (!wishes_.empty() && sent_ + pieces < credit_.granted)
+    while (!requests_.empty() && sent_ + pieces < credit_.granted)
     {
-        const HostPiece wish = wishes_.front();
-        const ModelPieces& model = models[wish.model];
-        if (room.payload.size() + kFrameBytes + model.bytes(wish.key) > kPayloadBytes)
+        const HostPiece request = requests_.front();
+        const ModelPieces& model = models[request.model];
+        if (room.payload.size() + kFrameBytes + model.bytes(request.key) > kPayloadBytes)
         {
             break;
         }
-        wishes_.pop_front();
-        if (auto done = model.read(wish.key, room.piece); !done)
+        requests_.pop_front();
+        if (auto done = model.read(request.key, room.piece); !done)
         {
             log.write(done.error().text);
             continue;
         }
         append_piece(room.payload,
                      {model.store().hash(), model.store().revision(),
-                      static_cast<std::uint32_t>(wish.key.kind), wish.key.number},
+                      static_cast<std::uint32_t>(request.key.kind), request.key.number},
                      room.piece);
         ++pieces;
     }

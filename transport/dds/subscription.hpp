@@ -5,8 +5,8 @@
 #include "transport/base/refusal.hpp"
 #include "transport/dds/domain.hpp"
 #include "transport/dds/model_pieces.hpp"
+#include "transport/dds/request_queue.hpp"
 #include "transport/dds/topics.hpp"
-#include "transport/dds/wish_queue.hpp"
 #include "transport/dds/writer_lanes.hpp"
 #include "transport/log.hpp"
 
@@ -53,7 +53,10 @@ public:
     [[nodiscard]] const std::string& controller_name() const noexcept { return controller_name_; }
 
     /// Adds a request; the piece must exist.
-    void wish(const HostPiece& piece, std::uint32_t generation) { wishes_.add(piece, generation); }
+    void request(const HostPiece& piece, std::uint32_t generation)
+    {
+        requests_.add(piece, generation);
+    }
     /// Updates the credit. Requests may arrive out of order, so the counts only grow. `seen` is at
     /// most the number sent, and `granted` at most kCreditPieces more than `seen`.
     void set_credit(const Credit& credit) noexcept;
@@ -65,7 +68,7 @@ public:
     /// True if send_one() has something to send, provided that the controller's reader is present.
     [[nodiscard]] bool has_work() const noexcept
     {
-        return !wishes_.empty() && sent_ < credit_.granted;
+        return !requests_.empty() && sent_ < credit_.granted;
     }
     /// Sends one sample of as many requested pieces as credit and payload allow. A piece that
     /// cannot be read is skipped and logged. False if nothing was sent.
@@ -77,10 +80,11 @@ public:
     [[nodiscard]] std::uint64_t pieces_sent() const noexcept { return pieces_sent_; }
     [[nodiscard]] std::uint64_t bytes_sent() const noexcept { return bytes_sent_; }
     /// Number of pieces that wait to be sent.
-    [[nodiscard]] std::size_t wishes() const noexcept { return wishes_.size(); }
+    [[nodiscard]] std::size_t requests() const noexcept { return requests_.size(); }
 
 private:
-    explicit Subscription(WriterLanes writers) : writers_(std::move(writers)), wishes_(kMaxWaiting)
+    explicit Subscription(WriterLanes writers)
+        : writers_(std::move(writers)), requests_(kMaxWaiting)
     {
     }
 
@@ -92,7 +96,7 @@ private:
     ControllerId controller_{};
     std::string controller_name_;
     WriterLanes writers_;
-    WishQueue wishes_;
+    RequestQueue requests_;
     Credit credit_;
     std::uint64_t lost_{0};              ///< Pieces sent that did not arrive, as last reported.
     std::uint64_t given_up_{UINT64_MAX}; ///< Lost pieces that are not healed any more.

@@ -24,8 +24,8 @@ namespace
 
 /// Bits of ToolTelemetry::state.
 constexpr unsigned kInContact = 1;
-constexpr unsigned kFrozen = 2;
-constexpr unsigned kSqueezed = 4;
+constexpr unsigned kHalted = 2;
+constexpr unsigned kOverConstrained = 4;
 constexpr unsigned kHeldBack = 8;
 constexpr unsigned kHasGripper = 16;
 /// Bits of ModelTelemetry::state.
@@ -66,8 +66,8 @@ tactus_v5_ToolTelemetry to_wire(const ToolTelemetry& tool)
     std::ranges::copy(tool.force_n, std::begin(wire.force_n));
     std::ranges::copy(tool.torque_nm, std::begin(wire.torque_nm));
     wire.state = static_cast<std::uint8_t>(
-        bit_when(tool.in_contact, kInContact) | bit_when(tool.frozen, kFrozen) |
-        bit_when(tool.squeezed, kSqueezed) | bit_when(tool.held_back, kHeldBack) |
+        bit_when(tool.in_contact, kInContact) | bit_when(tool.halted, kHalted) |
+        bit_when(tool.over_constrained, kOverConstrained) | bit_when(tool.data_limited, kHeldBack) |
         bit_when(tool.has_gripper, kHasGripper));
     wire.gripper_m = tool.gripper_m;
     wire.buttons = tool.buttons;
@@ -84,9 +84,9 @@ ToolTelemetry from_wire(const tactus_v5_ToolTelemetry& wire)
     std::ranges::copy(wire.force_n, tool.force_n.begin());
     std::ranges::copy(wire.torque_nm, tool.torque_nm.begin());
     tool.in_contact = (wire.state & kInContact) != 0;
-    tool.frozen = (wire.state & kFrozen) != 0;
-    tool.squeezed = (wire.state & kSqueezed) != 0;
-    tool.held_back = (wire.state & kHeldBack) != 0;
+    tool.halted = (wire.state & kHalted) != 0;
+    tool.over_constrained = (wire.state & kOverConstrained) != 0;
+    tool.data_limited = (wire.state & kHeldBack) != 0;
     tool.has_gripper = (wire.state & kHasGripper) != 0;
     tool.gripper_m = wire.gripper_m;
     tool.buttons = wire.buttons;
@@ -194,13 +194,13 @@ void copy_counts(const From& from, To& to)
     to.period_ns = from.period_ns;
     to.time_ns = from.time_ns;
     to.exact = from.exact;
-    to.decided = from.decided;
-    to.bracket = from.bracket;
+    to.separated = from.separated;
+    to.bounded = from.bounded;
     to.stale = from.stale;
     to.within_tolerance = from.within_tolerance;
     to.missed = from.missed;
-    to.own_faults = from.own_faults;
-    to.machine_late = from.machine_late;
+    to.overruns = from.overruns;
+    to.latency_misses = from.latency_misses;
     to.faults_now = from.faults_now;
     to.faults_seen = from.faults_seen;
 }

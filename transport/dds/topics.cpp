@@ -34,15 +34,15 @@ static_assert(tactus_v5_max_name_bytes == kMaxNameBytes);
 static_assert(tactus_v5_max_tools == kMaxTools);
 static_assert(tactus_v5_max_models == kMaxShownModels);
 static_assert(tactus_v5_max_pairs == kMaxPairs);
-static_assert(tactus_v5_max_wishes == kMaxWishes);
+static_assert(tactus_v5_max_requests == kMaxRequests);
 static_assert(tactus_v5_max_moved == kMaxMoved);
 static_assert(tactus_v5_max_payload_bytes >= kPayloadBytes);
 static_assert(tactus_v5_max_shape_bytes == kMaxShapeBytes);
-static_assert(tactus_v5_max_front_models == kMaxModels);
-static_assert(tactus_v5_max_front_objects == kMaxFrontObjects);
-static_assert(tactus_v5_max_front_pages == kMaxFrontPages);
-static_assert(tactus_v5_max_front_wishes == kMaxFrontWishes);
-static_assert(tactus_v5_max_front_regions == kMaxFrontRegions);
+static_assert(tactus_v5_max_state_models == kMaxModels);
+static_assert(tactus_v5_max_state_objects == kMaxStateObjects);
+static_assert(tactus_v5_max_state_pages == kMaxStatePages);
+static_assert(tactus_v5_max_state_requests == kMaxStateRequests);
+static_assert(tactus_v5_max_state_regions == kMaxStateRegions);
 static_assert(kMaxModels <= UINT16_MAX); // Type of PieceName::model.
 static_assert(sizeof(tactus_v5_Wanted::controller) == sizeof(ControllerId));
 static_assert(sizeof(tactus_v5_CatalogueEntry::model_hash) == sizeof(ContentHash));
@@ -107,7 +107,7 @@ bool is_honest_motion(const void* sample, const dds_sample_info_t* info, void* c
 }
 
 /// Drops requests to other servers as well, so they take no room.
-bool is_honest_wish(const void* sample, const dds_sample_info_t* info, void* context)
+bool is_honest_request(const void* sample, const dds_sample_info_t* info, void* context)
 {
     const auto& wanted = *static_cast<const tactus_v5_Wanted*>(sample);
     return wanted.host_epoch == participants_of(context).own_epoch() &&
@@ -124,9 +124,10 @@ bool is_honest_telemetry(const void* sample, const dds_sample_info_t* info, void
     return is_of_its_controller(*static_cast<const tactus_v5_Telemetry*>(sample), info, context);
 }
 
-bool is_honest_front(const void* sample, const dds_sample_info_t* info, void* context)
+bool is_honest_refinement_state(const void* sample, const dds_sample_info_t* info, void* context)
 {
-    return is_of_its_controller(*static_cast<const tactus_v5_Front*>(sample), info, context);
+    return is_of_its_controller(*static_cast<const tactus_v5_RefinementState*>(sample), info,
+                                context);
 }
 
 const TopicTraits& traits_of(Topic topic)
@@ -143,12 +144,13 @@ const TopicTraits& traits_of(Topic topic)
         {"tactus/v5/objects", &tactus_v5_ObjectRecord_desc, is_honest_record, true, false, false,
          1},
         {"tactus/v5/motion", &tactus_v5_Motion_desc, is_honest_motion, false, false, true, 128},
-        {"tactus/v5/wanted", &tactus_v5_Wanted_desc, is_honest_wish, false, true, false, 16},
+        {"tactus/v5/wanted", &tactus_v5_Wanted_desc, is_honest_request, false, true, false, 16},
         {"tactus/v5/chunks", &tactus_v5_Pieces_desc, is_honest_pieces, false, false, false,
          4 * kCreditPieces},
         {"tactus/v5/telemetry", &tactus_v5_Telemetry_desc, is_honest_telemetry, false, true, true,
          1},
-        {"tactus/v5/front", &tactus_v5_Front_desc, is_honest_front, false, true, true, 1},
+        {"tactus/v5/refinement_state", &tactus_v5_RefinementState_desc, is_honest_refinement_state,
+         false, true, true, 1},
     }};
     return traits[static_cast<std::size_t>(topic)];
 }

@@ -17,7 +17,7 @@ namespace tactus::dds
 inline constexpr std::uint32_t kProtocolVersion = 5;
 
 /// Maximum number of pieces in one request.
-inline constexpr std::uint32_t kMaxWishes = 256;
+inline constexpr std::uint32_t kMaxRequests = 256;
 /// Maximum number of pieces that a server keeps waiting for one controller.
 inline constexpr std::uint32_t kMaxWaiting = 1'024;
 /// Maximum number of objects in one sample of motion.

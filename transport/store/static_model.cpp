@@ -8,7 +8,7 @@
 #include "rt_core/query/probe.hpp"
 #include "rt_core/query/surface_query.hpp"
 #include "transport/base/counted.hpp"
-#include "transport/courier.hpp"
+#include "transport/chunk_loader.hpp"
 #include "transport/store/store_link.hpp"
 
 #include <fmt/format.h>
@@ -72,7 +72,7 @@ struct StaticModel::Parts
     std::unique_ptr<std::byte, AlignedDelete> memory;
     std::optional<Arena> arena;
     std::optional<Frame> frame;
-    std::optional<Courier> courier;
+    std::optional<ChunkLoader> chunk_loader;
 
     /// Builds the frame with `room` times the tree's usual room.
     [[nodiscard]] std::optional<Refusal> start(std::uint32_t room);
@@ -82,13 +82,13 @@ struct StaticModel::Parts
 
 std::optional<Refusal> StaticModel::Parts::start(std::uint32_t room)
 {
-    courier.reset();
+    chunk_loader.reset();
     frame.reset();
     const std::array objects{ObjectSpec{ModelId{0}}};
     const std::array poses{ObjectPose{}};
     std::array tools{ToolSpec{}};
     tools[0].radius_m = header->diagonal_m();
-    tools[0].passes_through = true;
+    tools[0].query_only = true;
     std::array sources{ModelSource{served.header, served.base, {}}};
     if (!try_plan({&*header, 1}, kAllBytes, 0, {&sources[0].capacities, 1}))
     {
@@ -104,7 +104,7 @@ std::optional<Refusal> StaticModel::Parts::start(std::uint32_t room)
     setup.static_when_it_fits = true;
     const ModelCapacities& pools = sources[0].capacities;
     const std::size_t bytes = Arena::round_up(Frame::required_bytes(setup)) +
-                              Courier::required_bytes(pools.pages, pools.index_pages);
+                              ChunkLoader::required_bytes(pools.pages, pools.index_pages);
     memory.reset(static_cast<std::byte*>(
         ::operator new (bytes, std::align_val_t{Arena::kAlignment}, std::nothrow)));
     if (memory == nullptr)
@@ -117,9 +117,9 @@ std::optional<Refusal> StaticModel::Parts::start(std::uint32_t room)
         return Refusal{fmt::format("{}: {}", served.name, refusal_text(started.error()))};
     }
     ModelPools& shared = frame->pools();
-    courier.emplace(*arena, shared.slots, shared.cache.door, Log{});
+    chunk_loader.emplace(*arena, shared.slots, shared.cache.queues, Log{});
     Model& model = frame->model({0});
-    courier->add(model.header, model.linker, *served.link, served.name);
+    chunk_loader->add(model.header, model.linker, *served.link, served.name);
     return std::nullopt;
 }
 
@@ -135,10 +135,10 @@ std::optional<Refusal> StaticModel::Parts::refine(std::chrono::milliseconds pati
     do
     {
         now_ns += 1'000'000;
-        courier->step(now_ns);
+        chunk_loader->step(now_ns);
         static_cast<void>(frame->run({tools, {}, all_at_once(), now_ns}));
-        const std::uint64_t here = courier->counters().delivered;
-        const std::uint64_t damaged = courier->counters().refused() + served.link->damaged();
+        const std::uint64_t here = chunk_loader->counters().delivered;
+        const std::uint64_t damaged = chunk_loader->counters().refused() + served.link->damaged();
         if (damaged > 0)
         {
             return Refusal{fmt::format("{}: {} damaged", served.name, piece_count(damaged))};

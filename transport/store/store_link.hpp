@@ -24,8 +24,8 @@ public:
     /// `log` gets a line for each piece that cannot be read, at a limited rate.
     StoreLink(ModelStore store, Log log);
 
-    /// Up to 1,024 pieces may wait for poll(); beyond that the least urgent requests of the call,
-    /// then the oldest, are dropped.
+    /// Up to 1,024 pieces may wait for poll(); beyond that the lowest-priority requests of the
+    /// call, then the oldest, are dropped.
     void request(std::span<const ContentKey> keys, std::uint32_t generation) override;
     /// Reads and delivers all waiting pieces.
     void poll(PieceSink& sink) override;
@@ -42,7 +42,7 @@ private:
 
     ModelStore store_;
     RateLimitedLog log_;
-    std::vector<ContentKey> waiting_; ///< Waiting pieces, most urgent last.
+    std::vector<ContentKey> waiting_; ///< Waiting pieces, highest priority last.
     std::vector<std::byte> piece_;
     std::set<std::pair<ContentKind, std::uint32_t>> damaged_;
     std::uint64_t bytes_received_{0};

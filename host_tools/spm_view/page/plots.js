@@ -30,7 +30,7 @@ const PLOTS = [
       [norm(c.tools[tool].force_n), norm(c.tools[tool].torque_nm) * 1e3] : [null, null]),
   },
   {
-    title: "bracket width, mm", labels: ["widest"],
+    title: "width of the bounds, mm", labels: ["widest"],
     values: (c, tool) => [width_mm(c, tool)],
   },
   {
@@ -47,8 +47,8 @@ const PLOTS = [
       [null, null, null]),
   },
   {
-    title: "deadlines missed", labels: ["own fault", "machine late"],
-    values: (c) => (c.deadlines ? [c.deadlines.own_faults, c.deadlines.machine_late] :
+    title: "deadlines missed", labels: ["overruns", "latency misses"],
+    values: (c) => (c.deadlines ? [c.deadlines.overruns, c.deadlines.latency_misses] :
       [null, null]),
   },
 ];

@@ -34,7 +34,7 @@ export function read_cut(buffer) {
   };
 }
 
-/// Decodes the answer of /boxes, /loaded or /wished (host_tools/spm_view/boxes.hpp) to edges.
+/// Decodes the answer of /boxes, /loaded or /requested (host_tools/spm_view/boxes.hpp) to edges.
 export function read_boxes(buffer) {
   const count = new Uint32Array(buffer, 0, 1)[0];
   const ends = new Float32Array(buffer, 4, 6 * count);
@@ -66,12 +66,12 @@ const BOX_SETS = [
     state: (cut) => cut.cut, more: (choice) => ({ level: choice.level }) },
   { name: "loaded", colour: 0x2f9e6e, wanted: (choice) => choice.regions,
     state: (cut) => `${cut.cut} ${cut.pages}`, more: () => ({}) },
-  { name: "wished", colour: 0xd8822b, wanted: (choice) => choice.regions,
-    state: (cut, front) => (cut.wished > 0 ? front.serial : "none"), more: () => ({}) },
+  { name: "requested", colour: 0xd8822b, wanted: (choice) => choice.regions,
+    state: (cut, front) => (cut.requested > 0 ? front.serial : "none"), more: () => ({}) },
 ];
 
 /// Regions in which chunks are searched, around the present or the predicted place of a tool.
-const REGION_COLOURS = { present: 0xc94c4c, foretold: 0xa855c7 };
+const REGION_COLOURS = { present: 0xc94c4c, predicted: 0xa855c7 };
 const REGION_BALL = new THREE.WireframeGeometry(new THREE.IcosahedronBufferGeometry(1, 1));
 
 /// Values of a face, 0 (coarse) to 1 (fine), and texts for the ends of the scale.
@@ -299,7 +299,7 @@ export class View {
     const model = this.models.get(hash) || { cut: null, busy: false, fault: "" };
     this.models.set(hash, model);
     const wanted = cut ? cut.cut : "base";
-    if (model.busy || model.cut === wanted || (cut && !cut.is_here)) {
+    if (model.busy || model.cut === wanted || (cut && !cut.is_resident)) {
       return;
     }
     model.busy = true;
@@ -336,7 +336,7 @@ export class View {
       mine.visible = set.wanted(choice);
       const more = set.more(choice);
       const key = `${cut ? set.state(cut, front) : "base"} ${more.level}`;
-      if (!mine.visible || mine.busy || mine.key === key || !cut || !cut.is_here) {
+      if (!mine.visible || mine.busy || mine.key === key || !cut || !cut.is_resident) {
         return;
       }
       mine.busy = true;
@@ -395,8 +395,8 @@ export class View {
         mesh.add(new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({
           color: set.colour, transparent: true, opacity: 0.7 })));
       }
-      mesh.balls = new THREE.Group();
-      mesh.add(mesh.balls);
+      mesh.spheres = new THREE.Group();
+      mesh.add(mesh.spheres);
       mesh.geometry_is_there = false;
       this.objects.set(key, mesh);
       this.scene.add(mesh);
@@ -422,26 +422,26 @@ export class View {
 
   /// Spheres on an object, one for each region.
   place_regions(mesh, regions) {
-    while (mesh.balls.children.length < regions.length) {
-      mesh.balls.add(new THREE.LineSegments(REGION_BALL, new THREE.LineBasicMaterial({
+    while (mesh.spheres.children.length < regions.length) {
+      mesh.spheres.add(new THREE.LineSegments(REGION_BALL, new THREE.LineBasicMaterial({
         transparent: true, opacity: 0.5 })));
     }
-    mesh.balls.children.forEach((ball, i) => {
-      ball.visible = i < regions.length;
-      if (ball.visible) {
+    mesh.spheres.children.forEach((sphere, i) => {
+      sphere.visible = i < regions.length;
+      if (sphere.visible) {
         const region = regions[i];
-        ball.material.color.set(REGION_COLOURS[region.is_foretold ? "foretold" : "present"]);
-        ball.position.copy(vector(region.center_m));
-        ball.scale.setScalar(region.radius_m);
+        sphere.material.color.set(REGION_COLOURS[region.is_predicted ? "predicted" : "present"]);
+        sphere.position.copy(vector(region.center_m));
+        sphere.scale.setScalar(region.radius_m);
       }
     });
   }
 
   count_regions(front) {
-    const foretold = front.regions.filter((region) => region.is_foretold).length;
+    const predicted = front.regions.filter((region) => region.is_predicted).length;
     const sum = (name) => front.models.reduce((all, model) => all + model[name], 0);
-    return { loaded: sum("pages"), wished: sum("wished"),
-      present: front.regions.length - foretold, foretold,
+    return { loaded: sum("pages"), requested: sum("requested"),
+      present: front.regions.length - predicted, predicted,
       untold: front.regions_left_out > 0 ? `${front.regions_left_out} less urgent not told` : "" };
   }
 

@@ -74,7 +74,7 @@ function figure(list, name, value) {
 }
 
 const micro = (times, name) => (times ? `${times[name][0].toFixed(1)} µs` : "-");
-const NO_DEADLINES = { missed: "-", own_faults: "-", machine_late: "-" };
+const NO_DEADLINES = { missed: "-", overruns: "-", latency_misses: "-" };
 
 function show_figures(controller) {
   const list = [];
@@ -88,14 +88,14 @@ function show_figures(controller) {
     figure(list, "frame, mean", micro(times, "frame"));
     figure(list, "frame, longest", times ? `${times.frame[1].toFixed(0)} µs` : "-");
     figure(list, "exact", percent(answers.exact));
-    figure(list, "decided", percent(answers.decided));
+    figure(list, "separated", percent(answers.separated));
     figure(list, "within tolerance", percent(answers.within_tolerance));
-    figure(list, "bracket", percent(answers.bracket));
+    figure(list, "bounded", percent(answers.bounded));
     figure(list, "stale", percent(answers.stale));
     const deadlines = controller.deadlines || NO_DEADLINES;
     figure(list, "missed", deadlines.missed);
-    figure(list, "own faults", deadlines.own_faults);
-    figure(list, "machine late", deadlines.machine_late);
+    figure(list, "overruns", deadlines.overruns);
+    figure(list, "latency misses", deadlines.latency_misses);
     figure(list, "flags", controller.faults.join(", ") || "none");
   }
   by_id("figures").replaceChildren(...list);

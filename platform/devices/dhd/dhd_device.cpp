@@ -99,7 +99,7 @@ Result<char, Refusal> open_device(const DhdLibrary& library, int index)
 DeviceInfo fitted(DeviceInfo info, const DhdLibrary& library, char id)
 {
     info.name = info.name.empty() ? system_name(library, id) : info.name;
-    TurnLimits& turn = info.limits.turn;
+    RotationLimits& turn = info.limits.rotation;
     turn.is_measured = library->dhdHasWrist(id);
     turn.torque_max_nm = library->dhdHasActiveWrist(id) ? turn.torque_max_nm : 0.0;
     info.gripper_force_max_n = library->dhdHasActiveGripper(id) ? info.gripper_force_max_n : 0.0;
@@ -129,15 +129,15 @@ DeviceInfo DhdDeviceOptions::default_info()
                    .slew_max_n_per_s = 16'000.0,
                    .stiffness_max_n_per_m = 3'000.0,
                    .added_damping_max_n_s_per_m = 10.0,
-                   .turn = {.is_measured = true,
-                            .torque_max_nm = 0.1,
-                            .inertia_kg_m2 = 1e-4,
-                            .damping_nm_s_per_rad = 5e-4,
-                            .friction_nm = 0.0,
-                            .quantum_rad = 2e-4,
-                            .slew_max_nm_per_s = 200.0,
-                            .stiffness_max_nm_per_rad = 0.4,
-                            .added_damping_max_nm_s_per_rad = 3e-3}};
+                   .rotation = {.is_measured = true,
+                                .torque_max_nm = 0.1,
+                                .inertia_kg_m2 = 1e-4,
+                                .damping_nm_s_per_rad = 5e-4,
+                                .friction_nm = 0.0,
+                                .quantum_rad = 2e-4,
+                                .slew_max_nm_per_s = 200.0,
+                                .stiffness_max_nm_per_rad = 0.4,
+                                .added_damping_max_nm_s_per_rad = 3e-3}};
     info.gripper_force_max_n = 4.0;
     info.workspace_radius_m = 0.5;
     info.speed_max_m_per_s = 10.0;

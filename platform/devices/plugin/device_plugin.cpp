@@ -17,13 +17,13 @@ namespace
 /// Runs foreign code: an exception is its refusal, and so is a null result.
 template <class Made>
 Result<std::unique_ptr<Made>, Refusal>
-make_by(Result<std::unique_ptr<Made>, Refusal> (*make)(const DeviceWish&), const DeviceWish& wish,
-        const char* what)
+make_by(Result<std::unique_ptr<Made>, Refusal> (*make)(const DeviceRequest&),
+        const DeviceRequest& request, const char* what)
 {
     const std::string its = "its TACTUS_DEVICE_PLUGIN ";
     try
     {
-        auto made = make(wish);
+        auto made = make(request);
         if (made && made.value() == nullptr)
         {
             return Refusal{its + "makes no " + what + " and says no reason"};
@@ -75,14 +75,14 @@ Result<const DevicePlugin*, Refusal> load_plugin(const std::string& path)
 } // namespace
 
 Result<std::unique_ptr<HapticDevice>, Refusal> load_device(const std::string& path,
-                                                           const DeviceWish& wish)
+                                                           const DeviceRequest& request)
 {
     const auto plugin = load_plugin(path);
     if (!plugin)
     {
         return plugin.error();
     }
-    auto device = make_by(plugin.value()->make, wish, "device");
+    auto device = make_by(plugin.value()->make, request, "device");
     if (!device)
     {
         return behind(path, device.error().text);
@@ -95,7 +95,7 @@ Result<std::unique_ptr<HapticDevice>, Refusal> load_device(const std::string& pa
 }
 
 Result<std::unique_ptr<DeviceGuard>, Refusal> load_guard(const std::string& path,
-                                                         const DeviceWish& wish)
+                                                         const DeviceRequest& request)
 {
     const auto plugin = load_plugin(path);
     if (!plugin)
@@ -106,7 +106,7 @@ Result<std::unique_ptr<DeviceGuard>, Refusal> load_guard(const std::string& path
     {
         return std::unique_ptr<DeviceGuard>();
     }
-    auto guard = make_by(plugin.value()->guard, wish, "guard");
+    auto guard = make_by(plugin.value()->guard, request, "guard");
     if (!guard)
     {
         return behind(path, guard.error().text);

@@ -19,16 +19,16 @@ namespace tactus
 {
 
 /// Options of the device.
-struct DeviceWish
+struct DeviceRequest
 {
     std::int64_t rate_hz{1'000}; ///< Rate of the loop, which info() must allow.
     DeviceFrame frame;           ///< Frame of --device-frame, applied by the device.
     const char* words{""};       ///< Text after the file's name, for the device to read.
 };
 
-using MakeDevice = Result<std::unique_ptr<HapticDevice>, Refusal> (*)(const DeviceWish&);
+using MakeDevice = Result<std::unique_ptr<HapticDevice>, Refusal> (*)(const DeviceRequest&);
 /// Makes a guard in the guardian's process, before the device is made in the program's.
-using MakeGuard = Result<std::unique_ptr<DeviceGuard>, Refusal> (*)(const DeviceWish&);
+using MakeGuard = Result<std::unique_ptr<DeviceGuard>, Refusal> (*)(const DeviceRequest&);
 
 /// Layout of the types exchanged between program and library; a library with another is refused.
 /// The first number counts changes that sizes don't show.
@@ -38,7 +38,7 @@ inline constexpr PluginLayout kPluginLayout{3,
                                             sizeof(DeviceSample),
                                             sizeof(Wrench),
                                             sizeof(DeviceStatus),
-                                            sizeof(DeviceWish)};
+                                            sizeof(DeviceRequest)};
 
 /// Entry points of a library, under the name tactus_device_plugin.
 struct DevicePlugin
@@ -52,12 +52,12 @@ struct DevicePlugin
 /// a folder is relative to the working directory. Refused in a line that names the file: a library
 /// that can't be loaded, has another layout, refuses, makes nothing, throws, or describes a faulty
 /// device (find_fault()).
-[[nodiscard]] Result<std::unique_ptr<HapticDevice>, Refusal> load_device(const std::string& path,
-                                                                         const DeviceWish& wish);
+[[nodiscard]] Result<std::unique_ptr<HapticDevice>, Refusal>
+load_device(const std::string& path, const DeviceRequest& request);
 
 /// Loads the library and makes its guard; none if it has none. Refused as load_plugin() does.
-[[nodiscard]] Result<std::unique_ptr<DeviceGuard>, Refusal> load_guard(const std::string& path,
-                                                                       const DeviceWish& wish);
+[[nodiscard]] Result<std::unique_ptr<DeviceGuard>, Refusal>
+load_guard(const std::string& path, const DeviceRequest& request);
 
 /// True if the library, accepted by load_device(), has a guard.
 [[nodiscard]] bool has_guard(const std::string& path);

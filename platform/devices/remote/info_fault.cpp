@@ -48,7 +48,7 @@ const char* find_fault(const DeviceInfo& info) noexcept
     {
         return "device: force_max_n must be at most 1000";
     }
-    if (info.limits.turn.torque_max_nm > kTorqueMax_nm)
+    if (info.limits.rotation.torque_max_nm > kTorqueMax_nm)
     {
         return "device: torque_max_nm must be at most 100";
     }

@@ -48,13 +48,13 @@ double filter_share(double period_s, double time_s) noexcept
     return period_s / (period_s + time_s);
 }
 
-/// Unit vector perpendicular to `normal`, along `wish` if it has such a component.
-Vec3 heading_across(const Vec3& normal, const Vec3& wish) noexcept
+/// Unit vector perpendicular to `normal`, along `heading` if it has such a component.
+Vec3 heading_across(const Vec3& normal, const Vec3& heading) noexcept
 {
     constexpr double kParallel = 1e-6;
-    const Vec3 across = part_across(wish, normal);
+    const Vec3 across = part_across(heading, normal);
     const double length = across.norm();
-    return length > kParallel * wish.norm() ? Vec3(across / length) : any_across(normal);
+    return length > kParallel * heading.norm() ? Vec3(across / length) : any_across(normal);
 }
 
 } // namespace
@@ -67,11 +67,11 @@ ContactSlide::ContactSlide(double diagonal_m, double period_s) noexcept
 {
 }
 
-void ContactSlide::begin(const HandSense& sense, const Vec3& heading_wish) noexcept
+void ContactSlide::begin(const OperatorSense& sense, const Vec3& heading_hint) noexcept
 {
     TACTUS_ASSERT(is_touching(sense));
     normal_ = sense.force_world_n.normalized();
-    heading_ = heading_across(normal_, heading_wish);
+    heading_ = heading_across(normal_, heading_hint);
     last_device_world_m_ = sense.device_world_m;
     device_speed_m_per_s_ = speed_m_per_s_;
     speed_factor_ = 1.0;
@@ -80,7 +80,7 @@ void ContactSlide::begin(const HandSense& sense, const Vec3& heading_wish) noexc
     stuck_s_ = 0.0;
 }
 
-Vec3 ContactSlide::next_velocity(const HandSense& sense) noexcept
+Vec3 ContactSlide::next_velocity(const OperatorSense& sense) noexcept
 {
     ++frames_;
     const double force_n = sense.force_world_n.norm();
@@ -98,12 +98,12 @@ void ContactSlide::turn_round() noexcept
     stuck_s_ = 0.0;
 }
 
-bool ContactSlide::is_touching(const HandSense& sense) const noexcept
+bool ContactSlide::is_touching(const OperatorSense& sense) const noexcept
 {
     return sense.force_world_n.norm() > kFeltShare * force_n_;
 }
 
-bool ContactSlide::is_firm(const HandSense& sense) const noexcept
+bool ContactSlide::is_firm(const OperatorSense& sense) const noexcept
 {
     return sense.force_world_n.norm() > kFirmShare * force_n_;
 }
@@ -125,7 +125,7 @@ Vec3 ContactSlide::press(double force_n) const noexcept
 }
 
 /// Turns the heading about the normal, first by its own slow curve and then with the surface.
-void ContactSlide::follow_surface(const HandSense& sense, double force_n) noexcept
+void ContactSlide::follow_surface(const OperatorSense& sense, double force_n) noexcept
 {
     if (!is_touching(sense))
     {
@@ -143,7 +143,7 @@ void ContactSlide::follow_surface(const HandSense& sense, double force_n) noexce
     heading_ = heading_across(normal_, turned);
 }
 
-void ContactSlide::correct_speed(const HandSense& sense) noexcept
+void ContactSlide::correct_speed(const OperatorSense& sense) noexcept
 {
     const Vec3 moved_m = sense.device_world_m - last_device_world_m_;
     last_device_world_m_ = sense.device_world_m;

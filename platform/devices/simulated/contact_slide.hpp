@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/devices/simulated/hand_motion.hpp"
+#include "platform/devices/simulated/operator_motion.hpp"
 #include "rt_core/math/vec3.hpp"
 
 #include <cstdint>
@@ -26,17 +26,17 @@ class ContactSlide
 public:
     ContactSlide(double diagonal_m, double period_s) noexcept;
 
-    /// Starts at the first felt force; `heading_wish` need not lie in the surface.
-    void begin(const HandSense& sense, const Vec3& heading_wish) noexcept;
+    /// Starts at the first felt force; `heading_hint` need not lie in the surface.
+    void begin(const OperatorSense& sense, const Vec3& heading_hint) noexcept;
 
     /// Velocity of the hand in this frame, in m/s.
-    [[nodiscard]] Vec3 next_velocity(const HandSense& sense) noexcept;
+    [[nodiscard]] Vec3 next_velocity(const OperatorSense& sense) noexcept;
 
     void turn_round() noexcept;
 
-    [[nodiscard]] bool is_touching(const HandSense& sense) const noexcept;
+    [[nodiscard]] bool is_touching(const OperatorSense& sense) const noexcept;
     /// True for forces above those of damping at landing speeds.
-    [[nodiscard]] bool is_firm(const HandSense& sense) const noexcept;
+    [[nodiscard]] bool is_firm(const OperatorSense& sense) const noexcept;
     /// Normal out of the surface, of unit length.
     [[nodiscard]] const Vec3& normal() const noexcept { return normal_; }
     [[nodiscard]] const Vec3& heading() const noexcept { return heading_; }
@@ -48,8 +48,8 @@ public:
 private:
     [[nodiscard]] double wanted_force_n() const noexcept;
     [[nodiscard]] Vec3 press(double force_n) const noexcept;
-    void follow_surface(const HandSense& sense, double force_n) noexcept;
-    void correct_speed(const HandSense& sense) noexcept;
+    void follow_surface(const OperatorSense& sense, double force_n) noexcept;
+    void correct_speed(const OperatorSense& sense) noexcept;
     void turn_round_when_stuck() noexcept;
 
     double period_s_;

@@ -16,16 +16,16 @@ namespace tactus
 /// Limits of no product: a desk device that rotates and makes a torque. An angle equals a
 /// displacement on a lever of 3.2 cm (the root of 0.001 m^2) of the default device in all values
 /// except the torque, which is that of commercial wrists.
-inline constexpr TurnLimits kDeskTurn{.is_measured = true,
-                                      .torque_max_nm = 0.5,
-                                      .inertia_kg_m2 = 1e-4,
-                                      .damping_nm_s_per_rad = 1e-3,
-                                      .friction_nm = 0.0,
-                                      .quantum_rad = 0.0,
-                                      .slew_max_nm_per_s = 1'000.0,
-                                      .stiffness_max_nm_per_rad = 3.0,
-                                      .added_damping_max_nm_s_per_rad = 5e-3};
-inline constexpr DeviceLimits kDeskClass{.turn = kDeskTurn};
+inline constexpr RotationLimits kDeskTurn{.is_measured = true,
+                                          .torque_max_nm = 0.5,
+                                          .inertia_kg_m2 = 1e-4,
+                                          .damping_nm_s_per_rad = 1e-3,
+                                          .friction_nm = 0.0,
+                                          .quantum_rad = 0.0,
+                                          .slew_max_nm_per_s = 1'000.0,
+                                          .stiffness_max_nm_per_rad = 3.0,
+                                          .added_damping_max_nm_s_per_rad = 5e-3};
+inline constexpr DeviceLimits kDeskClass{.rotation = kDeskTurn};
 
 /// A small desktop arm with a stylus, which measures its rotation and makes no torque.
 inline constexpr DeviceLimits kTouchClass{.mass_kg = 0.045,
@@ -37,11 +37,11 @@ inline constexpr DeviceLimits kTouchClass{.mass_kg = 0.045,
                                           .slew_max_n_per_s = 6'600.0,
                                           .stiffness_max_n_per_m = 400.0,
                                           .added_damping_max_n_s_per_m = 2.0,
-                                          .turn = {.is_measured = true,
-                                                   .inertia_kg_m2 = 2e-5,
-                                                   .damping_nm_s_per_rad = 5e-5,
-                                                   .friction_nm = 1e-4,
-                                                   .quantum_rad = 1e-3}};
+                                          .rotation = {.is_measured = true,
+                                                       .inertia_kg_m2 = 2e-5,
+                                                       .damping_nm_s_per_rad = 5e-5,
+                                                       .friction_nm = 1e-4,
+                                                       .quantum_rad = 1e-3}};
 
 /// A stiff parallel mechanism. Its handle doesn't rotate; neither does the next one's.
 inline constexpr DeviceLimits kOmegaClass{.mass_kg = 0.2,

@@ -56,26 +56,26 @@ void set_brake(auto& body, bool is_on, double damping) noexcept
 } // namespace
 
 Result<std::unique_ptr<SimulatedDevice>, Refusal>
-SimulatedDevice::create(const SimulatedDeviceOptions& options, std::unique_ptr<HandMotion> hand)
+SimulatedDevice::create(const SimulatedDeviceOptions& options, std::unique_ptr<OperatorMotion> hand)
 {
     TACTUS_ASSERT(hand != nullptr);
     if (std::string wrong = find_bad_option(options); !wrong.empty())
     {
         return Refusal{std::move(wrong)};
     }
-    const auto body = HandAndDevice::create(
+    const auto body = OperatorAndDevice::create(
         {options.device, options.hand, 1.0 / static_cast<double>(options.rate_hz),
          hand->start_world_m(), options.workspace_centre_world_m, options.workspace_radius_m});
     if (!body)
     {
         return body.error();
     }
-    std::optional<HandTurn> turn;
-    if (options.device.turn.is_measured)
+    std::optional<OperatorRotation> turn;
+    if (options.device.rotation.is_measured)
     {
-        const auto made =
-            HandTurn::create({options.device.turn, options.device.delay_s, options.wrist,
-                              1.0 / static_cast<double>(options.rate_hz), hand->grip().rotation});
+        const auto made = OperatorRotation::create(
+            {options.device.rotation, options.device.delay_s, options.wrist,
+             1.0 / static_cast<double>(options.rate_hz), hand->grip().rotation});
         if (!made)
         {
             return made.error();
@@ -86,9 +86,10 @@ SimulatedDevice::create(const SimulatedDeviceOptions& options, std::unique_ptr<H
         new SimulatedDevice(options, body.value(), turn, std::move(hand)));
 }
 
-SimulatedDevice::SimulatedDevice(const SimulatedDeviceOptions& options, const HandAndDevice& body,
-                                 const std::optional<HandTurn>& turn,
-                                 std::unique_ptr<HandMotion> hand)
+SimulatedDevice::SimulatedDevice(const SimulatedDeviceOptions& options,
+                                 const OperatorAndDevice& body,
+                                 const std::optional<OperatorRotation>& turn,
+                                 std::unique_ptr<OperatorMotion> hand)
     : options_(options)
     , info_{"sim",
             options.device,
@@ -125,7 +126,7 @@ DeviceSample SimulatedDevice::read() noexcept
         sample.rotation_world = turn_->measured();
         sample.angular_velocity_world_rad_per_s = to_array(turn_->velocity_rad_per_s());
     }
-    const HandGrip grip = hand_->grip();
+    const OperatorGrip grip = hand_->grip();
     sample.buttons = grip.buttons;
     sample.gripper_m = grip.gripper_m;
     return sample;
@@ -200,7 +201,7 @@ void SimulatedDevice::integrate_one_period(bool braked, const Wrench& wrench) no
     const Vec3 torque_nm =
         to_vec3(wrench.torque_world_nm) + (rotation * options_.load.centre_m).cross(weight_n);
     set_brake(body_, braked, options_.brake_damping_n_s_per_m);
-    HandSense sense{periods_, body_.position_m(), force_n};
+    OperatorSense sense{periods_, body_.position_m(), force_n};
     sense.device_rotation = turn_ ? turn_->rotation() : sense.device_rotation;
     sense.torque_world_nm = torque_nm;
     const Vec3 target_m = hand_->next_world_m(sense);

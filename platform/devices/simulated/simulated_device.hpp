@@ -5,9 +5,9 @@
 #include "platform/devices/brake_latch.hpp"
 #include "platform/devices/haptic_device.hpp"
 #include "platform/devices/simulated/device_classes.hpp"
-#include "platform/devices/simulated/hand_and_device.hpp"
-#include "platform/devices/simulated/hand_motion.hpp"
-#include "platform/devices/simulated/hand_turn.hpp"
+#include "platform/devices/simulated/operator_and_device.hpp"
+#include "platform/devices/simulated/operator_motion.hpp"
+#include "platform/devices/simulated/operator_rotation.hpp"
 #include "platform/machine/clock.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/math/vec3.hpp"
@@ -34,13 +34,13 @@ struct SimulatedDeviceOptions
     DeviceLimits device{kDeskClass};
     /// Fingers with a stylus: lighter than a whole hand, on the default device damped to two thirds
     /// of critical.
-    HandLimb hand{.mass_kg = 0.05, .damping_n_s_per_m = 6.0};
-    /// Wrist of HandTurnOptions, damped to two thirds of critical on the default device.
-    HandLimb wrist{.mass_kg = 5e-5,
-                   .stiffness_n_per_m = 0.5,
-                   .damping_n_s_per_m = 0.012,
-                   .grip_stiffness_n_per_m = 5.0,
-                   .grip_damping_n_s_per_m = 0.004};
+    OperatorLimb hand{.mass_kg = 0.05, .damping_n_s_per_m = 6.0};
+    /// Wrist of OperatorRotationOptions, damped to two thirds of critical on the default device.
+    OperatorLimb wrist{.mass_kg = 5e-5,
+                       .stiffness_n_per_m = 0.5,
+                       .damping_n_s_per_m = 0.012,
+                       .grip_stiffness_n_per_m = 5.0,
+                       .grip_damping_n_s_per_m = 0.004};
     double brake_damping_n_s_per_m{10.0}; ///< Damping while the brake is on; finite, not negative.
     /// Rotational damping while the brake is on; finite, not negative.
     double brake_damping_nm_s_per_rad{0.01};
@@ -57,22 +57,22 @@ struct SimulatedDeviceOptions
     std::optional<Duration> watchdog;
 };
 
-/// A device in a hand that feels the written force and torque: HandAndDevice and HandTurn, with
-/// mass, damping, friction, delay, reach, and quantised measurements. A device that does not
-/// measure rotation does not rotate. The gripper and buttons follow the hand at once. Each reading
-/// integrates one period by frame index: the same hand and forces give the same positions, bit for
-/// bit, however late the readings are. With a clock it follows that clock's time instead: a pause
-/// in reading or writing shows in its motion.
+/// A device in a hand that feels the written force and torque: OperatorAndDevice and
+/// OperatorRotation, with mass, damping, friction, delay, reach, and quantised measurements. A
+/// device that does not measure rotation does not rotate. The gripper and buttons follow the hand
+/// at once. Each reading integrates one period by frame index: the same hand and forces give the
+/// same positions, bit for bit, however late the readings are. With a clock it follows that clock's
+/// time instead: a pause in reading or writing shows in its motion.
 ///
 /// It measures its velocities without quantisation, as by a tachometer.
 class SimulatedDevice final : public HapticDevice
 {
 public:
     /// Refuses a rate out of [kRateMinHz, kRateMaxHz], other values out of range, the faults that
-    /// HandAndDevice refuses, and a hand that starts outside the workspace. Call before the loop; a
-    /// null hand is a bug (asserted).
+    /// OperatorAndDevice refuses, and a hand that starts outside the workspace. Call before the
+    /// loop; a null hand is a bug (asserted).
     [[nodiscard]] static Result<std::unique_ptr<SimulatedDevice>, Refusal>
-    create(const SimulatedDeviceOptions& options, std::unique_ptr<HandMotion> hand);
+    create(const SimulatedDeviceOptions& options, std::unique_ptr<OperatorMotion> hand);
 
     [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
     /// The first reading is the hand's start; each later one is a period on.
@@ -90,8 +90,9 @@ public:
     [[nodiscard]] Wrench felt_wrench() const noexcept;
 
 private:
-    SimulatedDevice(const SimulatedDeviceOptions& options, const HandAndDevice& body,
-                    const std::optional<HandTurn>& turn, std::unique_ptr<HandMotion> hand);
+    SimulatedDevice(const SimulatedDeviceOptions& options, const OperatorAndDevice& body,
+                    const std::optional<OperatorRotation>& turn,
+                    std::unique_ptr<OperatorMotion> hand);
 
     [[nodiscard]] std::uint64_t periods_due() const noexcept;
     [[nodiscard]] Duration period_at(std::uint64_t index) const noexcept;
@@ -102,10 +103,10 @@ private:
 
     SimulatedDeviceOptions options_;
     DeviceInfo info_;
-    std::unique_ptr<HandMotion> hand_;
-    HandAndDevice body_;
-    std::optional<HandTurn> turn_; ///< None: the device doesn't rotate.
-    Wrench wrench_;                ///< Last write.
+    std::unique_ptr<OperatorMotion> hand_;
+    OperatorAndDevice body_;
+    std::optional<OperatorRotation> turn_; ///< None: the device doesn't rotate.
+    Wrench wrench_;                        ///< Last write.
     DeviceStatus status_;
     std::uint64_t periods_{0}; ///< Number of integrated periods.
     MonotonicTime start_;      ///< Time of the first reading.

@@ -95,14 +95,14 @@ constexpr std::array kLimits{&DeviceLimits::mass_kg,
                              &DeviceLimits::slew_max_n_per_s,
                              &DeviceLimits::stiffness_max_n_per_m,
                              &DeviceLimits::added_damping_max_n_s_per_m};
-constexpr std::array kTurnLimits{&TurnLimits::torque_max_nm,
-                                 &TurnLimits::inertia_kg_m2,
-                                 &TurnLimits::damping_nm_s_per_rad,
-                                 &TurnLimits::friction_nm,
-                                 &TurnLimits::quantum_rad,
-                                 &TurnLimits::slew_max_nm_per_s,
-                                 &TurnLimits::stiffness_max_nm_per_rad,
-                                 &TurnLimits::added_damping_max_nm_s_per_rad};
+constexpr std::array kRotationLimits{&RotationLimits::torque_max_nm,
+                                     &RotationLimits::inertia_kg_m2,
+                                     &RotationLimits::damping_nm_s_per_rad,
+                                     &RotationLimits::friction_nm,
+                                     &RotationLimits::quantum_rad,
+                                     &RotationLimits::slew_max_nm_per_s,
+                                     &RotationLimits::stiffness_max_nm_per_rad,
+                                     &RotationLimits::added_damping_max_nm_s_per_rad};
 
 bool are_in_range(const std::array<double, 3>& values, double most) noexcept
 {
@@ -179,16 +179,16 @@ FromDevice decode_describe(const Envelope& envelope, ByteReader reader, const ch
     std::uint32_t known = 0;
     if (envelope.version >= kVersion)
     {
-        for (double TurnLimits::*const limit : kTurnLimits)
+        for (double RotationLimits::*const limit : kRotationLimits)
         {
-            info.limits.turn.*limit = reader.read<double>();
+            info.limits.rotation.*limit = reader.read<double>();
         }
         info.gripper_force_max_n = reader.read<double>();
         datagram.tag = reader.read<Tag>();
         known = kMeasuresRotation;
     }
     const auto flags = reader.read<std::uint32_t>();
-    info.limits.turn.is_measured = (flags & kMeasuresRotation) != 0;
+    info.limits.rotation.is_measured = (flags & kMeasuresRotation) != 0;
     wrong = !has_name                       ? "name"
             : (flags & ~known) != 0         ? "flags"
             : envelope.address.session != 0 ? "session"
@@ -270,20 +270,20 @@ std::size_t tag_at(std::span<const std::byte> bytes) noexcept
 
 } // namespace
 
-Datagram sealed(Datagram datagram, const Seal& seal) noexcept
+Datagram authenticated(Datagram datagram, const Authenticator& authenticator) noexcept
 {
     const std::size_t end = datagram.size() - 4;
     TACTUS_ASSERT(end + 4 == kBytes[1][0] || end + 4 == kBytes[1][1] || end + 4 == kBytes[1][2]);
     const std::span<std::byte> covered = std::span(datagram.bytes_).first(end);
     const std::span<std::byte> place = covered.subspan(tag_at(covered), std::tuple_size_v<Tag>);
     std::ranges::fill(place, std::byte{0});
-    std::ranges::copy(seal.tag_of(covered), place.begin());
+    std::ranges::copy(authenticator.tag_of(covered), place.begin());
     const std::uint32_t checksum = crc32c(covered);
     std::memcpy(datagram.bytes_.data() + end, &checksum, sizeof(checksum));
     return datagram;
 }
 
-bool is_sealed(std::span<const std::byte> bytes, const Seal& seal) noexcept
+bool is_authentic(std::span<const std::byte> bytes, const Authenticator& authenticator) noexcept
 {
     if (std::ranges::find(kBytes[1], bytes.size()) == kBytes[1].end())
     {
@@ -294,7 +294,7 @@ bool is_sealed(std::span<const std::byte> bytes, const Seal& seal) noexcept
     const std::size_t at = tag_at(bytes);
     std::fill_n(copy.begin() + static_cast<std::ptrdiff_t>(at), std::tuple_size_v<Tag>,
                 std::byte{0});
-    const Tag right = seal.tag_of(std::span(copy).first(bytes.size() - 4));
+    const Tag right = authenticator.tag_of(std::span(copy).first(bytes.size() - 4));
     std::byte differs{0}; // The comparison takes constant time.
     for (std::size_t i = 0; i < right.size(); ++i)
     {
@@ -324,13 +324,13 @@ Datagram encode(const DescribeDatagram& datagram) noexcept
         writer.put(std::uint32_t{0});
         return writer.close();
     }
-    for (double TurnLimits::*const limit : kTurnLimits)
+    for (double RotationLimits::*const limit : kRotationLimits)
     {
-        writer.put(info.limits.turn.*limit);
+        writer.put(info.limits.rotation.*limit);
     }
     writer.put(info.gripper_force_max_n);
     writer.put(datagram.tag);
-    writer.put(flag_when(info.limits.turn.is_measured, kMeasuresRotation));
+    writer.put(flag_when(info.limits.rotation.is_measured, kMeasuresRotation));
     return writer.close();
 }
 
@@ -389,7 +389,7 @@ std::string_view text_of(DatagramFault fault) noexcept
         "of another session",
         "not newer than the last one",
         "another device than the first one",
-        "not sealed by the key"};
+        "not authenticated by the key"};
     return kTexts.at(static_cast<std::size_t>(fault));
 }
 

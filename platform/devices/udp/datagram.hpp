@@ -26,7 +26,7 @@ inline constexpr std::uint16_t kVersionOfPoints = 1;
 /// Bytes of describe, sample and force, in version 1 and 2.
 inline constexpr std::array<std::array<std::size_t, 3>, 2> kBytes{{{200, 96, 72}, {288, 180, 120}}};
 inline constexpr std::size_t kDatagramBytesMax = 288;
-/// Authentication tag of a datagram in version 2: see Seal.
+/// Authentication tag of a datagram in version 2: see Authenticator.
 using Tag = std::array<std::byte, 16>;
 
 enum class Kind : std::uint16_t
@@ -81,7 +81,7 @@ struct ForceDatagram
     Tag tag{};
 };
 
-class Seal;
+class Authenticator;
 
 /// A coded datagram of the size of its kind and version.
 class Datagram
@@ -94,17 +94,17 @@ public:
 
 private:
     friend class DatagramWriter;
-    friend Datagram sealed(Datagram datagram, const Seal& seal) noexcept;
+    friend Datagram authenticated(Datagram datagram, const Authenticator& authenticator) noexcept;
 
     std::array<std::byte, kDatagramBytesMax> bytes_{};
     std::size_t size_{0};
 };
 
 /// Makes authentication tags by a key shared by both sides (docs/udp-device.md).
-class Seal
+class Authenticator
 {
 public:
-    virtual ~Seal() = default;
+    virtual ~Authenticator() = default;
 
     /// Tag of a datagram up to its checksum, with a tag of zeros. Any thread; neither allocates nor
     /// waits.
@@ -112,9 +112,11 @@ public:
 };
 
 /// Adds the tag and updates the checksum. Version 2 only (asserted).
-[[nodiscard]] Datagram sealed(Datagram datagram, const Seal& seal) noexcept;
+[[nodiscard]] Datagram authenticated(Datagram datagram,
+                                     const Authenticator& authenticator) noexcept;
 /// True if a decodable datagram has the right tag; false for one of version 1.
-[[nodiscard]] bool is_sealed(std::span<const std::byte> bytes, const Seal& seal) noexcept;
+[[nodiscard]] bool is_authentic(std::span<const std::byte> bytes,
+                                const Authenticator& authenticator) noexcept;
 
 /// Encodes a datagram. A name longer than 31 bytes is cut. Fields that its version lacks are left
 /// out.

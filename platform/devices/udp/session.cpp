@@ -14,8 +14,8 @@ std::variant<Described, Sampled, DatagramFault>
 Session::receive(std::span<const std::byte> bytes, const Endpoint& from, MonotonicTime now)
 {
     const FromDevice datagram = decode_from_device(bytes);
-    if (seal_ != nullptr && !std::holds_alternative<DatagramFault>(datagram) &&
-        !is_sealed(bytes, *seal_))
+    if (authenticator_ != nullptr && !std::holds_alternative<DatagramFault>(datagram) &&
+        !is_authentic(bytes, *authenticator_))
     {
         return DatagramFault::tag;
     }

@@ -48,8 +48,8 @@ struct Sampled
 /// until it is silent for too long. It gets an unpredictable session number, which its samples must
 /// carry: those recorded in another session, or meant for another controller, are refused. A device
 /// that returns within its session continues it, and one that has sent samples keeps its place for
-/// a while, so that a short interruption of its driver loses nothing. With a seal all datagrams
-/// need the key.
+/// a while, so that a short interruption of its driver loses nothing. With an authenticator all
+/// datagrams need the key.
 ///
 /// Until settle() no device has a place to keep: one that falls silent is forgotten with its
 /// description, and the next one may be different.
@@ -72,11 +72,11 @@ public:
     };
 
     /// `secret`: number of the first session; later ones count up from there. `place`: time after
-    /// its last sample for which a device keeps its place. `seal` is borrowed; null: all datagrams
-    /// are accepted.
+    /// its last sample for which a device keeps its place. `authenticator` is
+    /// borrowed; null: all datagrams are accepted.
     Session(std::uint64_t secret, Duration silence, Duration place = {},
-            const Seal* seal = nullptr) noexcept
-        : next_(secret), silence_(silence), place_(place), seal_(seal)
+            const Authenticator* authenticator = nullptr) noexcept
+        : next_(secret), silence_(silence), place_(place), authenticator_(authenticator)
     {
     }
 
@@ -120,7 +120,7 @@ private:
     std::uint64_t next_;
     Duration silence_;
     Duration place_;
-    const Seal* seal_;
+    const Authenticator* authenticator_;
     std::optional<DeviceInfo> info_;
     bool is_settled_{false}; ///< True if settled on a device with these limits.
     std::optional<Rival> rival_;

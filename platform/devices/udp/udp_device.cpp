@@ -96,22 +96,23 @@ Refusal nobody_came(const udp::Socket& socket, const udp::Session& session, Dura
 }
 
 bool send_to(const udp::Socket& socket, const udp::ForceDatagram& datagram, const udp::Endpoint& to,
-             const udp::Seal* seal) noexcept
+             const udp::Authenticator* authenticator) noexcept
 {
     const udp::Datagram plain = encode(datagram);
-    return socket.send(seal != nullptr ? sealed(plain, *seal) : plain, to);
+    return socket.send(authenticator != nullptr ? authenticated(plain, *authenticator) : plain, to);
 }
 
 /// Sends the attached device its session number, which its samples need.
 void answer(const udp::Socket& socket, const udp::Session& session, std::uint64_t sequence,
-            const udp::Seal* seal) noexcept
+            const udp::Authenticator* authenticator) noexcept
 {
     const udp::Peer& peer = session.peer();
     udp::ForceDatagram datagram;
     datagram.address = {peer.instance, peer.session, sequence};
     datagram.version = peer.version;
     datagram.answers = session.answers();
-    static_cast<void>(send_to(socket, datagram, peer.endpoint, seal)); // A lost one is repeated.
+    static_cast<void>(
+        send_to(socket, datagram, peer.endpoint, authenticator)); // A lost one is repeated.
 }
 
 /// Returns once the session has settled on a device; `sequence` is that of the last datagram sent
@@ -151,7 +152,7 @@ std::optional<Refusal> await_device(const udp::Socket& socket, udp::Session& ses
         if (is_attached && is_due)
         {
             answered = now;
-            answer(socket, session, ++sequence, options.seal);
+            answer(socket, session, ++sequence, options.authenticator);
         }
         const bool is_to_ask = now - asked >= UdpDeviceOptions::kAskEvery || now == start;
         asked = is_to_ask ? now : asked;
@@ -194,7 +195,8 @@ Result<std::unique_ptr<UdpDevice>, Refusal> UdpDevice::create(udp::Socket socket
     {
         return secret.error();
     }
-    udp::Session session(secret.value(), options.times.silence, options.place, options.seal);
+    udp::Session session(secret.value(), options.times.silence, options.place,
+                         options.authenticator);
     std::uint64_t sequence = 0;
     if (auto refusal = await_device(socket, session, options, sequence))
     {
@@ -217,7 +219,7 @@ UdpDevice::UdpDevice(udp::Socket socket, udp::Session session, std::uint64_t seq
     : RemoteDevice(info, options.frame, options.times, *options.clock)
     , socket_(std::move(socket))
     , poll_(options.poll)
-    , seal_(options.seal)
+    , authenticator_(options.authenticator)
     , sequence_(sequence)
     , session_(std::move(session))
 {
@@ -342,7 +344,7 @@ void UdpDevice::send(const udp::Peer& peer, std::uint64_t sequence, const Device
 
 bool UdpDevice::send(const udp::ForceDatagram& datagram, const udp::Endpoint& to) const noexcept
 {
-    return send_to(socket_, datagram, to, seal_);
+    return send_to(socket_, datagram, to, authenticator_);
 }
 
 /// `answers` is 0: only the I/O thread knows the last accepted datagram.

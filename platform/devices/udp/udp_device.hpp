@@ -29,8 +29,8 @@ struct UdpDeviceOptions
     static constexpr Duration kDelayMax = milliseconds(100);
     static constexpr Duration kAskEvery = milliseconds(50);
 
-    /// Numeric IPv4 address. Without a seal any sender that reaches it can move the tool: keep it
-    /// local to this machine.
+    /// Numeric IPv4 address. Without an authenticator any sender that reaches it can move the tool:
+    /// keep it local to this machine.
     std::string address{"127.0.0.1"};
     int port{kPortDefault}; ///< Port, as in udp::Socket::open().
     /// Time to wait for a device's description, up to kWaitMax.
@@ -50,7 +50,7 @@ struct UdpDeviceOptions
     /// while no other device describes itself. 0: the first description is accepted.
     Duration proof{milliseconds(300)};
     /// Key shared with the driver; borrowed, outlives the device; null: every sender is accepted.
-    const udp::Seal* seal{nullptr};
+    const udp::Authenticator* authenticator{nullptr};
     DeviceFrame frame;
     RtThreadOptions thread{io_thread_options()}; ///< Options of the I/O thread.
     const Clock* clock{nullptr}; ///< Clock, borrowed; it outlives the device. Not null.
@@ -123,7 +123,7 @@ private:
 
     udp::Socket socket_;
     const Duration poll_;
-    const udp::Seal* const seal_;
+    const udp::Authenticator* const authenticator_;
     /// Sequence of the last datagram sent; see send_due().
     std::atomic<std::uint64_t> sequence_{0};
     Mailbox<udp::Peer> peer_;     ///< Peer for brake(); written by the I/O thread.

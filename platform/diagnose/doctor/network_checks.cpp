@@ -183,7 +183,7 @@ Finding check_dds_buffers(const MachineView& view)
                     Verdict::good,
                     "",
                     "A burst of chunks that does not fit the socket's buffer is lost and sent "
-                    "again, and the answers stay brackets meanwhile. DDS asks for 1 MiB to receive "
+                    "again, and the answers stay bounded meanwhile. DDS asks for 1 MiB to receive "
                     "and 64 KiB to send.",
                     {}};
     for (const auto& [name, least] :

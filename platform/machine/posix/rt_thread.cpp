@@ -156,7 +156,7 @@ struct RtThread::Running
     bool undecided{false};
     bool body_may_run{false};
     Gate set_up;
-    Gate decided;
+    Gate separated;
 };
 
 /// A thread that is still waiting was refused, and so is the memory lock made for it.
@@ -182,7 +182,7 @@ void* RtThread::Running::enter(void* context) noexcept
     self.pin_error = self.options.cpu ? linux_extras::pin_calling_thread(*self.options.cpu) : 0;
     self.report.pinned = self.options.cpu && self.pin_error == 0;
     self.set_up.open();
-    self.decided.wait();
+    self.separated.wait();
     if (self.body_may_run)
     {
         self.body();
@@ -237,7 +237,7 @@ void RtThread::Running::decide(bool run) noexcept
 {
     body_may_run = run;
     undecided = false;
-    decided.open();
+    separated.open();
 }
 
 void RtThread::Running::join() noexcept

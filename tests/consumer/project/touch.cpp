@@ -20,11 +20,11 @@
 #include <tactus/platform/recording/recording.hpp>
 #include <tactus/platform/recording/recording_writer.hpp>
 #include <tactus/platform/recording/replay.hpp>
+#include <tactus/rt_core/force/external_force.hpp>
 #include <tactus/rt_core/force/force_pipeline.hpp>
-#include <tactus/rt_core/force/own_force.hpp>
 #include <tactus/rt_core/frame/frame.hpp>
 #include <tactus/rt_core/geometry/convex.hpp>
-#include <tactus/transport/courier.hpp>
+#include <tactus/transport/chunk_loader.hpp>
 #include <tactus/transport/dds/dds_client.hpp>
 #include <tactus/transport/store/store_link.hpp>
 #include <thread>
@@ -207,12 +207,12 @@ int main(int argc, char** argv)
         return fail(refusal_text(started.error()));
     }
     Model& parts = frame->model({0});
-    Courier courier(arena, frame->pools().slots, frame->pools().cache.door, {});
-    courier.add(parts.header, parts.linker, *model.link, model.name);
+    ChunkLoader chunk_loader(arena, frame->pools().slots, frame->pools().cache.queues, {});
+    chunk_loader.add(parts.header, parts.linker, *model.link, model.name);
     FrameTap tap;
     RecordingWriter writer(to_recorded(setup));
     PieceCopies copies(writer);
-    courier.copy_pieces_to(&copies);
+    chunk_loader.copy_pieces_to(&copies);
     std::vector<std::byte> coded;
 
     // The highest vertex of the base mesh lies on the surface.
@@ -272,24 +272,24 @@ int main(int argc, char** argv)
 
         // Object 1,000 exists from frame 500 to frame 1,500, twice as large as the others. Another
         // one of this number would be of generation 1.
-        SceneChange guest;
-        guest.number = kObjects;
-        guest.generation = 0;
+        SceneChange streamed_model;
+        streamed_model.number = kObjects;
+        streamed_model.generation = 0;
         if (i == 500)
         {
-            guest.kind = SceneChangeKind::object_comes;
-            guest.object.model = ModelId{0};
-            guest.pose.translation_m = Vec3(0.0, 0.0, 10.0 * size_m);
-            guest.pose.scale = 2.0;
-            changes.push_back(guest);
+            streamed_model.kind = SceneChangeKind::object_comes;
+            streamed_model.object.model = ModelId{0};
+            streamed_model.pose.translation_m = Vec3(0.0, 0.0, 10.0 * size_m);
+            streamed_model.pose.scale = 2.0;
+            changes.push_back(streamed_model);
         }
         else if (i == 1'500)
         {
-            guest.kind = SceneChangeKind::object_goes;
-            changes.push_back(guest);
+            streamed_model.kind = SceneChangeKind::object_goes;
+            changes.push_back(streamed_model);
         }
 
-        courier.step(std::int64_t{i} * setup.period_ns);
+        chunk_loader.step(std::int64_t{i} * setup.period_ns);
         const FrameInput input{.tools = states, .changes = changes, .budgets = {}, .now_ns = 0};
         const FrameOutput output = frame->run(input);
         tap.record(input, output); // Called on the haptic thread.
@@ -303,8 +303,8 @@ int main(int argc, char** argv)
             const ToolState& state = states[tool];
             const ToolOutput& of_frame = output.tools[tool];
             // A spring of 50 N/m guides the pen towards a point, with at most 1 N.
-            const OwnForce guide = spring_to(middle_m, state.position_m, 50.0, 1.0);
-            const OwnForce own = tool == 0 ? guide : OwnForce{};
+            const ExternalForce guide = spring_to(middle_m, state.position_m, 50.0, 1.0);
+            const ExternalForce own = tool == 0 ? guide : ExternalForce{};
             const ToolForce& force =
                 pipelines[tool].step(state, of_frame, {}, own, {.elapsed_s = period_s});
             const Vec3 sent_n = force.push.force_n;

@@ -3,7 +3,7 @@
 #include "rt_core/force/force_pipeline.hpp"
 #include "rt_core/frame/frame.hpp"
 #include "transport/base/print_assertions.hpp"
-#include "transport/courier.hpp"
+#include "transport/chunk_loader.hpp"
 #include "transport/store/store_link.hpp"
 
 #include <algorithm>
@@ -55,8 +55,8 @@ int main(int argc, char** argv)
 
     // The transport thread does this in hrtc. Here both run in turn on one thread.
     Model& parts = frame->model({0});
-    Courier courier(arena, frame->pools().slots, frame->pools().cache.door, {});
-    courier.add(parts.header, parts.linker, *model.link, model.name);
+    ChunkLoader chunk_loader(arena, frame->pools().slots, frame->pools().cache.queues, {});
+    chunk_loader.add(parts.header, parts.linker, *model.link, model.name);
 
     // A model has the pose of its source mesh unless another one is given. Its base vertices are on
     // the surface. The tool descends to the highest one and 0.5 mm into it, in 0.5 s.
@@ -75,7 +75,7 @@ int main(int argc, char** argv)
     {
         const double height_m = 3.0 * radius_m - (3.0 * radius_m + 0.0005) * i / 500.0;
         states[0].position_m = top + Vec3(0.0, 0.0, height_m);
-        courier.step(i * setup.period_ns);
+        chunk_loader.step(i * setup.period_ns);
         output = frame->run({.tools = states, .changes = {}, .budgets = {}, .now_ns = 0});
         to_device_n =
             pipeline.step(states[0], output.tools[0], {}, {}, {.elapsed_s = period_s}).push.force_n;

@@ -150,9 +150,9 @@ extract all.stl --error 0
 extract ball.ply --region sphere:0.05,0,0,0.02
 ball=$has
 inside=$(sed -n 's/^region *\([0-9]*\) faces of the source$/\1/p' said.txt)
-((inside > 50 && inside < ball && ball < faces)) || fail "a ball: $inside inside, $ball faces"
+((inside > 50 && inside < ball && ball < faces)) || fail "a sphere: $inside inside, $ball faces"
 extract filled.ply --region sphere:0.05,0,0,0.02 --faces $((ball + 500))
-((has > ball + 498 && has <= ball + 500)) || fail "a ball and $((ball + 500)) faces: $has"
+((has > ball + 498 && has <= ball + 500)) || fail "a sphere and $((ball + 500)) faces: $has"
 extract few.ply --region sphere:0.05,0,0,0.02 --faces 1
 cmp ball.ply few.ply || fail 'a ball and too few faces'
 extract close.ply --region box:0,-1,-1,1,1,1 --error 5e-4

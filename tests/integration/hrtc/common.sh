@@ -229,23 +229,23 @@ check_sizes() {
 # itself, only the presence of the keys.
 check_clean() {
     check "$1" schema == 3 realtime.allocations '>=' 0 realtime.page_faults '>=' 0 \
-        deadline.own_fault '>=' 0
+        deadline.overrun '>=' 0
     if [[ -z "$sanitizer" ]]; then
         check "$1" realtime.allocations_counted == 1 realtime.allocations == 0
     fi
     if [[ -z "$sanitizer" ]] && is_realtime "$1"; then
-        check_no_own_fault "$1"
+        check_no_overrun "$1"
     fi
 }
 
-# check_no_own_fault FILE: expects no overrun. If the kernel may move locked memory, a moved page is
+# check_no_overrun FILE: expects no overrun. If the kernel may move locked memory, a moved page is
 # a fault (docs/deadline-test.md): a few are permitted, and those that it has moved meanwhile.
-check_no_own_fault() {
+check_no_overrun() {
     if [[ $(cat /proc/sys/vm/compact_unevictable_allowed 2>/dev/null) == 1 ]]; then
-        check "$1" deadline.own_fault '<=' '1*deadline.cycles.page_fault' \
+        check "$1" deadline.overrun '<=' '1*deadline.cycles.page_fault' \
             deadline.cycles.page_fault '<=' $((3 + $(pages_moved) - pages_moved_before))
     else
-        check "$1" deadline.own_fault == 0
+        check "$1" deadline.overrun == 0
     fi
 }
 pages_moved() { awk '$1 == "pgmigrate_success" { print $2 }' /proc/vmstat; }
@@ -282,7 +282,7 @@ is_realtime() { "$check_report" "$1" machine.fifo == 1 machine.memory_locked == 
 # server, which makes answers stale, depends on the machine.
 check_answers() {
     check_contact "$1" force.contact_share 0.6
-    check "$1" answers.bracket '<' '0.01*frames' \
-        answers.exact+answers.decided+answers.within_tolerance+answers.bracket+answers.stale \
+    check "$1" answers.bounded '<' '0.01*frames' \
+        answers.exact+answers.separated+answers.within_tolerance+answers.bounded+answers.stale \
             == '1*frames'
 }

@@ -7,10 +7,10 @@ readonly page
 source "$(dirname "$0")/common.sh"
 source "$(dirname "$0")/run_page.sh"
 run_page "$page" 5
-grep -qE '^[0-9.]+ % of 2000 frames exact, within tolerance or decided$' page.log \
+grep -qE '^[0-9.]+ % of 2000 frames exact, within tolerance or separated$' page.log \
     || fail 'the report is not read'
 check many.json frames == 2000 scene.objects == 3 \
-    answers.exact+answers.decided+answers.within_tolerance '>' 1000
+    answers.exact+answers.separated+answers.within_tolerance '>' 1000
 check moving.json frames == 3000 models.0.pose.followed == 1 models.0.pose.moves '>' 100
 check again.json frames '>' 1000
 finish

@@ -37,8 +37,8 @@ grep -qx "showing 3 objects as scene 'workshop'" publish.log || fault 'no name o
 run_hrtc --scene workshop --duration 4 --record scene.rec
 check_answers report.json
 check_clean report.json
-check report.json models == 2 scene.objects_max == 3 scene.came '>=' 2 scene.went '>=' 2 \
-    scene.feels '>=' 3 scene.passed_over == 0 models.0.pose.followed == 1 \
+check report.json models == 2 scene.objects_max == 3 scene.added '>=' 2 scene.removed '>=' 2 \
+    scene.material_changes '>=' 3 scene.ignored == 0 models.0.pose.followed == 1 \
     scene.changes_refused.not_here == 0 scene.changes_refused.already_here == 0 \
     scene.changes_refused.old_generation == 0 scene.changes_refused.bad_pose == 0 \
     scene.changes_refused.bad_material == 0
@@ -53,7 +53,7 @@ check report.json scene.objects_max == 3 tools.0.torque_max_nm '>' 0 tools.0.twi
 # Objects stay in place.
 contact=0 run_hrtc --scene workshop --duration 1 --ignore-poses
 check report.json scene.objects_room == 512 scene.pairs_room == 32 \
-    scene.objects_max '<=' 3 scene.came == 0 scene.went == 0 \
+    scene.objects_max '<=' 3 scene.added == 0 scene.removed == 0 \
     models.0.pose.followed == 0
 
 # The server dies; one with the same scene takes over if permitted, with one object more than the
@@ -69,8 +69,8 @@ wait_for_contact publish.log
 wait_for_more_frames 500 publish.log
 stop_hrtc
 check report.json scene.objects == 3 scene.objects_max == 3 scene.objects_room == 3 \
-    scene.pairs_room == 3 scene.came == 3 \
-    scene.went == 3 scene.passed_over == 1 \
+    scene.pairs_room == 3 scene.added == 3 \
+    scene.removed == 3 scene.ignored == 1 \
     scene.changes_refused.number_too_big == 0 wire.host_lost == 1 \
     tools.0.contact_share '>' 0 answers.stale '>' 0 servers.replaced == 1
 check_clean report.json

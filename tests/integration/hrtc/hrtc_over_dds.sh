@@ -18,7 +18,7 @@ for stage in load refine refit query force frame wake; do
 done
 for key in answers.longest_inexact_run answers.width_max_diag work.splits work.merges \
     work.nodes_visited work.pages_adopted cache.hits cache.misses cache.loads cache.evictions \
-    deadline.missed deadline.machine_late force.max_step_n; do
+    deadline.missed deadline.latency_misses force.max_step_n; do
     check report.json $key '>=' 0
 done
 for list in pages index_pages faces blocks nodes; do
@@ -27,7 +27,7 @@ for list in pages index_pages faces blocks nodes; do
 done
 check report.json machine '>' 0 models == 1 tools == 1 pairs == 1 period_ns == 1000000
 check report.json models.0.faces '>' 19000 tools.0.radius_m '>' 0 \
-    pairs.0.answers.exact+pairs.0.answers.decided+pairs.0.answers.within_tolerance '>' 0
+    pairs.0.answers.exact+pairs.0.answers.separated+pairs.0.answers.within_tolerance '>' 0
 
 check report.json frames == 3000 pools.total_bytes '<=' 2097152 wire.bytes_received '>' 0 \
     wire.host_lost == 0 work.splits '>' 0 force.max_n '>' 0 force.max_n '<' 20

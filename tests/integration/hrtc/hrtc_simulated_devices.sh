@@ -12,10 +12,10 @@ readonly model=(--virtual-time --model bumpy.spm)
 run_hrtc "${model[@]}" --pool-mib 4 --duration 2 \
     --tool sphere:0.002 --tool sphere:0.002 --tool sphere:0.002 --tool sphere:0.002 \
     --device sim:touch --device sim:omega --device sim:delta --device sim
-check report.json frames == 2000 tools.0.stiffness_cap_n_per_m == 400 \
-    tools.1.stiffness_cap_n_per_m '>' 3059 tools.1.stiffness_cap_n_per_m '<' 3061 \
-    tools.2.stiffness_cap_n_per_m '>' 3059 tools.2.stiffness_cap_n_per_m '<' 3061 \
-    tools.3.stiffness_cap_n_per_m == 1800
+check report.json frames == 2000 tools.0.stiffness_limit_n_per_m == 400 \
+    tools.1.stiffness_limit_n_per_m '>' 3059 tools.1.stiffness_limit_n_per_m '<' 3061 \
+    tools.2.stiffness_limit_n_per_m '>' 3059 tools.2.stiffness_limit_n_per_m '<' 3061 \
+    tools.3.stiffness_limit_n_per_m == 1800
 grep -q '^touches  *bumpy: 0\.[0-9.x ]* m, round (0, 0, 0)$' hrtc.log \
     || fault 'it does not say where the object is'
 grep -q '^tool  *sphere:0.002 on sim, .*: 1 object in reach; a wall of 400 N/m, of 500 asked for' \
@@ -84,9 +84,9 @@ grep -q '^tool .*: 1 object in reach; a wall of 500 N/m$' hrtc.log \
 # Only a touched object softens a tool's wall.
 run_hrtc "${model[@]}" --place 0,0,0 --place 1,0,0 --material 500 --material 500,0,0,0.9 \
     --tools 2 --pool-mib 4 --duration 2
-check report.json tools.0.conditioned.stiffness_capped == 0 \
-    tools.1.conditioned.stiffness_capped '>' 100 tools.1.softest_wall_n_per_m '>' 179 \
-    tools.1.softest_wall_n_per_m '<' 181
+check report.json tools.0.conditioned.stiffness_limited == 0 \
+    tools.1.conditioned.stiffness_limited '>' 100 tools.1.least_stiffness_n_per_m '>' 179 \
+    tools.1.least_stiffness_n_per_m '<' 181
 
 # A run without a result is a failure under --strict.
 code=0

@@ -25,6 +25,6 @@ stop INT "$run"
 # A page fault makes the cycle of a stop an overrun.
 check run.json deadline.stopped '<=' $times \
     deadline.stopped+deadline.cycles.page_fault '>=' $times
-[[ -n "$sanitizer" ]] || ! is_realtime run.json || check_no_own_fault run.json
+[[ -n "$sanitizer" ]] || ! is_realtime run.json || check_no_overrun run.json
 grep -q 'stopped from outside; ' run.log || fault 'the summary does not tell of the stops'
 finish

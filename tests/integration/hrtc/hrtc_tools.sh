@@ -31,7 +31,7 @@ touch() {
     contact=0 run_hrtc "$@" --duration "${seconds:-3}"
     check_clean report.json
     check report.json force.contact_share '>' 0 tools.0.force_max_n '>' 0 \
-        answers.bracket+answers.stale '<' '0.05*frames'
+        answers.bounded+answers.stale '<' '0.05*frames'
     if ((torque)); then
         check report.json tools.0.torque_max_nm '>' 0 tools.0.twist_max_rad '>' 0
         grep -q '; torque at most' hrtc.log || fault 'no word of the torque'
@@ -50,11 +50,11 @@ done
 
 # Only a sphere has force shading; the report names the tool.
 run_hrtc --virtual-time --model ball.spm --tool sphere:0.02 --tool box:0.04,0.03,0.02,0.001 \
-    --smooth 0.005 --duration 3
+    --force-shading 0.005 --duration 3
 check_clean report.json
-check report.json tools.0.smooth_m == 0.005 tools.0.force_max_n '>' 0 tools.1.smooth_m == 0
+check report.json tools.0.shading_m == 0.005 tools.0.force_max_n '>' 0 tools.1.shading_m == 0
 touch_file 0 sphere:0.02
-check report.json tools.0.smooth_m == 0
+check report.json tools.0.shading_m == 0
 
 # A device without torque gets only the force.
 touch_file 0 capsule:0.005,0.05 --device sim:omega
@@ -66,23 +66,23 @@ for file in flat.off line.off; do
     touch_file 1 "hull:$file,0.001"
 done
 
-expect 2 "--guide: 'gripper:0': the device sim makes no force at a gripper" \
-    "$hrtc" --allow-no-rt ball.spm --guide gripper:0
+expect 2 "--fixture: 'gripper:0': the device sim makes no force at a gripper" \
+    "$hrtc" --allow-no-rt ball.spm --fixture gripper:0
 
 # Hands move 6-DoF tools; these have a mass that gravity compensation carries, and a spring pulls
 # them to the middle of the sphere with its greatest force.
 for motion in turn edge; do
     touch_file 1 box:0.04,0.03,0.02,0.001 --motion "$motion" --tool-mass 0.1,0,0.01,0 \
-        --guide point:0,0,0,100,0.25
+        --fixture point:0,0,0,100,0.25
     check report.json tools.0.mass_kg == 0.1 tools.0.load_max_n '>' 0.98 \
         tools.0.load_max_n '<' 0.981 tools.0.load_max_nm '>' 0.0095 \
-        tools.0.guide_max_n '>' 0.249 tools.0.guide_max_n '<' 0.251
+        tools.0.fixture_max_n '>' 0.249 tools.0.fixture_max_n '<' 0.251
 done
 
 # A peg enters its hole, and a button separates it from the hand that retreats.
 "$build" --shape socket --faces 500 -o socket.spm >build.log 2>&1
 seconds=8 touch 1 --virtual-time --model socket.spm --tool capsule:0.0099,0.03 \
-    --material 500,0.3,0.2 --motion peg --clutch 0 --guide gripper:0.01,100,0.5 --record peg.rec
+    --material 500,0.3,0.2 --motion peg --clutch 0 --fixture gripper:0.01,100,0.5 --record peg.rec
 check report.json safety.begun.clutch '>=' 1
 # The gripper, 20 mm open, is closed with half a newton, less than its spring's force.
 "$hrtc" --replay peg.rec --export peg.csv >replay.log || fault "no export: $(cat replay.log)"
@@ -112,7 +112,7 @@ model bumpy-sphere-200000 large.spm
 run_hrtc --virtual-time --model ball.spm --tool mesh:large.spm,0.001 --duration 3
 check_clean report.json
 check report.json models.1.pages_used_max '>' 0 \
-    answers.exact+answers.decided+answers.within_tolerance+answers.bracket '>' \
+    answers.exact+answers.separated+answers.within_tolerance+answers.bounded '>' \
     '0.9*frames'
 
 # Larger than its object.
@@ -120,7 +120,7 @@ check report.json models.1.pages_used_max '>' 0 \
 run_hrtc --virtual-time --model ball.spm --tool mesh:wide.spm,0.001 --pool-mib 8 --duration 2
 check_clean report.json
 check report.json tools.0.force_max_n '<=' 8 \
-    answers.exact+answers.decided+answers.within_tolerance '>' '0.9*frames'
+    answers.exact+answers.separated+answers.within_tolerance '>' '0.9*frames'
 
 # Equal to its object, in its place from the start: a device at rest in the middle.
 readonly port=$((20000 + $$ % 20000))

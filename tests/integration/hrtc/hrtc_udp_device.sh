@@ -57,7 +57,7 @@ for id in "$stranger" "$plain" "$driving"; do wait_for_more "$id" 500; done
 stop_hrtc
 check report.json frames '>' 300 tools.0.traffic.sessions '>=' 1 tools.0.traffic.samples '>' 100 \
     tools.0.traffic.refused.tag '>' 10 tools.0.traffic.refused.foreign == 0
-grep -q "tool 0: [0-9]* datagrams .* refused, most of them: not sealed by the key" hrtc.log \
+grep -q "tool 0: [0-9]* datagrams .* refused, most of them: not authenticated by the key" hrtc.log \
     || fault 'no line tells of the strangers'
 for id in "$stranger" "$plain" "$driving"; do stop KILL "$id"; done
 

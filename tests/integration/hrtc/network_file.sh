@@ -60,5 +60,5 @@ end_touch
 check report.json models.0.pieces_missing == 0
 check_contact report.json force.contact_share 0.3
 check_span_contact 1 0.1
-check report.json answers.exact+answers.decided+answers.within_tolerance '>' '0.9*frames'
+check report.json answers.exact+answers.separated+answers.within_tolerance '>' '0.9*frames'
 finish

@@ -69,14 +69,14 @@ for name in left right; do
     # Objects of both servers were followed, one at a time; nothing was mixed, and the model was
     # never without a server.
     check "$name.json" frames '>' 1500 models == 1 scene.objects == 1 \
-        scene.objects_max == 1 scene.came == 1 scene.went == 1 scene.passed_over == 0 \
+        scene.objects_max == 1 scene.added == 1 scene.removed == 1 scene.ignored == 0 \
         scene.changes_refused.not_here == 0 scene.changes_refused.already_here == 0 \
         scene.changes_refused.old_generation == 0 scene.changes_refused.bad_pose == 0 \
         models.0.pose.followed == 1 models.0.pose.accepted '>' 50 \
         models.0.pose.moves '>' 100 models.0.pose.refused.rotation == 0 \
         models.0.pose.step_max_m '<' 0.01 models.0.pieces_refused == 0 wire.host_lost == 0 \
         force.max_n '>' 0 force.max_n '<=' "$touch_force_max_n" \
-        answers.exact+answers.decided+answers.within_tolerance+answers.bracket+answers.stale \
+        answers.exact+answers.separated+answers.within_tolerance+answers.bounded+answers.stale \
             == '1*frames'
     check_contact "$name.json" force.contact_share 0.3
     check_clean "$name.json"

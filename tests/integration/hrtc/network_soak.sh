@@ -37,17 +37,17 @@ has_no_more() {
         && (($(open_files "$2") <= first_files[$1]))
 }
 
-# guest CYCLE: another controller for a second; every second one is killed.
-guest() {
-    local guest signal=TERM
+# short_controller CYCLE: another controller for a second; every second one is killed.
+short_controller() {
+    local controller signal=TERM
     (($1 % 2 == 0)) || signal=KILL
     "${on_controller[@]}" "$hrtc" --allow-no-rt --domain "$domain" --model large \
-        --device sim:touch --pool-mib 2 --duration 60 >guest.log 2>&1 &
-    guest=$!
-    started+=("$guest")
+        --device sim:touch --pool-mib 2 --duration 60 >controller.log 2>&1 &
+    controller=$!
+    started+=("$controller")
     wait_for_line publish.log ' subscribed' $((2 * $1))
-    wait_for_frames 300 publish.log "hrtc-$guest"
-    stop "$signal" "$guest"
+    wait_for_frames 300 publish.log "hrtc-$controller"
+    stop "$signal" "$controller"
     wait_for_line publish.log ' left (' $((2 * $1 - 1))
 }
 
@@ -61,7 +61,7 @@ wait_for_line publish.log ' subscribed'
 
 served=0
 for ((cycle = 1; cycle <= cycles; ++cycle)); do
-    guest "$cycle"
+    short_controller "$cycle"
     relay_say cut
     wait_for_line hrtc.log 'is gone' "$cycle"
     wait_for_line publish.log ' left (' $((2 * cycle))

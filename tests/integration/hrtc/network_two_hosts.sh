@@ -16,7 +16,7 @@ check_touch() {
     judge_run "$1"
 }
 subscriptions() { lines ' subscribed' "$1"; }
-touch_ball() { run_hrtc --device sim:touch --pool-mib 2 --duration 2 --record run.rec "$@"; }
+touch_sphere() { run_hrtc --device sim:touch --pool-mib 2 --duration 2 --record run.rec "$@"; }
 
 start_publisher first.spm --name ball --watch
 first=$publisher
@@ -38,13 +38,13 @@ check judged.json violations '>' 0 # The two are distinguishable.
 for which in first second; do
     before=$(subscriptions $which.log)
     hash=$(sed -n "s/^serving 'ball' hash \([0-9a-f]*\):.*/\1/p" $which.log)
-    touch_ball --model "ball@$hash"
+    touch_sphere --model "ball@$hash"
     (($(subscriptions $which.log) > before)) || fault "pinned to the $which, but it was not asked"
     check_touch $which.spm
 done
 
 # Either of the two without a pin, but only one; the warning names it.
-touch_ball --model ball
+touch_sphere --model ball
 other=$(sed -n "s/.*a second server, .*, with another hash, \([0-9a-f]*\); .*/\1/p" hrtc.log)
 which=first
 ! grep -qF "hash $other:" first.log || which=second

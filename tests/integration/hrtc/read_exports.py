@@ -267,7 +267,7 @@ def main():
 
     for frame in frames:
         for tool in frame["tools"]:
-            length = math.hypot(*tool["goal_rotation_world"])
+            length = math.hypot(*tool["device_rotation_world"])
             assert abs(length - 1.0) < 1e-12, "a rotation that is none"
         for pair in frame["pairs"]:
             assert pair["upper_m"] is None or pair["lower_m"] <= pair["upper_m"]

@@ -23,10 +23,10 @@ for event in trace["traceEvents"]:
     row = rows[event["tid"]]
     if event["ph"] == "i":
         assert event["s"] == "t" and (row, event["name"]) in {
-            ("haptic loop", "deadline missed"), ("door", "taken"), ("door", "wishes")}, event
+            ("haptic loop", "deadline missed"), ("queues", "taken"), ("queues", "requests")}, event
         instants.append(event)
     elif event["name"] == "round":
-        assert row == "courier" and event["dur"] >= 0.0, event
+        assert row == "chunk loader" and event["dur"] >= 0.0, event
         rounds.append(event)
     elif event["name"] == "frame":
         assert row == "haptic loop" and event["dur"] > 0.0, event
@@ -34,7 +34,7 @@ for event in trace["traceEvents"]:
     else:
         assert row == "haptic loop" and event["dur"] >= 0.0, event
         frames[-1][1].append(event)
-assert sorted(rows.values()) == ["courier", "door", "haptic loop"], rows
+assert sorted(rows.values()) == ["chunk loader", "haptic loop", "queues"], rows
 
 end = None
 for frame, stages in frames:

@@ -64,7 +64,7 @@ struct Figures
     std::uint64_t frames{0};
     /// Frames with a wall for which only the program is responsible.
     std::uint64_t invisible_wall_frames{0};
-    std::uint64_t machine_late_frames{0}; ///< Frames with a blocked hand because of the machine.
+    std::uint64_t latency_miss_frames{0}; ///< Frames with a hand blocked by the machine's delay.
     std::uint32_t visits{0};
     std::uint32_t touched{0}; ///< Objects with an exact answer in contact.
     std::uint32_t came{0};    ///< Models that became resident.
@@ -106,14 +106,14 @@ public:
     [[nodiscard]] const Figures& figures() const { return figures_; }
 
 private:
-    struct Ball
+    struct Sphere
     {
         Vec3 centre_m;
         double radius_m;
     };
 
     /// Sphere around the model's box, in the world.
-    [[nodiscard]] Ball ball_of(std::uint32_t object) const
+    [[nodiscard]] Sphere sphere_of(std::uint32_t object) const
     {
         const ModelId model = controller_.objects()[object].model;
         const ModelHeader header =
@@ -126,14 +126,14 @@ private:
     }
     [[nodiscard]] Vec3 above(std::uint32_t object) const
     {
-        const Ball ball = ball_of(object);
-        return ball.centre_m + Vec3(0.0, 0.0, ball.radius_m + kRise_m);
+        const Sphere sphere = sphere_of(object);
+        return sphere.centre_m + Vec3(0.0, 0.0, sphere.radius_m + kRise_m);
     }
     /// Place well below the surface of any round object.
     [[nodiscard]] Vec3 inside(std::uint32_t object) const
     {
-        const Ball ball = ball_of(object);
-        return ball.centre_m + Vec3(0.0, 0.0, 0.3 * ball.radius_m);
+        const Sphere sphere = sphere_of(object);
+        return sphere.centre_m + Vec3(0.0, 0.0, 0.3 * sphere.radius_m);
     }
 
     void go_to(const Vec3& goal)
@@ -156,7 +156,7 @@ private:
         last_ = now;
         const std::int64_t now_ns =
             std::chrono::duration_cast<std::chrono::nanoseconds>(now.time_since_epoch()).count();
-        controller_.courier().step(now_ns);
+        controller_.chunk_loader().step(now_ns);
         for (ToolState& state : states_)
         {
             state.position_m = place_;
@@ -173,12 +173,12 @@ private:
                             std::ranges::any_of(output.pairs, [](const PairOutput& pair)
                                                 { return pair.kind == AnswerKind::exact; }));
         std::uint32_t here = 0;
-        bool is_machine_late = false;
+        bool is_latency_miss = false;
         for (std::size_t i = 0; i < stages_.size(); ++i)
         {
             const ModelStage stage = output.models[i].stage;
             here += stage != ModelStage::known ? 1 : 0;
-            is_machine_late = is_machine_late || (is_awaited(stages_[i]) && is_awaited(stage) &&
+            is_latency_miss = is_latency_miss || (is_awaited(stages_[i]) && is_awaited(stage) &&
                                                   ms_since(wanted_[i]) > kInTime_ms);
             if (stage == stages_[i])
             {
@@ -199,7 +199,7 @@ private:
         figures_.here_max = std::max(figures_.here_max, here);
         if (output.scene.walled_tools > 0)
         {
-            ++(is_machine_late ? figures_.machine_late_frames : figures_.invisible_wall_frames);
+            ++(is_latency_miss ? figures_.latency_miss_frames : figures_.invisible_wall_frames);
         }
     }
     static bool is_awaited(ModelStage stage)
@@ -239,8 +239,8 @@ int run(int argc, char** argv)
     options.domain = arguments.domain;
     options.pool_mib = arguments.pool_mib;
     options.wait_s = 60.0;
-    options.follow_speed_m_per_s = 2.0 * arguments.speed_m_per_s;
-    options.speed_limit_m_per_s = options.follow_speed_m_per_s;
+    options.proxy_speed_m_per_s = 2.0 * arguments.speed_m_per_s;
+    options.speed_limit_m_per_s = options.proxy_speed_m_per_s;
     auto client = dds::DdsClient::create(options.domain, "rider", {});
     if (!client)
     {
@@ -283,13 +283,14 @@ int run(int argc, char** argv)
     const Figures& figures = ride.figures();
     fmt::print("{}\n", nlohmann::json{{"models", options.models.size()},
                                       {"objects", objects},
-                                      {"are_guests", controller.value()->setup().for_guests.faces},
+                                      {"streamed_models",
+                                       controller.value()->setup().for_streamed_models.faces},
                                       {"bases_at_start", bases},
                                       {"start_ms", start_ms},
                                       {"pool_bytes", controller.value()->pool_bytes()},
                                       {"frames", figures.frames},
                                       {"invisible_wall_frames", figures.invisible_wall_frames},
-                                      {"machine_late_frames", figures.machine_late_frames},
+                                      {"latency_miss_frames", figures.latency_miss_frames},
                                       {"visits", figures.visits},
                                       {"touched", figures.touched},
                                       {"came", figures.came},

@@ -15,8 +15,8 @@ check report.json frames == 3000 models == 2 tools == 2 pairs == 4 \
     pairs.0.tool+pairs.1.tool+pairs.2.tool+pairs.3.tool == 2
 for i in 0 1 2 3; do
     pair=pairs.$i.answers
-    check report.json $pair.bracket '<' '0.01*frames' $pair.stale == 0 \
-        $pair.exact '>' 0 $pair.exact+$pair.decided+$pair.bracket+$pair.stale '<=' '1*frames'
+    check report.json $pair.bounded '<' '0.01*frames' $pair.stale == 0 \
+        $pair.exact '>' 0 $pair.exact+$pair.separated+$pair.bounded+$pair.stale '<=' '1*frames'
 done
 for i in 0 1; do
     check report.json models.$i.pieces_refused == 0 models.$i.bytes_received '>' 0 \
@@ -33,8 +33,8 @@ for i in {1..40}; do
 done
 run_hrtc --model second "${places[@]}" --tools 2 --duration 3 --pool-mib 4
 check report.json models == 1 tools == 2 scene.objects == 41 scene.objects_max == 41 \
-    scene.pairs_awake_max '<=' 8 scene.crowded_frames == 0 scene.walks '>' 0 \
-    work.skipped.objects '>' '76*frames' pairs.0.object == 0 faults.scene_crowded == 0 \
+    scene.pairs_awake_max '<=' 8 scene.capacity_exceeded_frames == 0 scene.traversals '>' 0 \
+    work.skipped.objects '>' '76*frames' pairs.0.object == 0 faults.scene_over_capacity == 0 \
     pools.total_bytes '<=' 4194304
 check_answers report.json
 check_clean report.json

@@ -62,7 +62,7 @@ touch_large_model() {
     start_publisher large.spm
     run_hrtc --model large --device sim:touch --pool-mib 2 --duration 2 --record run.rec
     check report.json frames == 2000 wire.host_lost == 0 safety.begun.host == 0 \
-        answers.exact+answers.decided+answers.within_tolerance '>' '0.9*frames'
+        answers.exact+answers.separated+answers.within_tolerance '>' '0.9*frames'
     check_wire_run report.json
     check_contact report.json force.contact_share 0.3
     judge_run large.spm
@@ -88,7 +88,7 @@ recorded_frames() { sed -n 's/^recording *\([0-9]*\) frames.*/\1/p' hrtc.log; }
 check_wire_run() {
     check "$1" models.0.pieces_refused == 0 faults.model_inconsistent == 0 cache.loads '>' 0 \
         force.max_n '>' 0 force.max_n '<=' "$touch_force_max_n" \
-        answers.exact+answers.decided+answers.within_tolerance+answers.bracket+answers.stale \
+        answers.exact+answers.separated+answers.within_tolerance+answers.bounded+answers.stale \
             == '1*frames'
     check_clean "$1"
 }

@@ -213,7 +213,7 @@ class Browser:
         """Faults except those of outdated states, from a controller that was silent."""
         entries = self.call("POST", "/se/log", {"type": "browser"})
         return {entry["message"] for entry in entries if entry["level"] == "SEVERE" and
-                not re.search(r"/(front|boxes|loaded|wished)\?.* 4\d\d ", entry["message"])}
+                not re.search(r"/(front|boxes|loaded|requested)\?.* 4\d\d ", entry["message"])}
 
 
 def expect(is_so, what):
@@ -344,7 +344,7 @@ def boxes(browser):
     choose(browser, "level", "")
     browser.click("regions")
     eventually(lambda: "box" in browser.text("faces"), "boxes of what is loaded")
-    for name, least in (("loaded", 1), ("wished", 0), ("present", 1), ("foretold", 1)):
+    for name, least in (("loaded", 1), ("requested", 0), ("present", 1), ("predicted", 1)):
         eventually(lambda: browser.text(f"regions-{name}") != "" and
                    int(browser.text(f"regions-{name}")) >= least, f"regions that are {name}")
     drawn(browser)

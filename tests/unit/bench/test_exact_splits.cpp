@@ -26,7 +26,7 @@ TEST(ExactSplits, give_the_true_distance_with_a_small_part_of_the_records)
     EXPECT_LT(sut.splits.max, 0.1 * model.store.header().counts().records);
 }
 
-TEST(ExactSplits, of_a_ball_leave_no_coarse_face_in_it_and_are_all_asked_for)
+TEST(ExactSplits, of_a_sphere_leave_no_coarse_face_in_it_and_are_all_asked_for)
 {
     const OpenedModel model(4'000, 100);
     const test::CertificateRefinement refinement(model.decoded);
@@ -36,7 +36,7 @@ TEST(ExactSplits, of_a_ball_leave_no_coarse_face_in_it_and_are_all_asked_for)
     {
         const Vec3 center_m = surface.draw_by_area();
         test::ClosedCut cut(model.decoded);
-        for (const RecordId split : refinement.certify_ball(center_m, radius_m).splits)
+        for (const RecordId split : refinement.certify_sphere(center_m, radius_m).splits)
         {
             // The dependencies are already split.
             ASSERT_EQ(cut.split_with_closure(split).size(), 1U);

@@ -40,7 +40,7 @@ struct Example
         given.devices.assign(frame.devices.begin(), frame.devices.end());
         given.changes.assign(frame.changes.begin(), frame.changes.end());
         given.budgets = frame.budgets;
-        given.wish_room = 9;
+        given.request_room = 9;
         given.events.assign(frame.events.begin(), frame.events.end());
         ToolOutput& tool = frame.tool_outputs[0];
         tool.force_n = Vec3(51.0, 52.0, 53.0);
@@ -53,7 +53,7 @@ struct Example
         tool.carried_m = Vec3(90.0, 91.0, 92.0);
         tool.carried_rad = Vec3(93.0, 94.0, 95.0);
         tool.in_contact = true;
-        tool.held_back = true;
+        tool.data_limited = true;
         tool.sample_fault = FrameFault::tool_stuck;
         PairOutput& pair = frame.pair_outputs[0];
         pair.object = 3;
@@ -87,7 +87,7 @@ struct Example
         output.work.splits = 79;
         output.work.cache_misses = 80;
         output.work.skipped.add(Skip::pairs, 81);
-        output.faults = FrameFault::chunk_late | FrameFault::proxy_frozen;
+        output.faults = FrameFault::chunk_late | FrameFault::proxy_halted;
         output.scene = {82, 83, 84, 85, 86, {0, 0, 87}};
         return output;
     }
@@ -153,12 +153,12 @@ TEST(FrameExport, tells_every_value_under_its_name)
     const Json frame = Json::parse(second);
     EXPECT_FALSE(frame.contains("setup"));
     EXPECT_EQ(told_otherwise(Json::parse(R"({
-        "frame": 1, "time_ns": 3000000123, "time_s": 2.0, "faults": ["chunk_late", "proxy_frozen"],
+        "frame": 1, "time_ns": 3000000123, "time_s": 2.0, "faults": ["chunk_late", "proxy_halted"],
         "splits": 79, "cache_misses": 80, "skipped_pairs": 81, "budget_splits": 11,
-        "budget_regions": 18, "arrivals": 1, "link_updates": 1, "wish_room": 9, "objects": 82,
-        "walks": 86, "refused_already_here": 87,
+        "budget_regions": 18, "arrivals": 1, "link_updates": 1, "request_room": 9, "objects": 82,
+        "traversals": 86, "refused_already_here": 87,
         "tools": [{
-            "goal_world_m": [0.5, -0.25, 2.0], "sample_time_ns": 77, "elapsed_periods": 3,
+            "device_world_m": [0.5, -0.25, 2.0], "sample_time_ns": 77, "elapsed_periods": 3,
             "hand_world_m": [31.0, 32.0, 33.0], "velocity_world_m_per_s": [34.0, 35.0, 36.0],
             "angular_velocity_world_rad_per_s": [37.0, 38.0, 39.0], "buttons": 40,
             "gripper_m": 41.0, "sent_force_world_n": [42.0, 43.0, 44.0],
@@ -167,7 +167,7 @@ TEST(FrameExport, tells_every_value_under_its_name)
             "proxy_world_m": [57.0, 58.0, 59.0], "stiffness_n_per_m": 60.0, "lag_m": 61.0,
             "clear_m": null, "object_way_m": 88.0, "object_turn_rad": 89.0,
             "carried_world_m": [90.0, 91.0, 92.0], "carried_world_rad": [93.0, 94.0, 95.0],
-            "in_contact": true, "held_back": true, "frozen": false,
+            "in_contact": true, "data_limited": true, "halted": false,
             "faults": ["tool_stuck"]}],
         "pairs": [{
             "object": 3, "answer": "exact", "tool_world_m": [97.0, 98.0, 99.0],
@@ -189,7 +189,7 @@ TEST(FrameExport, tells_every_value_under_its_name)
               std::vector<std::string>{});
     // The rotation is a third of a turn about (1, 1, 1), which maps y to x.
     const auto turn =
-        frame.at("tools").at(0).at("goal_rotation_world").get<std::array<double, 4>>();
+        frame.at("tools").at(0).at("device_rotation_world").get<std::array<double, 4>>();
     const double sign = turn[3] < 0.0 ? -1.0 : 1.0;
     for (std::size_t i = 0; i < turn.size(); ++i)
     {
@@ -197,7 +197,7 @@ TEST(FrameExport, tells_every_value_under_its_name)
     }
     EXPECT_EQ(told_otherwise(Json::parse(R"({"setup": {
         "period_ns": 1000000, "prediction": "quadratic", "compiler": "some compiler",
-        "tools": [{"core": "point", "angular_stiffness_nm_per_rad": 0.75, "smooth_m": 0.002}],
+        "tools": [{"core": "point", "angular_stiffness_nm_per_rad": 0.75, "shading_m": 0.002}],
         "objects": [{"translation_world_m": [1.0, 2.0, 3.0], "dynamic_friction": 0.25}],
         "models": [{"faces": 400}]}})"),
                              Json::parse(first)),
@@ -210,7 +210,7 @@ TEST(FrameExport, does_not_know_a_rotation_that_is_none)
     Example example;
     example.given.tools[0].rotation.setConstant(kInfinity);
     const Json frame = Json::parse(exported("a.jsonl", example, 1));
-    EXPECT_EQ(frame.at("tools").at(0).at("goal_rotation_world"), nullptr);
+    EXPECT_EQ(frame.at("tools").at(0).at("device_rotation_world"), nullptr);
 }
 
 TEST(FrameExport, has_the_names_of_columns_once)

@@ -256,7 +256,7 @@ TEST(PlacedCore, bounds_triangles_that_share_corners_and_proves_planes_between)
     EXPECT_GT(separated, 1'000);
 }
 
-TEST(PlacedCore, is_held_by_its_ball_and_by_its_cover)
+TEST(PlacedCore, is_held_by_its_sphere_and_by_its_cover)
 {
     Random random(302);
     std::size_t most = 0;
@@ -271,24 +271,24 @@ TEST(PlacedCore, is_held_by_its_ball_and_by_its_cover)
         const CoreCover cover = sut.cover(enough);
 
         most = std::max(most, cover.size());
-        ASSERT_LE(cover.size(), kMaxCoverBalls);
+        ASSERT_LE(cover.size(), kMaxCoverSpheres);
         for (const Vec3& point : points_of(core, random))
         {
             const Vec3 there = placed(place, point);
             ASSERT_LE((there - sut.center()).norm(), sut.radius() * (1.0 + 1e-12) + 1e-14);
             double nearest = std::numeric_limits<double>::infinity();
-            for (const Ball& ball : cover)
+            for (const Sphere& sphere : cover)
             {
-                nearest = std::min(nearest, (there - ball.center).norm() - ball.radius);
-                ASSERT_TRUE(ball.radius <= enough || cover.size() == kMaxCoverBalls);
+                nearest = std::min(nearest, (there - sphere.center).norm() - sphere.radius);
+                ASSERT_TRUE(sphere.radius <= enough || cover.size() == kMaxCoverSpheres);
             }
             ASSERT_LE(nearest, 1e-14);
         }
     }
-    EXPECT_EQ(most, kMaxCoverBalls);
+    EXPECT_EQ(most, kMaxCoverSpheres);
 }
 
-TEST(PlacedCore, a_point_is_covered_by_one_ball_of_no_size)
+TEST(PlacedCore, a_point_is_covered_by_one_sphere_of_no_size)
 {
     const PlacedCore sut(PointCore{}, {Mat3::Identity(), Vec3(1, 2, 3), 0.5});
     const CoreCover cover = sut.cover(0.0);

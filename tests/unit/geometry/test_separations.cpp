@@ -61,18 +61,18 @@ protected:
             vertices_.push_back(random.in_cube(1.0));
         }
         hull_.emplace(hull_of(vertices_));
-        Similarity stance;
-        stance.rotation = Eigen::AngleAxisd(random.between(0, 3), random.in_cube(1).normalized())
-                              .toRotationMatrix();
-        stance.translation_m = random.in_cube(100.0);
-        core_ = PlacedCore(*hull_, stance);
+        Similarity placement;
+        placement.rotation = Eigen::AngleAxisd(random.between(0, 3), random.in_cube(1).normalized())
+                                 .toRotationMatrix();
+        placement.translation_m = random.in_cube(100.0);
+        core_ = PlacedCore(*hull_, placement);
         placed_.clear();
         for (const Vec3& vertex : vertices_)
         {
-            placed_.push_back(stance.to_there(vertex));
+            placed_.push_back(placement.local_to_world(vertex));
         }
         block_ = CornerBlock{};
-        const Vec3 middle = stance.translation_m + away * random.in_cube(1.0);
+        const Vec3 middle = placement.translation_m + away * random.in_cube(1.0);
         const std::uint32_t seldom = 1 + random.below(3U);
         for (std::uint8_t place = 0; place < CornersAtCore::kCorners; ++place)
         {

@@ -44,9 +44,9 @@ long double distance_to(const std::vector<PlainFace>& faces, const Point& point)
 bool holds(const Zone& zone, const Point& point)
 {
     const Vec3 p = to_vec(point);
-    if (const auto* ball = std::get_if<BallZone>(&zone))
+    if (const auto* sphere = std::get_if<SphereZone>(&zone))
     {
-        return (p - ball->center_m).norm() <= ball->radius_m;
+        return (p - sphere->center_m).norm() <= sphere->radius_m;
     }
     const auto& box = std::get<BoxZone>(zone);
     return (p.array() >= box.low_m.array()).all() && (p.array() <= box.high_m.array()).all();

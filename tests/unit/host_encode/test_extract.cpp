@@ -85,7 +85,7 @@ Zone random_zone(const EncodedModel& model, Random& random)
     const double size = random.between(0.03, 0.2) * model.prepared.diagonal_m;
     if (random.one_in(2))
     {
-        return BallZone{center, size};
+        return SphereZone{center, size};
     }
     return BoxZone{center - Vec3::Constant(size) + random.in_cube(0.5 * size),
                    center + Vec3::Constant(size) + random.in_cube(0.5 * size)};
@@ -330,7 +330,8 @@ TEST(Extract, the_faces_beside_a_zone_fill_up_what_is_left)
 TEST(Extract, a_zone_beside_the_model_leaves_the_base_mesh)
 {
     const EncodedModel& model = *sample_models()[1];
-    const Extraction sut = extract(*model.decoded, {{}, {}, BallZone{Vec3(100.0, 0.0, 0.0), 1.0}});
+    const Extraction sut =
+        extract(*model.decoded, {{}, {}, SphereZone{Vec3(100.0, 0.0, 0.0), 1.0}});
     EXPECT_EQ(sut.zone_faces, 0U);
     EXPECT_EQ(sut.mesh.faces.size(), model.fields.base_faces);
 }

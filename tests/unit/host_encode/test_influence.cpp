@@ -142,7 +142,7 @@ std::vector<Eigen::AlignedBox3d> read_chunk_boxes(const ModelStore& store)
     return boxes;
 }
 
-TEST(Influence, boxes_miss_no_chunk_that_a_ball_needs)
+TEST(Influence, boxes_miss_no_chunk_that_a_sphere_needs)
 {
     constexpr unsigned kSeed = 20'260'101;
     for (const auto& model : sample_models())
@@ -156,10 +156,10 @@ TEST(Influence, boxes_miss_no_chunk_that_a_ball_needs)
         std::uniform_real_distribution<double> unit(-1.0, 1.0);
         std::size_t needed_chunks = 0;
         std::size_t spared_chunks = 0;
-        for (int ball = 0; ball < 60; ++ball)
+        for (int sphere = 0; sphere < 60; ++sphere)
         {
             const double radius_m =
-                diagonal_m * (ball % 3 == 0 ? 0.001 : 0.03) * (1 + unit(random));
+                diagonal_m * (sphere % 3 == 0 ? 0.001 : 0.03) * (1 + unit(random));
             const Vec3 offset{unit(random), unit(random), unit(random)};
             const Vec3 centre_m =
                 to_vec3(model->decoded->position_m({any_vertex(random)})) + offset * radius_m;
@@ -174,7 +174,7 @@ TEST(Influence, boxes_miss_no_chunk_that_a_ball_needs)
             {
                 const bool meets = boxes[chunk].exteriorDistance(centre_m) <= radius_m;
                 EXPECT_TRUE(meets || chunks.count(chunk) == 0)
-                    << model->name << ", ball " << ball << " of seed " << kSeed << ", chunk "
+                    << model->name << ", sphere " << sphere << " of seed " << kSeed << ", chunk "
                     << chunk;
                 spared_chunks += meets ? 0 : 1;
             }

@@ -89,9 +89,9 @@ std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, Eigen::Index axis, d
 /// Separate decision: brute force in extended precision, or clipping.
 bool is_touched(const Zone& zone, const Face& face)
 {
-    if (const auto* ball = std::get_if<BallZone>(&zone))
+    if (const auto* sphere = std::get_if<SphereZone>(&zone))
     {
-        return brute_distance(ball->center_m, face) <= static_cast<long double>(ball->radius_m);
+        return brute_distance(sphere->center_m, face) <= static_cast<long double>(sphere->radius_m);
     }
     const auto& box = std::get<BoxZone>(zone);
     std::vector<Vec3> polygon{to_vec3(face[0]), to_vec3(face[1]), to_vec3(face[2])};
@@ -139,7 +139,7 @@ Zone random_zone(const ModelHeader& header, const std::vector<SourceFace>& faces
     { return header.diagonal_m() * std::pow(10.0, random.between(-4, 0)); };
     if (random.one_in(2))
     {
-        return BallZone{center_m, any_size()};
+        return SphereZone{center_m, any_size()};
     }
     const Vec3 half_m{random.one_in(8) ? 0.0 : any_size(), any_size(), any_size()};
     return BoxZone{center_m - half_m, center_m + half_m};
@@ -148,9 +148,9 @@ Zone random_zone(const ModelHeader& header, const std::vector<SourceFace>& faces
 std::string name_of(const Zone& zone)
 {
     std::ostringstream text;
-    if (const auto* ball = std::get_if<BallZone>(&zone))
+    if (const auto* sphere = std::get_if<SphereZone>(&zone))
     {
-        text << "ball at " << ball->center_m.transpose() << ", radius " << ball->radius_m;
+        text << "sphere at " << sphere->center_m.transpose() << ", radius " << sphere->radius_m;
     }
     else
     {
@@ -260,9 +260,9 @@ TEST_P(Regions, are_asked_for_by_the_controller_as_the_index_names_them)
     for (int i = 0; i < 5; ++i)
     {
         FrameRig rig(model, with_room_for_all());
-        const BallZone ball{random_center(header(), subject_->faces, random_),
-                            header().diagonal_m() * std::pow(10.0, random_.between(-3, -0.5))};
-        load_region(rig, {ModelId{0}, ball.center_m, ball.radius_m, 0});
+        const SphereZone sphere{random_center(header(), subject_->faces, random_),
+                                header().diagonal_m() * std::pow(10.0, random_.between(-3, -0.5))};
+        load_region(rig, {ModelId{0}, sphere.center_m, sphere.radius_m, 0});
         std::set<ChunkId> here;
         for (std::uint32_t chunk = 0; chunk < header().counts().chunks(); ++chunk)
         {
@@ -271,8 +271,8 @@ TEST_P(Regions, are_asked_for_by_the_controller_as_the_index_names_them)
                 here.insert({chunk});
             }
         }
-        const auto named = subject_->index.named_by(ball).chunks;
-        EXPECT_EQ(here, std::set<ChunkId>(named.begin(), named.end())) << name_of(ball);
+        const auto named = subject_->index.named_by(sphere).chunks;
+        EXPECT_EQ(here, std::set<ChunkId>(named.begin(), named.end())) << name_of(sphere);
     }
 }
 

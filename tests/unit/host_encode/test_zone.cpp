@@ -60,10 +60,10 @@ bool oracle_touches(const BoxZone& box, const Triangle& triangle)
     return !polygon.empty();
 }
 
-bool oracle_touches(const BallZone& ball, const Triangle& triangle)
+bool oracle_touches(const SphereZone& sphere, const Triangle& triangle)
 {
-    return test::DistanceOracle::distance(ball.center_m, triangle) <=
-           static_cast<long double>(ball.radius_m);
+    return test::DistanceOracle::distance(sphere.center_m, triangle) <=
+           static_cast<long double>(sphere.radius_m);
 }
 
 /// Random triangle, including needles and tiny ones.
@@ -108,12 +108,12 @@ void expect_oracles_answers(std::uint64_t own, const Make& make)
     EXPECT_LT(touched, kQuestions * 19 / 20);
 }
 
-TEST(Zone, a_ball_touches_what_the_oracle_says)
+TEST(Zone, a_sphere_touches_what_the_oracle_says)
 {
-    expect_oracles_answers<BallZone>(
+    expect_oracles_answers<SphereZone>(
         1,
         [](Random& random) {
-            return BallZone{random.in_cube(1.0), random.between(0.01, 1.5)};
+            return SphereZone{random.in_cube(1.0), random.between(0.01, 1.5)};
         });
 }
 
@@ -132,7 +132,7 @@ TEST(Zone, a_box_touches_what_the_oracle_says)
 TEST(Zone, its_boundary_belongs_to_it)
 {
     const Triangle triangle{Vec3(1, 0, 0), Vec3(2, 0, 0), Vec3(2, 1, 0)};
-    EXPECT_TRUE(touches(BallZone{Vec3(0, 0, 0), 1.0}, triangle));
+    EXPECT_TRUE(touches(SphereZone{Vec3(0, 0, 0), 1.0}, triangle));
     EXPECT_TRUE(touches(BoxZone{Vec3(-1, -1, -1), Vec3(1, 1, 1)}, triangle));
     EXPECT_TRUE(touches(BoxZone{Vec3(1, 0, 0), Vec3(1, 0, 0)}, triangle)); // A point.
     EXPECT_FALSE(touches(BoxZone{Vec3(1, 0.5, 0), Vec3(1, 0.5, 0)}, triangle));
@@ -141,18 +141,18 @@ TEST(Zone, its_boundary_belongs_to_it)
 TEST(Zone, a_triangle_without_area_is_its_edges)
 {
     const Triangle segment{Vec3(-2, 0, 0), Vec3(2, 0, 0), Vec3(1, 0, 0)};
-    EXPECT_TRUE(touches(BallZone{Vec3(0, 0.5, 0), 0.6}, segment));
-    EXPECT_FALSE(touches(BallZone{Vec3(0, 0.5, 0), 0.4}, segment));
+    EXPECT_TRUE(touches(SphereZone{Vec3(0, 0.5, 0), 0.6}, segment));
+    EXPECT_FALSE(touches(SphereZone{Vec3(0, 0.5, 0), 0.4}, segment));
     EXPECT_TRUE(touches(BoxZone{Vec3(-0.1, -0.1, -0.1), Vec3(0.1, 0.1, 0.1)}, segment));
     EXPECT_FALSE(touches(BoxZone{Vec3(-0.1, 0.1, -0.1), Vec3(0.1, 0.2, 0.1)}, segment));
 }
 
 TEST(Zone, moves_and_grows)
 {
-    const auto ball =
-        std::get<BallZone>(moved_and_grown(BallZone{Vec3(1, 2, 3), 0.5}, Vec3(1, 1, 1), 0.25));
-    EXPECT_EQ(ball.center_m, Vec3(0, 1, 2));
-    EXPECT_EQ(ball.radius_m, 0.75);
+    const auto sphere =
+        std::get<SphereZone>(moved_and_grown(SphereZone{Vec3(1, 2, 3), 0.5}, Vec3(1, 1, 1), 0.25));
+    EXPECT_EQ(sphere.center_m, Vec3(0, 1, 2));
+    EXPECT_EQ(sphere.radius_m, 0.75);
     const auto box = std::get<BoxZone>(
         moved_and_grown(BoxZone{Vec3(1, 2, 3), Vec3(2, 3, 4)}, Vec3(1, 1, 1), 0.25));
     EXPECT_EQ(box.low_m, Vec3(-0.25, 0.75, 1.75));

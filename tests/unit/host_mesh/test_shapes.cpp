@@ -97,9 +97,9 @@ TEST(Shapes, are_watertight_and_turned_outward_at_every_size)
         expect_sound(made(make_shape(Shape::socket, faces)), 2, 0);
         expect_sound(made(make_shape(Shape::plate, faces)), 2, 0);
     }
-    const double ball = 4.0 / 3.0 * kPi * std::pow(0.05, 3);
-    expect_volume(made(make_shape(Shape::sphere, 50'000)), ball, 0.001);
-    expect_volume(made(make_shape(Shape::bumpy_sphere, 50'000)), ball, 0.005);
+    const double sphere = 4.0 / 3.0 * kPi * std::pow(0.05, 3);
+    expect_volume(made(make_shape(Shape::sphere, 50'000)), sphere, 0.001);
+    expect_volume(made(make_shape(Shape::bumpy_sphere, 50'000)), sphere, 0.005);
     expect_volume(made(make_shape(Shape::torus, 50'000)), 2.0 * kPi * kPi * 0.05 * 0.02 * 0.02,
                   0.001);
 }

@@ -42,7 +42,7 @@ TriangleMesh cube(double half, const Point& middle, bool is_turned = false)
 
 /// U of 6 by 6 by 4 cm with a wall of 2 cm, open towards +y: a ray along x from between its arms
 /// crosses one of them.
-TriangleMesh bracket()
+TriangleMesh bounded()
 {
     constexpr std::array<std::array<double, 2>, 8> kOutline{
         {{0, 0}, {6, 0}, {6, 6}, {4, 6}, {4, 2}, {2, 2}, {2, 6}, {0, 6}}};
@@ -195,12 +195,12 @@ std::vector<WindingCase> winding_cases()
          {{in_both, 2}, {kFar, 0}}},
         {"a_body_twice", joined({whole, whole}), 0, 0, {{kMiddle, 1}}},
         {"a_body_between_the_arms_of_another",
-         joined({bracket(), turned(cube(0.005, {0.03, 0.04, 0.001}))}),
+         joined({bounded(), turned(cube(0.005, {0.03, 0.04, 0.001}))}),
          1,
          0,
          {{{0.0301, 0.0402, 0.0003}, 1}, {{0.01, 0.03, 0.001}, 1}, {{0.022, 0.05, 0.001}, 0}}},
         {"a_void_in_an_arm",
-         joined({bracket(), cube(0.005, {0.01, 0.04, 0.001})}),
+         joined({bounded(), cube(0.005, {0.01, 0.04, 0.001})}),
          0,
          1,
          {{{0.0101, 0.0402, 0.0003}, 0}, {{0.05, 0.03, 0.001}, 1}}},

@@ -17,9 +17,9 @@ namespace tactus::view::test
 {
 
 /// Resident pages of a model, by chunk.
-inline std::vector<FrontPage> pages_of(const Model& model)
+inline std::vector<RefinementStatePage> pages_of(const Model& model)
 {
-    std::vector<FrontPage> pages;
+    std::vector<RefinementStatePage> pages;
     for (std::uint32_t slot = 0; slot < model.pages.capacity(); ++slot)
     {
         if (model.pages.is_own(slot))
@@ -27,7 +27,7 @@ inline std::vector<FrontPage> pages_of(const Model& model)
             pages.push_back({model.pages.meta(slot).chunk, model.pages.meta(slot).refined});
         }
     }
-    std::ranges::sort(pages, {}, &FrontPage::chunk);
+    std::ranges::sort(pages, {}, &RefinementStatePage::chunk);
     return pages;
 }
 

@@ -55,7 +55,7 @@ class Boxes : public ::testing::Test
 {
 protected:
     const std::unique_ptr<tactus::test::FrameRig> rig_ = test::settled_rig();
-    const std::vector<FrontPage> pages_ = test::pages_of(rig_->model());
+    const std::vector<RefinementStatePage> pages_ = test::pages_of(rig_->model());
     const test::Shelved shelved_;
 };
 

@@ -78,14 +78,14 @@ struct Opened
     DecodedModel decoded;
 };
 
-std::vector<FrontPage> pages_of(const std::set<std::uint32_t>& records)
+std::vector<RefinementStatePage> pages_of(const std::set<std::uint32_t>& records)
 {
     std::map<std::uint32_t, std::uint64_t> bits;
     for (const std::uint32_t record : records)
     {
         bits[record / kRecordsPerChunk] |= std::uint64_t{1} << (record % kRecordsPerChunk);
     }
-    std::vector<FrontPage> pages;
+    std::vector<RefinementStatePage> pages;
     for (const auto& [chunk, refined] : bits)
     {
         pages.push_back({{chunk}, refined});
@@ -192,9 +192,9 @@ TEST(Cut, is_face_for_face_what_the_controller_has)
     const Opened opened(tactus::test::small_model(0));
     const auto rig = test::settled_rig();
     const Model& made = rig->model();
-    const std::vector<FrontPage> pages = test::pages_of(made);
+    const std::vector<RefinementStatePage> pages = test::pages_of(made);
     std::size_t records = 0;
-    for (const FrontPage& page : pages)
+    for (const RefinementStatePage& page : pages)
     {
         records += static_cast<std::size_t>(std::popcount(page.refined));
     }
@@ -248,10 +248,10 @@ TEST(Cut, of_a_part_of_the_pages_is_all_that_can_be_split_with_them)
 {
     const tactus::test::TestModel& model = tactus::test::small_model(0);
     const Opened opened(model);
-    const std::vector<FrontPage> whole =
+    const std::vector<RefinementStatePage> whole =
         pages_of(records_for(opened.decoded, 1e-3 * model.diagonal_m));
     EXPECT_EQ(cut_id(splittable_part(opened.decoded, whole)), cut_id(whole));
-    std::vector<FrontPage> told;
+    std::vector<RefinementStatePage> told;
     for (std::size_t i = 0; i < whole.size(); ++i)
     {
         if (i % 4 != 1)
@@ -264,7 +264,7 @@ TEST(Cut, of_a_part_of_the_pages_is_all_that_can_be_split_with_them)
     EXPECT_FALSE(decode_cut(*shelved.known, told).has_value());
     const auto decoded = decode_cut(*shelved.known, told, false); // Missing pages are ignored.
     ASSERT_TRUE(decoded.has_value()) << decoded.error().text;
-    const std::vector<FrontPage> part = splittable_part(decoded.value(), told);
+    const std::vector<RefinementStatePage> part = splittable_part(decoded.value(), told);
     const auto shown = cut_bytes(decoded.value(), part);
     ASSERT_TRUE(shown.has_value()) << shown.error().text;
     EXPECT_EQ(shown.value(), cut_bytes(opened.decoded, part).value());
@@ -278,7 +278,7 @@ TEST(Cut, of_a_part_of_the_pages_is_all_that_can_be_split_with_them)
         split += static_cast<std::size_t>(std::popcount(part[i].refined));
         for (std::uint64_t bits = told[i].refined & ~part[i].refined; bits != 0; bits &= bits - 1)
         {
-            std::vector<FrontPage> more = part;
+            std::vector<RefinementStatePage> more = part;
             more[i].refined |= bits & -bits;
             EXPECT_FALSE(cut_bytes(opened.decoded, more).has_value()) << i;
             ++left;
@@ -290,10 +290,10 @@ TEST(Cut, of_a_part_of_the_pages_is_all_that_can_be_split_with_them)
 
 TEST(Cut, has_a_name_that_pages_without_split_records_do_not_change)
 {
-    const std::vector<FrontPage> one{{{1}, 5}};
-    EXPECT_EQ(cut_id(one), cut_id(std::vector<FrontPage>{{{0}, 0}, {{1}, 5}, {{7}, 0}}));
-    EXPECT_NE(cut_id(one), cut_id(std::vector<FrontPage>{{{1}, 4}}));
-    EXPECT_NE(cut_id(one), cut_id(std::vector<FrontPage>{{{2}, 5}}));
+    const std::vector<RefinementStatePage> one{{{1}, 5}};
+    EXPECT_EQ(cut_id(one), cut_id(std::vector<RefinementStatePage>{{{0}, 0}, {{1}, 5}, {{7}, 0}}));
+    EXPECT_NE(cut_id(one), cut_id(std::vector<RefinementStatePage>{{{1}, 4}}));
+    EXPECT_NE(cut_id(one), cut_id(std::vector<RefinementStatePage>{{{2}, 5}}));
     EXPECT_NE(cut_id(one), cut_id({}));
 }
 

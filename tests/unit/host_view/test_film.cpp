@@ -28,8 +28,8 @@ struct Had
 {
     Vec3 proxy_m;
     std::vector<double> lower_m; ///< Bounds by pair.
-    std::vector<FrontPage> pages;
-    std::vector<FrontRegion> regions;
+    std::vector<RefinementStatePage> pages;
+    std::vector<RefinementStateRegion> regions;
     std::uint32_t active_faces{0};
 };
 
@@ -104,7 +104,7 @@ TEST(Film, has_of_each_frame_what_the_frame_had_and_its_faces_without_a_model_fi
         }
         EXPECT_EQ(shown.front->front.regions, had[frame].regions);
         ASSERT_EQ(shown.front->front.models.size(), 1U);
-        const FrontModel& model = shown.front->front.models[0];
+        const RefinementStateModel& model = shown.front->front.models[0];
         EXPECT_TRUE(model.pages == had[frame].pages);
         const auto known = shelf.find(model.hash);
         ASSERT_NE(known, nullptr);

@@ -44,8 +44,8 @@ TEST(LiveState, keeps_no_more_bytes_than_it_may)
 {
     LiveState sut;
     dds::SeenFront large = front(1, 0);
-    large.front.models.emplace_back().pages.resize(kMaxFrontPages);
-    const std::size_t least = kMaxFrontPages * sizeof(FrontPage);
+    large.front.models.emplace_back().pages.resize(kMaxStatePages);
+    const std::size_t least = kMaxStatePages * sizeof(RefinementStatePage);
     std::size_t kept = 0;
     std::vector<dds::SeenFront> all;
     for (std::uint8_t id = 1; id <= 4; ++id)
@@ -81,11 +81,11 @@ TEST(LiveState, gathers_objects_turn_by_turn_and_forgets_those_that_went)
         ++seen.serial;
         seen.front.sweep_begin = begin;
         seen.front.sweep_end = begin + 2;
-        seen.front.models = {FrontModel{}};
+        seen.front.models = {RefinementStateModel{}};
         seen.front.objects.clear();
         for (const std::uint32_t number : numbers)
         {
-            FrontObject& object = seen.front.objects.emplace_back();
+            RefinementStateObject& object = seen.front.objects.emplace_back();
             object.object = object.number = number;
         }
         sut.publish({told(1, "one")}, {seen});
@@ -114,7 +114,7 @@ TEST(StateJson, says_what_it_waits_for)
     EXPECT_EQ(waits(), "a controller on DDS domain 7: 'hrtc --model NAME --domain 7', or "
                        "'hrtc FILE --domain 7', which without --domain shows itself to no viewer");
     live.publish({told(1, "one")}, {});
-    EXPECT_NE(waits().find("--no-front"), std::string::npos);
+    EXPECT_NE(waits().find("--no-refinement-state"), std::string::npos);
     EXPECT_NE(waits("01").find("gone"), std::string::npos);
     dds::SeenFront seen = front(1, 1);
     live.publish({told(1, "one")}, {seen});
@@ -130,9 +130,9 @@ TEST(StateJson, shows_the_chosen_controller_and_lists_all)
     const auto shelf = std::move(ModelShelf::open({})).value();
     LiveState live;
     dds::SeenFront shown = front(2, 5);
-    FrontModel& model = shown.front.models.emplace_back();
+    RefinementStateModel& model = shown.front.models.emplace_back();
     model.hash.fill(0xAB);
-    model.wished = {{3}, {7}};
+    model.requested = {{3}, {7}};
     shown.front.regions = {{0, true, {0.5F, 1.0F, 2.0F}, 0.25F}};
     shown.front.regions_left_out = 6;
     shown.front.slots_left_out = 7;
@@ -142,12 +142,12 @@ TEST(StateJson, shows_the_chosen_controller_and_lists_all)
     EXPECT_EQ(state["controllers"].size(), 2U);
     EXPECT_EQ(state["controller"]["name"], "two");
     EXPECT_EQ(state["controller"]["front"]["serial"], 5);
-    EXPECT_EQ(state["controller"]["front"]["models"].back()["wished"], 2);
+    EXPECT_EQ(state["controller"]["front"]["models"].back()["requested"], 2);
     EXPECT_EQ(state["controller"]["front"]["regions_left_out"], 6);
     EXPECT_EQ(state["controller"]["front"]["slots_left_out"], 7);
     EXPECT_EQ(state["controller"]["front"]["regions"],
               nlohmann::json::parse(R"([{"model": "abababababababababababababababab",
-                  "is_foretold": true, "center_m": [0.5, 1.0, 2.0], "radius_m": 0.25}])"));
+                  "is_predicted": true, "center_m": [0.5, 1.0, 2.0], "radius_m": 0.25}])"));
     EXPECT_EQ(state["controller"]["tools"][0]["words"], "on: no contact, so none is due");
     EXPECT_TRUE(state["controller"]["pairs"][0]["upper_m"].is_null());
 }
@@ -158,7 +158,7 @@ TEST(ForceWords, name_every_cause_and_what_brings_the_force_back)
     tool.in_contact = true;
     EXPECT_EQ(force_words({SafetyState::force, ForceOff::none, "", 0.0}, tool, {}), "on");
     const std::string inside = "the tool began inside a closed object, which holds it from within";
-    const FrontTool began{SafetyState::force, ForceOff::none, "", 0.0, true};
+    const RefinementStateTool began{SafetyState::force, ForceOff::none, "", 0.0, true};
     EXPECT_EQ(force_words(began, tool, {}), "on: " + inside);
     EXPECT_EQ(force_words(began, {}, {}), "on: no contact, so none is due; " + inside);
     std::vector<std::string> all;

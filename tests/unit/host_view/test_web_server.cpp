@@ -264,7 +264,7 @@ TEST_F(WebServerTest, sends_what_can_be_split_of_a_front_that_leaves_pages_out)
     EXPECT_EQ(status("/boxes"), 200);
 }
 
-TEST_F(WebServerTest, sends_the_boxes_of_what_is_wished_for)
+TEST_F(WebServerTest, sends_the_boxes_of_what_is_requested)
 {
     const ContentHash hash = shelf_->labels().front().hash;
     dds::SeenFront seen = test::front(1, 9);
@@ -273,16 +273,16 @@ TEST_F(WebServerTest, sends_the_boxes_of_what_is_wished_for)
     {
         ++seen.serial;
         live_.publish({test::told(1, "one")}, {seen});
-        return get(fmt::format("/wished?controller={}&serial={}&model={}", id_text(seen.id),
+        return get(fmt::format("/requested?controller={}&serial={}&model={}", id_text(seen.id),
                                seen.serial, hash_text(hash)));
     };
     const std::string none = boxes();
     EXPECT_EQ(status_of(none), 200);
-    seen.front.models.back().wished = {{0}};
+    seen.front.models.back().requested = {{0}};
     const std::string one = boxes(); // The same cut: by that alone they would be the old ones.
     EXPECT_EQ(status_of(one), 200);
     EXPECT_EQ(one.size(), none.size() + 6 * sizeof(float) + 1); // 28 for 4 in the head.
-    seen.front.models.back().wished = {{0xFFFFU}};
+    seen.front.models.back().requested = {{0xFFFFU}};
     EXPECT_EQ(status_of(boxes()), 409);
 }
 

@@ -38,10 +38,10 @@ inline constexpr double kRounding_n = 1e-9;
 inline constexpr double kBackStep_n = 2.0 * 8.0 * kPeriod_s / kRiseTime_s + kOwnStep_n;
 
 /// Hand that descends on a place of the surface along its normal, presses and stays.
-class PressingHand final : public HandMotion
+class PressingOperator final : public OperatorMotion
 {
 public:
-    PressingHand(const Vec3& place_m, const Vec3& outward, double height_m, double press_m)
+    PressingOperator(const Vec3& place_m, const Vec3& outward, double height_m, double press_m)
         : place_m_(place_m), outward_(outward), height_m_(height_m), press_m_(press_m)
     {
     }
@@ -49,7 +49,7 @@ public:
     {
         return place_m_ + height_m_ * outward_;
     }
-    [[nodiscard]] Vec3 next_world_m(const HandSense& sense) noexcept override
+    [[nodiscard]] Vec3 next_world_m(const OperatorSense& sense) noexcept override
     {
         const double done = std::min(static_cast<double>(sense.frame) / 500.0, 1.0);
         return place_m_ + (height_m_ - done * (height_m_ + press_m_)) * outward_;
@@ -121,9 +121,9 @@ struct LoopRigOptions
     std::vector<LateWake> late_wakes;
     std::optional<Duration> watchdog;
     bool static_model{false};
-    bool has_door{false};                   ///< True if objects have the poses of door().
+    bool has_queues{false};                 ///< True if objects have the poses of queues().
     double object_speed_m_per_s{kInfinity}; ///< Object speed limit.
-    /// Object speed limit of the last force stage; empty: that of the door.
+    /// Object speed limit of the last force stage; empty: that of the queues.
     std::optional<double> change_speed_m_per_s;
     DeviceLimits device{kDeskClass};
     double press_m{kPress_m}; ///< Depth; negative: the hand rests above the surface.
@@ -158,8 +158,8 @@ public:
         const DeviceLimits& device_limits = device().info().limits;
         tool().limits = {
             options_.speed_max_m_per_s, device_limits.force_max_n, options_.stiffness_n_per_m,
-            kDampingShare * device_limits.damping_n_s_per_m, device_limits.turn.torque_max_nm};
-        tool().limits.turning_max_rad_per_s = kTurningMax_rad_per_s;
+            kDampingShare * device_limits.damping_n_s_per_m, device_limits.rotation.torque_max_nm};
+        tool().limits.rotation_max_rad_per_s = kRotationMax_rad_per_s;
         tool().spec = frames_.frame().tool(0).spec();
         tool().conditioner.device = device_limits;
         tool().conditioner.period_s = kPeriod_s;
@@ -173,8 +173,8 @@ public:
         parts.frames = options_.frames;
         parts.hosts_gone = &hosts_gone;
         parts.starved = &starved;
-        door_.emplace(std::vector{placed()}, 1, kPoseAge, options_.object_speed_m_per_s);
-        parts.pose_door = options_.has_door ? &*door_ : nullptr;
+        queues_.emplace(std::vector{placed()}, 1, kPoseAge, options_.object_speed_m_per_s);
+        parts.scene_mailbox = options_.has_queues ? &*queues_ : nullptr;
         parts.telemetry = &telemetry;
         if (options_.front_slots)
         {
@@ -188,7 +188,7 @@ public:
 
     void run() { loop_->run(); }
 
-    [[nodiscard]] PoseDoor& door() { return *door_; }
+    [[nodiscard]] SceneMailbox& queues() { return *queues_; }
     /// Initial pose of the object.
     [[nodiscard]] ObjectPose placed() const
     {
@@ -199,7 +199,7 @@ public:
     [[nodiscard]] const RunStatistics& statistics() const { return statistics_; }
     [[nodiscard]] HapticLoop& loop() { return *loop_; }
     [[nodiscard]] Frame& frame() { return frames_.frame(); }
-    [[nodiscard]] FrontTap& front() { return *front_; }
+    [[nodiscard]] RefinementStateTap& front() { return *front_; }
     [[nodiscard]] TamperedDevice& device() { return static_cast<TamperedDevice&>(*tool().device); }
     [[nodiscard]] std::span<const ToolSetup> tools() const { return tools_; }
     [[nodiscard]] SimulatedClock& virtual_clock() { return clock_; }
@@ -313,7 +313,7 @@ private:
         device.device = options_.device;
         device.watchdog = options_.watchdog;
         device.workspace_centre_world_m = place;
-        auto hand = std::make_unique<PressingHand>(
+        auto hand = std::make_unique<PressingOperator>(
             place, Vec3::UnitX(), kStartHeight * model_.diagonal_m, options_.press_m);
         tool().device = std::make_unique<TamperedDevice>(
             std::move(SimulatedDevice::create(device, std::move(hand))).value(), options_.faults,
@@ -335,8 +335,8 @@ private:
     SimulatedPeriodicTimer timer_;
     RunStatistics statistics_;
     std::array<ToolSetup, 1> tools_;
-    std::optional<PoseDoor> door_;
-    std::optional<FrontTap> front_;
+    std::optional<SceneMailbox> queues_;
+    std::optional<RefinementStateTap> front_;
     std::optional<HapticLoop> loop_;
 };
 

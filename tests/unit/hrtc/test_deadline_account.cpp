@@ -49,7 +49,7 @@ TEST(DeadlineAccount, has_nothing_to_tell_of_clean_cycles)
     {
         sut.add(frame, clean_cycle(), kWork, false);
     }
-    EXPECT_EQ(sut.missed + sut.own_faults + sut.machine_late + sut.stopped, 0U);
+    EXPECT_EQ(sut.missed + sut.overruns + sut.latency_misses + sut.stopped, 0U);
     EXPECT_TRUE(sut.noted().empty());
     EXPECT_EQ(sut.response().count(), 100U);
     EXPECT_EQ(sut.response().max(), microseconds(25));
@@ -73,8 +73,8 @@ TEST(DeadlineAccount, blames_the_loop_for_each_thing_that_it_must_not_do)
             measures.cycle.wake_lateness = milliseconds(5); // Any delay of the machine.
             DeadlineAccount sut(kPeriod);
             sut.add(7, measures, kWork, false);
-            EXPECT_EQ(sut.own_faults, 1U);
-            EXPECT_EQ(sut.machine_late + sut.stopped, 0U);
+            EXPECT_EQ(sut.overruns, 1U);
+            EXPECT_EQ(sut.latency_misses + sut.stopped, 0U);
             EXPECT_EQ(sut.cycles_with(flag), 1U);
             ASSERT_EQ(sut.noted().size(), 1U);
             EXPECT_EQ(sut.noted().front().frame, 7U);
@@ -83,7 +83,7 @@ TEST(DeadlineAccount, blames_the_loop_for_each_thing_that_it_must_not_do)
     }
     DeadlineAccount sut(kPeriod);
     sut.add(0, clean_cycle(), kWork, true);
-    EXPECT_EQ(sut.own_faults, 1U);
+    EXPECT_EQ(sut.overruns, 1U);
     EXPECT_EQ(sut.cycles_with(CycleFlag::over_work), 1U);
 }
 
@@ -94,7 +94,7 @@ TEST(DeadlineAccount, counts_a_system_call_in_the_cycle_that_made_it)
     measures.calls.in_frame = 3; // Calls since the loop began.
     sut.add(0, measures, kWork, false);
     sut.add(1, measures, kWork, false);
-    EXPECT_EQ(sut.own_faults, 1U);
+    EXPECT_EQ(sut.overruns, 1U);
 }
 
 TEST(DeadlineAccount, a_miss_without_an_own_fault_is_the_machines)
@@ -105,8 +105,8 @@ TEST(DeadlineAccount, a_miss_without_an_own_fault_is_the_machines)
     measures.cycle.periods = 3;
     sut.add(1, measures, kWork, false);
     EXPECT_EQ(sut.missed, 2U);
-    EXPECT_EQ(sut.machine_late, 2U);
-    EXPECT_EQ(sut.own_faults + sut.stopped, 0U);
+    EXPECT_EQ(sut.latency_misses, 2U);
+    EXPECT_EQ(sut.overruns + sut.stopped, 0U);
 }
 
 /// The limits are 300 us, and 0.3 of a period below a millisecond.
@@ -142,12 +142,12 @@ TEST(DeadlineAccount, a_process_that_was_stopped_is_no_fault_of_the_loop_or_the_
         measures.was_stopped = true;
         DeadlineAccount sut(kPeriod);
         sut.add(0, measures, kWork, false);
-        EXPECT_EQ(sut.own_faults + sut.machine_late, 0U);
+        EXPECT_EQ(sut.overruns + sut.latency_misses, 0U);
         EXPECT_EQ(sut.stopped, sut.missed);
         EXPECT_EQ(sut.cycles_with(CycleFlag::stopped), 1U);
         measures.allocations = 1; // Other faults still count as its own.
         sut.add(1, measures, kWork, false);
-        EXPECT_EQ(sut.own_faults, 1U);
+        EXPECT_EQ(sut.overruns, 1U);
     }
 }
 
@@ -164,8 +164,8 @@ TEST(DeadlineAccount, a_late_end_takes_the_deadlines_that_it_cost_on_itself_and_
         next.cycle.periods = periods;
         sut.add(1, next, kWork, false);
         EXPECT_EQ(sut.missed, periods <= 3 ? 1U : 2U) << periods; // Two of them were its own.
-        EXPECT_EQ(sut.own_faults, 1U);
-        EXPECT_EQ(sut.machine_late, periods <= 3 ? 0U : 1U);
+        EXPECT_EQ(sut.overruns, 1U);
+        EXPECT_EQ(sut.latency_misses, periods <= 3 ? 0U : 1U);
         next.cycle.periods = 3;
         sut.add(2, next, kWork, false); // Faults of a later cycle do not count.
         EXPECT_EQ(sut.missed, periods <= 3 ? 2U : 3U);
@@ -185,11 +185,11 @@ TEST(DeadlineAccount, blames_the_loop_for_more_processor_time_than_its_share)
     CycleMeasures measures = long_cycle();
     measures.cpu = microseconds(800);
     sut.add(0, measures, kWork, false);
-    EXPECT_EQ(sut.own_faults, 0U);
+    EXPECT_EQ(sut.overruns, 0U);
     sut.add(1, long_cycle(), kWork, false);
-    EXPECT_EQ(sut.own_faults, 1U);
+    EXPECT_EQ(sut.overruns, 1U);
     sut.compare_work();
-    EXPECT_EQ(sut.own_faults, 1U);
+    EXPECT_EQ(sut.overruns, 1U);
     EXPECT_EQ(sut.cycles_with(CycleFlag::over_cpu), 1U);
 }
 
@@ -202,8 +202,8 @@ TEST(DeadlineAccount, counts_the_work_beside_the_frame_where_the_deadline_was_mi
         measures.beside_cpu = microseconds(800);
         DeadlineAccount sut(kPeriod);
         sut.add(0, measures, kWork, false);
-        EXPECT_EQ(sut.own_faults, sut.missed);
-        EXPECT_EQ(sut.machine_late, 0U);
+        EXPECT_EQ(sut.overruns, sut.missed);
+        EXPECT_EQ(sut.latency_misses, 0U);
     }
 }
 
@@ -230,9 +230,9 @@ TEST(DeadlineAccount, blames_the_machine_where_the_run_shows_the_same_work_to_ne
             DeadlineAccount sut(kPeriod);
             sut.add(0, is_before ? other : long_cycle(), is_before ? work : kWork, false);
             sut.add(1, is_before ? long_cycle() : other, is_before ? kWork : work, false);
-            EXPECT_EQ(sut.own_faults, is_shown && is_before ? 0U : 1U);
+            EXPECT_EQ(sut.overruns, is_shown && is_before ? 0U : 1U);
             sut.compare_work();
-            EXPECT_EQ(sut.own_faults, is_shown ? 0U : 1U);
+            EXPECT_EQ(sut.overruns, is_shown ? 0U : 1U);
             EXPECT_EQ(sut.cycles_with(CycleFlag::slowed), is_shown ? 1U : 0U);
             EXPECT_EQ(sut.cycles_with(CycleFlag::over_cpu), is_shown ? 0U : 1U);
         }
@@ -261,11 +261,11 @@ TEST(DeadlineAccount, blames_the_repeated_that_were_over_each_time_and_no_others
     {
         DeadlineAccount sut = account_with_suspects();
         ASSERT_EQ(sut.suspects(), (std::vector<std::uint64_t>{4, 5}));
-        EXPECT_EQ(sut.own_faults, 2U); // The run contains the work of the first.
+        EXPECT_EQ(sut.overruns, 2U); // The run contains the work of the first.
         sut.settle(over);
         const bool is_late_one_over = !over.empty() && over.back() == 5;
-        EXPECT_EQ(sut.own_faults, 1 + over.size());
-        EXPECT_EQ(sut.machine_late, is_late_one_over ? 0U : 1U);
+        EXPECT_EQ(sut.overruns, 1 + over.size());
+        EXPECT_EQ(sut.latency_misses, is_late_one_over ? 0U : 1U);
         EXPECT_EQ(sut.missed, 2U);
         EXPECT_EQ(sut.cycles_with(CycleFlag::over_cpu), 1 + over.size());
         EXPECT_EQ(sut.cycles_with(CycleFlag::slowed), 2 - over.size());
@@ -297,7 +297,7 @@ TEST(DeadlineAccount, holds_suspects_for_guilty_that_it_has_no_room_to_keep)
     }
     EXPECT_EQ(sut.suspects().size(), DeadlineAccount::kSuspectsMax);
     sut.settle({});
-    EXPECT_EQ(sut.own_faults, 3U);
+    EXPECT_EQ(sut.overruns, 3U);
 }
 
 /// Random cycle, mostly near one of the limits.
@@ -391,7 +391,7 @@ TEST(DeadlineAccount, blames_as_the_rules_say_in_any_run)
             sut.add(i, run[i].measures, run[i].work, run[i].over_work);
         }
         sut.compare_work();
-        const auto blamed = [&sut] { return Blame{sut.own_faults, sut.machine_late, sut.stopped}; };
+        const auto blamed = [&sut] { return Blame{sut.overruns, sut.latency_misses, sut.stopped}; };
         ASSERT_EQ(blamed(), blame_of(run, std::nullopt));
         std::vector<std::uint64_t> over = sut.suspects();
         std::erase_if(over, [&random](std::uint64_t) { return random() % 2 == 0; });

@@ -24,8 +24,8 @@ DeadlinePhase phase_with(std::uint64_t own, std::uint64_t machine, std::uint64_t
     phase.name = "alone";
     phase.report["frames"] = kCycles;
     phase.report["deadline"] = {{"missed", own + machine + stopped},
-                                {"own_fault", own},
-                                {"machine_late", machine},
+                                {"overrun", own},
+                                {"latency_misses", machine},
                                 {"stopped", stopped}};
     for (std::uint64_t i = 0; i < kCycles; ++i)
     {
@@ -46,7 +46,7 @@ TEST(DeadlineReport, passes_what_the_machine_or_a_stop_alone_made_late)
 {
     const std::vector phases{phase_with(0, 500, 0), phase_with(0, 9'000, 10)};
     EXPECT_TRUE(is_passed(kSound, phases));
-    EXPECT_EQ(verdict_on(kSound, phases), "verdict     passed: 0 own faults in 20000 cycles\n");
+    EXPECT_EQ(verdict_on(kSound, phases), "verdict     passed: 0 overruns in 20000 cycles\n");
     EXPECT_TRUE(make_deadline_report(kSound, phases)["passed"].get<bool>());
 }
 
@@ -57,7 +57,7 @@ TEST(DeadlineReport, fails_for_one_own_fault_in_any_run)
           std::vector{phase_with(0, 0, 0), phase_with(1, 0, 0)}})
     {
         EXPECT_FALSE(is_passed(kSound, phases));
-        EXPECT_EQ(verdict_on(kSound, phases), "verdict     failed: 1 own fault in 20000 cycles\n");
+        EXPECT_EQ(verdict_on(kSound, phases), "verdict     failed: 1 overrun in 20000 cycles\n");
         EXPECT_FALSE(make_deadline_report(kSound, phases)["passed"].get<bool>());
     }
 }
@@ -78,9 +78,9 @@ TEST(DeadlineReport, has_the_last_run_in_front_and_the_first_one_apart)
     std::vector phases{phase_with(0, 1, 0), phase_with(0, 2, 0)};
     phases.back().loads = {"cpu"};
     const auto both = make_deadline_report(kSound, phases);
-    EXPECT_EQ(both["deadline"]["machine_late"], 2);
+    EXPECT_EQ(both["deadline"]["latency_misses"], 2);
     EXPECT_EQ(both["load"].size(), 1U);
-    EXPECT_EQ(both["alone"]["deadline"]["machine_late"], 1);
+    EXPECT_EQ(both["alone"]["deadline"]["latency_misses"], 1);
     EXPECT_TRUE(both["alone"]["load"].empty());
     EXPECT_FALSE(make_deadline_report(kSound, std::span(phases).first(1)).contains("alone"));
     for (const char* key : {"wake", "cpu", "response"})

@@ -65,10 +65,10 @@ TEST(DeviceChoice, refuses_what_is_no_device)
 TEST(DeviceLimitsText, sets_what_it_names_and_nothing_else)
 {
     DeviceLimits limits = kDeskClass;
-    EXPECT_EQ(set_device_limits("mass_kg=0.2,turn.inertia_kg_m2=3e-4,delay_s=0", limits), "");
+    EXPECT_EQ(set_device_limits("mass_kg=0.2,rotation.inertia_kg_m2=3e-4,delay_s=0", limits), "");
     DeviceLimits wanted = kDeskClass;
     wanted.mass_kg = 0.2;
-    wanted.turn.inertia_kg_m2 = 3e-4;
+    wanted.rotation.inertia_kg_m2 = 3e-4;
     EXPECT_EQ(limits, wanted);
 }
 
@@ -78,14 +78,14 @@ TEST(DeviceLimitsText, has_a_key_for_each_number)
     EXPECT_EQ(set_device_limits("mass_kg=1,damping_n_s_per_m=2,friction_n=3,quantum_m=4,"
                                 "delay_s=0.05,force_max_n=6,slew_max_n_per_s=7,"
                                 "stiffness_max_n_per_m=8,added_damping_max_n_s_per_m=9,"
-                                "turn.torque_max_nm=10,turn.inertia_kg_m2=11,"
-                                "turn.damping_nm_s_per_rad=12,turn.friction_nm=13,"
-                                "turn.quantum_rad=14,turn.slew_max_nm_per_s=15,"
-                                "turn.stiffness_max_nm_per_rad=16,"
-                                "turn.added_damping_max_nm_s_per_rad=17",
+                                "rotation.torque_max_nm=10,rotation.inertia_kg_m2=11,"
+                                "rotation.damping_nm_s_per_rad=12,rotation.friction_nm=13,"
+                                "rotation.quantum_rad=14,rotation.slew_max_nm_per_s=15,"
+                                "rotation.stiffness_max_nm_per_rad=16,"
+                                "rotation.added_damping_max_nm_s_per_rad=17",
                                 limits),
               "");
-    const TurnLimits turn{true, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0, 16.0, 17.0};
+    const RotationLimits turn{true, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0, 16.0, 17.0};
     EXPECT_EQ(limits, (DeviceLimits{1.0, 2.0, 3.0, 4.0, 0.05, 6.0, 7.0, 8.0, 9.0, turn}));
 }
 
@@ -96,7 +96,7 @@ TEST(DeviceLimitsText, changes_nothing_when_it_refuses)
           std::pair("mass_kg", "'mass_kg' is not KEY=VALUE"),
           std::pair("friction_n=1,", "'' is not KEY=VALUE"),
           std::pair("friction_n=1,mass=2", "'mass=2' is not KEY=VALUE"),
-          std::pair("inertia_kg_m2=1", "turn.inertia_kg_m2"),
+          std::pair("inertia_kg_m2=1", "rotation.inertia_kg_m2"),
           std::pair("mass_kg=", "mass_kg: '' is not a number"),
           std::pair("mass_kg=1kg", "mass_kg: '1kg' is not a number"),
           std::pair("mass_kg=nan", "mass_kg: 'nan' is not a number"),
@@ -104,7 +104,7 @@ TEST(DeviceLimitsText, changes_nothing_when_it_refuses)
           std::pair("friction_n=1,mass_kg=0", "mass_kg must be finite and > 0"),
           std::pair("force_max_n=2000", "force_max_n must be at most 1000"),
           std::pair("delay_s=1", "delay_s must be at most 0.1"),
-          std::pair("turn.inertia_kg_m2=0", "inertia_kg_m2 must be finite and > 0")})
+          std::pair("rotation.inertia_kg_m2=0", "inertia_kg_m2 must be finite and > 0")})
     {
         DeviceLimits limits = kDeskClass;
         EXPECT_NE(set_device_limits(text, limits).find(fault), std::string::npos)

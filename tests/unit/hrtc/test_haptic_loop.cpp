@@ -98,7 +98,7 @@ const Trouble kTroubles[] = {
 };
 
 /// Troubles of a 6-DoF device with a rigid tool.
-const Trouble kTurningTroubles[] = {
+const Trouble kRotationTroubles[] = {
     {"no_rotation", ForceOff::garbage, 0,
      [](std::uint64_t frame, DeviceSample& sample)
      {
@@ -174,7 +174,7 @@ class HapticLoopTorqueTrouble : public HapticLoopTrouble
 const auto kByName = [](const auto& test) { return std::string(test.param.name); };
 INSTANTIATE_TEST_SUITE_P(Each, HapticLoopTrouble, testing::ValuesIn(kTroubles), kByName);
 INSTANTIATE_TEST_SUITE_P(Each, HapticLoopTorqueTrouble, testing::ValuesIn(kTroubles), kByName);
-INSTANTIATE_TEST_SUITE_P(Turning, HapticLoopTorqueTrouble, testing::ValuesIn(kTurningTroubles),
+INSTANTIATE_TEST_SUITE_P(Turning, HapticLoopTorqueTrouble, testing::ValuesIn(kRotationTroubles),
                          kByName);
 
 TEST_P(HapticLoopTrouble, fades_the_force_within_two_periods_and_brings_it_back_by_the_ramp)
@@ -213,7 +213,7 @@ TEST_P(HapticLoopTorqueTrouble, fades_the_torque_as_the_force_and_brings_it_back
     const std::uint64_t known = kSettled + GetParam().notice;
     ASSERT_GT(rig.written_nm(kSettled - 1).norm(), 1e-3);
     const double own_step_nm = rig.largest_step_nm(kSettled - 200, kSettled - 1);
-    const double torque_max_nm = rig.device().info().limits.turn.torque_max_nm;
+    const double torque_max_nm = rig.device().info().limits.rotation.torque_max_nm;
     expect_to_fade_and_return({rig.device().written_nm, own_step_nm, 0.0,
                                2.0 * torque_max_nm * kPeriod_s / kRiseTime_s + own_step_nm, 0.1},
                               known);
@@ -229,7 +229,7 @@ TEST_P(HapticLoopTorqueTrouble, fades_the_torque_as_the_force_and_brings_it_back
 
 TEST(HapticLoop, a_stall_takes_as_much_of_the_torque_as_of_the_force)
 {
-    LoopRigOptions options = with_a_lever(kTurningTroubles[0]);
+    LoopRigOptions options = with_a_lever(kRotationTroubles[0]);
     options.tamper = leave;
     options.late_wakes = {{kSettled, milliseconds(10)}};
     LoopRig rig(options);
@@ -380,7 +380,7 @@ TEST(HapticLoop, a_piece_that_does_not_come_ends_the_force_where_the_tool_is_at_
         rig.starved.set(starved, true);
         rig.run();
         EXPECT_GT(rig.statistics().pairs[1].in_all(), 500U);
-        EXPECT_GT(rig.statistics().held_back_frames, 100U);
+        EXPECT_GT(rig.statistics().data_limited_frames, 100U);
         const std::vector<SafetyEvent> events = rig.events();
         EXPECT_EQ(LoopRig::has(events, ForceOff::starved), starved == 0) << starved;
     }
@@ -476,7 +476,7 @@ TEST(HapticLoop, a_wall_that_the_device_may_have_goes_through_as_it_is)
     rig.run();
     EXPECT_GT(rig.written_n(kSettled).norm(), 1.0);
     for (const ForceAction action :
-         {ForceAction::refused, ForceAction::stiffness_capped, ForceAction::clamped,
+         {ForceAction::refused, ForceAction::stiffness_limited, ForceAction::clamped,
           ForceAction::change_limited, ForceAction::blind})
     {
         EXPECT_EQ(rig.frames_with(action), 0U) << static_cast<int>(action);
@@ -501,8 +501,8 @@ TEST(HapticLoop, a_stiffer_wall_than_the_device_may_have_is_as_stiff_as_it_may_b
     {
         EXPECT_NEAR((stiff.written_n(frame) - softer.written_n(frame)).norm(), 0.0, 1e-3);
     }
-    EXPECT_GT(stiff.frames_with(ForceAction::stiffness_capped), 1'000U);
-    EXPECT_EQ(softer.frames_with(ForceAction::stiffness_capped), 0U);
+    EXPECT_GT(stiff.frames_with(ForceAction::stiffness_limited), 1'000U);
+    EXPECT_EQ(softer.frames_with(ForceAction::stiffness_limited), 0U);
 }
 
 TEST(HapticLoop, takes_back_a_device_that_somebody_has_braked)

@@ -99,10 +99,10 @@ TEST_F(HrtcOptions, of_a_file_are_refused_with_their_place_in_it)
         {"[[tool]]\ndevice-limits = \"mass_kg=0\"",
          "bad.toml:2: device-limits of tool 0: device: mass_kg must be finite and > 0"},
         {"[[tool]]\nshpae = \"point\"",
-         "--config: bad.toml:2: [[tool]]: 'shpae' is not shape, mass, guide, device, "
+         "--config: bad.toml:2: [[tool]]: 'shpae' is not shape, mass, fixture, device, "
          "device-limits, device-frame or motion"},
         {"rate = 1000\n[[tool]]\nrate = 1000",
-         "--config: bad.toml:3: [[tool]]: 'rate' is not shape, mass, guide, device, "
+         "--config: bad.toml:3: [[tool]]: 'rate' is not shape, mass, fixture, device, "
          "device-limits, device-frame or motion; other options go above the tables"},
         {"[[tool]]\nmass = 1\nshape = \"point\"\nmass = 2",
          "--config: bad.toml:2: [[tool]]: mass is given twice"},
@@ -160,7 +160,7 @@ std::string told(const Options& options)
     for (const ToolOptions& tool : options.tools)
     {
         text << (tool.shape ? tool.shape->words : "-") << ' ' << tool.load.mass_kg << ' '
-             << (tool.guide ? tool.guide->words : "-") << ' '
+             << (tool.fixture ? tool.fixture->words : "-") << ' '
              << kDevices[static_cast<std::size_t>(tool.device.kind)] << ' '
              << tool.device.limits.mass_kg << ' ' << tool.device.frame.translation_m[0] << ' '
              << kHands[static_cast<std::size_t>(tool.hand.motion)] << tool.hand.object << "; ";
@@ -184,7 +184,7 @@ TEST_F(HrtcOptions, of_tools_are_in_their_order_and_others_have_the_default)
          "- 0 - sim 3 0 script; - 0 - dhd 2 0 script; "},
         {"--device none --device udp --device-frame none --device-frame 7,0,0",
          usual + "- 0 - udp 0.1 7 script; "},
-        {"--tool point --tool-mass none --tool-mass 2,1,0,0 --guide none --guide point:1,0,0",
+        {"--tool point --tool-mass none --tool-mass 2,1,0,0 --fixture none --fixture point:1,0,0",
          "point 0 - sim 0.1 0 script; - 2 point:1,0,0 sim 0.1 0 script; "},
     };
     for (const auto& [line, tools] : lines)

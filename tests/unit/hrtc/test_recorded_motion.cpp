@@ -86,7 +86,7 @@ TEST_F(RecordedMotion, is_the_hands_with_all_that_its_device_told)
     writer.finish(kNoFrame);
     const auto sut = read_recorded_motion(write(writer.take_bytes()), 0);
     ASSERT_TRUE(sut) << sut.error().text;
-    EXPECT_EQ(sut.value().limits.turn.torque_max_nm, 0.25);
+    EXPECT_EQ(sut.value().limits.rotation.torque_max_nm, 0.25);
     const DeviceSample& reading = sut.value().readings.at(0);
     EXPECT_EQ(reading.position_world_m, (std::array{31.0, 32.0, 33.0}));
     EXPECT_EQ(reading.rotation_world, (std::array{0.0, 0.0, 0.0, 1.0}));

@@ -32,8 +32,8 @@ Json report_of(const std::string& model)
         "run": {"version": "1.2.3", "started_utc": "2026-01-02T03:04:05Z", "devices": ["hand"],
                 "options": "rate=1000"},
         "frames": 5003, "period_ns": 1000003, "duration_s": 5.003, "times_us": {},
-        "answers": {"exact": 4001, "decided": 1002, "within_tolerance": 0, "bracket": 0, "stale": 0,
-                    "longest_inexact_run": 23, "width_max_diag": 1.234567e-5},
+        "answers": {"exact": 4001, "separated": 1002, "within_tolerance": 0, "bounded": 0,
+                    "stale": 0, "longest_inexact_run": 23, "width_max_diag": 1.234567e-5},
         "work": {"splits": 29, "merges": 31},
         "budgets": {"frame_us": 500, "at_floor": 0, "work": {"min": 41, "max": 41}},
         "scene": {"objects": 811, "objects_max": 821, "pairs_awake_max": 823,
@@ -47,14 +47,14 @@ Json report_of(const std::string& model)
         "servers": {"pinned": 1, "lost": 0, "back": 0, "replaced": 0, "not_followed": 0,
                     "namesake": 0, "events": []},
         "refused": [{"peer": "spm_publish <4>", "id": "00", "identity": 151}],
-        "deadline": {"missed": 73, "own_fault": 0, "machine_late": 79, "stopped": 0,
+        "deadline": {"missed": 73, "overrun": 0, "latency_misses": 79, "stopped": 0,
                      "noted": [{"frame": 83, "flags": ["woken_late"], "wake_us": 89.5}]},
         "realtime": {"allocations": 0, "page_faults": 97, "virtual_time": false,
                      "system_calls_trapped": true, "system_calls_in_frame": 0,
                      "system_calls_outside": 101},
         "recording": null, "trace": null, "telemetry": {"sent": 103},
         "force": {"max_n": 1.25, "max_step_n": 0.75, "contact_share": 0.5, "force_share": 0.4375,
-                  "held_back_share": 0.03125},
+                  "data_limited_share": 0.03125},
         "safety": {"supervisor_brakes": 107,
                    "begun": {"software": 1, "disconnect": 0, "stall": 109},
                    "events": [{"time_s": 0.125, "frame": 157, "causes": ["stall"]}]},
@@ -64,9 +64,9 @@ Json report_of(const std::string& model)
                     "pieces_overdue": 0, "pieces_missing": 0,
                     "pose": {"followed": false, "moves": 131}}],
         "tools": [{"radius_m": 0.002, "begins_inside": null,
-                   "torque_max_nm": 0.0625, "stiffness_cap_n_per_m": 3000.5,
-                   "softest_wall_n_per_m": 1500.25,
-                   "conditioned": {"stiffness_capped": 137, "damped": 139}}],
+                   "torque_max_nm": 0.0625, "stiffness_limit_n_per_m": 3000.5,
+                   "least_stiffness_n_per_m": 1500.25,
+                   "conditioned": {"stiffness_limited": 137, "damped": 139}}],
         "pairs": [{"tool": 0, "model": "", "answers": {"exact": 149}}]})");
     double first = 1.0;
     for (const char* name :
@@ -174,7 +174,7 @@ TEST(ReportPage, explains_every_answer_time_and_cause)
     {
         names.push_back(name);
     }
-    for (const char* name : {"exact", "decided", "bracket", "stale", "own fault", "machine late"})
+    for (const char* name : {"exact", "separated", "bounded", "stale", "overrun", "latency miss"})
     {
         names.emplace_back(name);
     }
@@ -228,9 +228,9 @@ TEST(ReportPage, marks_faults_where_they_were)
     {
         const Json& marks = charts[i]["marks"];
         ASSERT_EQ(marks.size(), 3U) << marks;
-        EXPECT_EQ(marks[0], Json::parse(R"({"name": "own fault", "kind": "fault", "x": [0.002]})"));
+        EXPECT_EQ(marks[0], Json::parse(R"({"name": "overrun", "kind": "fault", "x": [0.002]})"));
         EXPECT_EQ(marks[1],
-                  Json::parse(R"({"name": "machine late", "kind": "warning", "x": [0.005]})"));
+                  Json::parse(R"({"name": "latency miss", "kind": "warning", "x": [0.005]})"));
         EXPECT_EQ(marks[2], Json::parse(R"({"name": "force withheld for stall", "kind": "plain",
                                             "x": [0.003]})"));
     }
@@ -259,20 +259,20 @@ TEST(ReportPage, says_what_went_wrong)
         const std::string wanted = "<p class=\"verdict " + kind + "\">" + words + "</p>";
         return make_page(report, statistics_of(1), library()).find(wanted) != std::string::npos;
     };
-    EXPECT_TRUE(verdict("good", "No deadline missed by the loop&#39;s own fault, 79 by the "
-                                "machine&#39;s; no answer is a bracket."));
-    report["answers"]["bracket"] = 7; // Proven bounds are no fault.
-    EXPECT_TRUE(verdict("good", "No deadline missed by the loop&#39;s own fault, 79 by the "
-                                "machine&#39;s; 7 answers are brackets."));
-    report["deadline"]["own_fault"] = 2;
+    EXPECT_TRUE(verdict("good", "No deadline missed by an overrun of the loop, 79 by the "
+                                "machine; no answer is only bounded."));
+    report["answers"]["bounded"] = 7; // Proven bounds are no fault.
+    EXPECT_TRUE(verdict("good", "No deadline missed by an overrun of the loop, 79 by the "
+                                "machine; 7 answers are bounded."));
+    report["deadline"]["overrun"] = 2;
     report["answers"]["stale"] = 5;
     report["wire"]["host_lost"] = true;
     report["safety"]["begun"]["stall"] = 3;
     report["safety"]["supervisor_brakes"] = 1;
     EXPECT_TRUE(verdict("bad", "mesh and scene: the host went away; 5 frames with a stale answer | "
-                               "controller: 2 deadlines missed by the loop&#39;s own fault; force "
+                               "controller: 2 deadlines missed by an overrun of the loop; force "
                                "off for: stall 3; 1 brake by the supervisor | machine: ok."));
-    report["deadline"]["own_fault"] = 0;
+    report["deadline"]["overrun"] = 0;
     report["answers"]["stale"] = 0;
     report["wire"]["host_lost"] = false;
     EXPECT_TRUE(verdict("good", "mesh and scene: ok | controller: ok | machine: it woke the loop "

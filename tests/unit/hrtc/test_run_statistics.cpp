@@ -81,7 +81,7 @@ TEST(RunStatistics, counts_a_frame_as_over_budget_from_one_beyond_what_it_may_do
     EXPECT_EQ(with([](WorkCounters& work, const Budgets& budgets)
                    { work.requests = budgets.requests + budgets.regions + 1; }),
               3U);
-    EXPECT_EQ(run.sut.deadlines.own_faults, 3U);
+    EXPECT_EQ(run.sut.deadlines.overruns, 3U);
     EXPECT_EQ(run.sut.frames, 5U);
 }
 
@@ -99,7 +99,7 @@ TEST(RunStatistics, compares_long_frames_with_quick_ones_by_their_work)
                 output.work.budget.spend(done);
                 measures.cpu = kPeriod;
             });
-        EXPECT_EQ(run.sut.deadlines.own_faults, done == 12'000 ? 0U : 1U);
+        EXPECT_EQ(run.sut.deadlines.overruns, done == 12'000 ? 0U : 1U);
     }
 }
 

@@ -33,7 +33,8 @@ using tactus::test::small_model;
 constexpr Duration kAgeLimit = milliseconds(100);
 
 /// A model server with objects, a controller with the same two models, and the keeper between them,
-/// in turns, each test in its own DDS domain. The frame's side is a door that the test reads.
+/// in turns, each test in its own DDS domain. The frame's side is a set of queues that the test
+/// reads.
 class SceneKeeperRig : public ::testing::Test
 {
 protected:
@@ -106,12 +107,12 @@ protected:
         ASSERT_TRUE(made) << made.error().text;
         controller_ = std::move(made).value();
         const std::size_t capacity = controller_->frame().objects().capacity();
-        door_.emplace(controller_->poses(), capacity, kAgeLimit);
+        queues_.emplace(controller_->poses(), capacity, kAgeLimit);
         pin(scene, models);
         keeper.emplace(authorities, std::move(reader_), controller_->scene_parts(),
                        std::move(scene), lines.log());
         keeper->connect(
-            *door_, now_,
+            *queues_, now_,
             [this](std::uint32_t number, std::uint32_t generation, const std::string& name)
             { names.push_back(fmt::format("{} {} {}", number, generation, name)); });
     }
@@ -158,7 +159,7 @@ protected:
                     authority.step();
                 }
                 keeper->step(now_);
-                for (const SceneChange& change : door_->refresh(now_))
+                for (const SceneChange& change : queues_->refresh(now_))
                 {
                     ++changes[change.kind];
                     last_[change.kind] = change;
@@ -192,7 +193,7 @@ private:
     std::unique_ptr<dds::DdsClient> client_;
     std::unique_ptr<dds::SceneReader> reader_;
     std::unique_ptr<Controller> controller_;
-    std::optional<PoseDoor> door_;
+    std::optional<SceneMailbox> queues_;
     MonotonicTime now_{1'000'000'000};
 };
 
@@ -257,8 +258,8 @@ TEST_F(FollowedScene, feels_no_more_than_the_device_allows_and_tells_it_once)
     EXPECT_EQ(felt.viscosity_n_s_per_m, 20.0);
     const DeviceLimits& device = tool().device->info().limits;
     const double period_s = tool().conditioner.period_s;
-    EXPECT_GE(stiffness_cap(device, period_s, felt.damping_n_s_per_m),
-              std::min(tool().spec.stiffness_n_per_m, 0.5 * stiffness_cap(device, period_s)));
+    EXPECT_GE(stiffness_limit(device, period_s, felt.damping_n_s_per_m),
+              std::min(tool().spec.stiffness_n_per_m, 0.5 * stiffness_limit(device, period_s)));
     EXPECT_GT(felt.damping_n_s_per_m, 0.5 * device.damping_n_s_per_m);
     EXPECT_TRUE(lines.has("the material of object 'cup' is limited: stiffness 9000 to 3000, "
                           "static 50 to 3, dynamic 40 to 3, damping 5 to "))
@@ -329,7 +330,7 @@ TEST_F(FollowedScene, stays_and_grows_stale_when_its_host_is_gone_and_follows_no
                    second.get()))
         << lines.text();
     host.reset();
-    ASSERT_TRUE(step_until([&] { return !authorities[0].is_here(); }, second.get()));
+    ASSERT_TRUE(step_until([&] { return !authorities[0].is_resident(); }, second.get()));
     const std::int64_t heard = keeper->heard(0).ns;
     ASSERT_TRUE(step_until([&] { return lines.has("which isn't followed"); }, second.get()));
     ASSERT_TRUE(step_until([&, until = 0]() mutable { return ++until == 300; }, second.get()));
@@ -349,7 +350,7 @@ TEST_F(FollowedScene, goes_and_another_host_s_comes_where_failover_allows_that_o
     const std::uint64_t first = host->epoch();
     ASSERT_TRUE(step_until([&] { return keeper->heard(0).ns > 0; }));
     host.reset();
-    ASSERT_TRUE(step_until([&] { return !authorities[0].is_here(); }));
+    ASSERT_TRUE(step_until([&] { return !authorities[0].is_resident(); }));
     EXPECT_EQ(changes[SceneChangeKind::object_goes], 0);
     const auto second = make_host(kOtherHostDomain);
     const std::uint32_t jar = show(*second, "jar", 2.0);

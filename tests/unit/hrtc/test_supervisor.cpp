@@ -194,9 +194,9 @@ TEST(Supervisor, brakes_at_once_when_the_fade_should_be_over)
     SimulatedClock clock;
     Heartbeat heartbeat;
     std::vector<ToolSetup> tools(1);
-    auto device = SimulatedDevice::create(
-        {},
-        std::make_unique<PressingHand>(Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 1.0), 0.1, kPress_m));
+    auto device =
+        SimulatedDevice::create({}, std::make_unique<PressingOperator>(
+                                        Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 1.0), 0.1, kPress_m));
     ASSERT_TRUE(device) << device.error().text;
     tools[0].device = std::make_unique<Deaf>(std::move(device).value());
     const auto& deaf = static_cast<const Deaf&>(*tools[0].device);

@@ -37,9 +37,9 @@ TEST(TelemetryTap, shows_the_newest_frame_as_the_loop_had_it)
     EXPECT_EQ(telemetry.frame, kSettled);
     EXPECT_EQ(telemetry.period_ns, kPeriod.ns);
     EXPECT_EQ(telemetry.exact, rig.statistics().answers.exact);
-    EXPECT_EQ(telemetry.decided, rig.statistics().answers.decided);
-    EXPECT_EQ(telemetry.exact + telemetry.decided + telemetry.within_tolerance + telemetry.bracket +
-                  telemetry.stale,
+    EXPECT_EQ(telemetry.separated, rig.statistics().answers.separated);
+    EXPECT_EQ(telemetry.exact + telemetry.separated + telemetry.within_tolerance +
+                  telemetry.bounded + telemetry.stale,
               kSettled);
     EXPECT_EQ(telemetry.tool_count, 1U);
     EXPECT_EQ(telemetry.model_count, 1U);

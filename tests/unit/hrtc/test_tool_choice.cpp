@@ -47,7 +47,7 @@ TEST(ToolChoice, refuses_what_is_no_shape_and_measures_out_of_range)
 {
     // Values are separated by bars.
     std::istringstream wrong(
-        "|ball|point:1|sphere|sphere:|sphere:0|sphere:1.01|sphere:9e-6|sphere:nan|"
+        "|sphere|point:1|sphere|sphere:|sphere:0|sphere:1.01|sphere:9e-6|sphere:nan|"
         "sphere:0.1,0.1|capsule:0.1|capsule:0.1,0|capsule:0,0.1|capsule:0.1,2|box:0.1,0.1|"
         "box:0.1,0.1,0|box:0.1,0.1,0.1,-0.1|box:0.1,0.1,0.1,1e-6|box:0.1,0.1,0.1,0.1,0.1|"
         "hull:|hull:,0.1|hull:a.obj,2|mesh:|mesh:probe,-1");

@@ -37,7 +37,7 @@ public:
         sample.time.ns = ++reads_ * 1'000'000;
         sample.valid = true;
         sample.position_world_m = to_array(hand.position_m);
-        if (info_.limits.turn.is_measured)
+        if (info_.limits.rotation.is_measured)
         {
             sample.rotation_world = rotation.value_or(to_quaternion(hand.rotation));
         }
@@ -57,15 +57,15 @@ public:
         return {DeviceState::force, 0, 0, 0};
     }
 
-    void measure_rotation(const TurnLimits& turn = {.is_measured = true})
+    void measure_rotation(const RotationLimits& turn = {.is_measured = true})
     {
-        info_.limits.turn = turn;
+        info_.limits.rotation = turn;
     }
 
     Vec3 written_n{0.0, 0.0, 0.0};
     Vec3 written_nm{0.0, 0.0, 0.0};
     double written_gripper_n{0.0};
-    HandPlace hand;
+    DevicePose hand;
     std::uint32_t buttons{0};
     std::optional<Quaternion> rotation; ///< Rotation in place of the hand's.
 
@@ -75,18 +75,18 @@ private:
 };
 
 /// Source of a given external force.
-class SaidForce final : public OwnForceSource
+class SaidForce final : public ExternalForceSource
 {
 public:
-    [[nodiscard]] OwnForce next(const DeviceSample& /*sample*/, const ToolState& tool,
-                                const ToolOutput& output) noexcept override
+    [[nodiscard]] ExternalForce next(const DeviceSample& /*sample*/, const ToolState& tool,
+                                     const ToolOutput& output) noexcept override
     {
         place_m = tool.position_m;
         was_in_contact = output.in_contact;
         return said;
     }
 
-    OwnForce said;
+    ExternalForce said;
     Vec3 place_m{0.0, 0.0, 0.0};
     bool was_in_contact{false};
 };
@@ -138,9 +138,9 @@ protected:
 TEST_F(ToolPortTest, what_the_frame_says_of_the_tool_becomes_a_cause)
 {
     warm_up();
-    ToolOutput frozen = pushed_;
-    frozen.frozen = true;
-    EXPECT_EQ(step(frozen).causes, ForceOff::frozen);
+    ToolOutput halted = pushed_;
+    halted.halted = true;
+    EXPECT_EQ(step(halted).causes, ForceOff::halted);
     ToolOutput stuck = pushed_;
     stuck.sample_fault = FrameFault::tool_stuck;
     EXPECT_EQ(step(stuck).causes, ForceOff::stale);
@@ -151,7 +151,7 @@ TEST_F(ToolPortTest, what_the_frame_says_of_the_tool_becomes_a_cause)
 }
 
 /// Place with a rotation about z by a unit quaternion.
-HandPlace turned_place(const Vec3& position_m, double z, double w)
+DevicePose turned_place(const Vec3& position_m, double z, double w)
 {
     return {position_m, to_rotation({0.0, 0.0, z, w})};
 }
@@ -212,7 +212,7 @@ TEST_F(ToolPortTest, a_force_of_the_programs_own_goes_out_and_fades_as_that_of_s
     SaidForce own;
     own.said.force_n = Vec3(1.0, 0.0, 0.0);
     own.said.gripper_n = 0.5;
-    setup_.own_force = &own;
+    setup_.external_force = &own;
     restart();
     device().hand.position_m = Vec3(0.0, 0.0, 0.001);
     steps(pushed_, 200);
@@ -239,14 +239,14 @@ TEST_F(ToolPortTest, a_force_of_the_programs_own_is_within_the_devices_limits)
 {
     SaidForce own;
     own.said.force_n = Vec3(0.0, 50.0, 0.0);
-    setup_.own_force = &own;
+    setup_.external_force = &own;
     restart();
     steps({}, 200);
     EXPECT_NEAR(device().written_n.norm(), 8.0, 1e-9);
     EXPECT_TRUE(has_action(last_.push.actions, ForceAction::clamped));
     own.said.stiffness_n_per_m = 4'000.0; // The spring is twice as stiff as the device permits.
     static_cast<void>(step(ToolOutput{}));
-    EXPECT_TRUE(has_action(last_.push.actions, ForceAction::stiffness_capped));
+    EXPECT_TRUE(has_action(last_.push.actions, ForceAction::stiffness_limited));
 }
 
 TEST_F(ToolPortTest, a_force_of_the_programs_own_that_is_no_number_is_garbage)
@@ -255,7 +255,7 @@ TEST_F(ToolPortTest, a_force_of_the_programs_own_that_is_no_number_is_garbage)
     for (int part = 0; part < 4; ++part)
     {
         SaidForce own;
-        setup_.own_force = &own;
+        setup_.external_force = &own;
         restart();
         warm_up();
         own.said.force_n.x() = part == 0 ? nan : 0.0;
@@ -296,7 +296,7 @@ TEST_F(ToolPortTest, a_held_button_parts_hand_and_tool_without_a_force)
     EXPECT_EQ(step(pushed_).causes, ForceOff::none);
     // Return to the hand's start: the tool rotates equally about the world's axes.
     const Mat3 way = to_rotation({0.0, 0.0, -0.6, 0.8});
-    device().hand = HandPlace{};
+    device().hand = DevicePose{};
     EXPECT_LT((sut_->read(1).rotation - way * held.rotation).norm(), 1e-14);
     EXPECT_LT((sut_->read(1).position_m - held.position_m - Vec3(-0.03, 0.0, 0.0)).norm(), 1e-14);
 }
@@ -314,7 +314,7 @@ TEST_F(ToolPortTest, a_load_is_carried_beside_the_force_and_while_the_proxy_is_f
     for (int i = 0; i < 400; ++i)
     {
         pushed_.stiffness_n_per_m = 500.0;
-        pushed_.frozen = i > 300;
+        pushed_.halted = i > 300;
         device().hand.position_m = Vec3(0.0, 0.0, 1e-3 * std::sin(0.1 * i));
         static_cast<StillDevice&>(*bare.device).hand = device().hand;
         static_cast<void>(step(pushed_));
@@ -323,7 +323,7 @@ TEST_F(ToolPortTest, a_load_is_carried_beside_the_force_and_while_the_proxy_is_f
         ASSERT_EQ(last_.push.force_n, bare_force.push.force_n) << i;
         ASSERT_EQ(last_.push.work_j, bare_force.push.work_j) << i;
     }
-    EXPECT_EQ(last_.push.force_n, Vec3(0.0, 0.0, 0.0)) << "frozen";
+    EXPECT_EQ(last_.push.force_n, Vec3(0.0, 0.0, 0.0)) << "halted";
     EXPECT_NEAR(device().written_n.z(), setup_.load.weight_n(), 1e-12);
     sut_->fade(0.025, ForceOff::assertion);
     EXPECT_NEAR(device().written_n.z(), 0.5 * setup_.load.weight_n(), 1e-12);

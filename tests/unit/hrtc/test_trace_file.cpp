@@ -73,7 +73,7 @@ TEST_F(Traced, a_frame_holds_its_stages_one_after_the_other)
     TracedFrame second = frame(1, 6'000);
     second.arrivals = 2;
     second.link_updates = 1;
-    second.wishes = 7;
+    second.requests = 7;
     second.faults = FrameFault::chunk_late | FrameFault::tool_stuck;
     sut.tap().add(second);
     ASSERT_TRUE(sut.finish());
@@ -98,7 +98,7 @@ TEST_F(Traced, a_frame_holds_its_stages_one_after_the_other)
     EXPECT_EQ(events[7].at("args").at("faults"), TraceJson({"chunk_late", "tool_stuck"}));
     EXPECT_EQ(events[14].at("name"), "taken");
     EXPECT_EQ(events[14].at("args"), TraceJson({{"arrivals", 2}, {"link_updates", 1}}));
-    EXPECT_EQ(events[15].at("name"), "wishes");
+    EXPECT_EQ(events[15].at("name"), "requests");
     EXPECT_EQ(events[15].at("ts"), 1'010.0);
 }
 
@@ -124,7 +124,7 @@ TEST_F(Traced, a_missed_deadline_is_marked)
     EXPECT_EQ(missed_us, (std::vector<double>{1'150.25, 2'150.25}));
 }
 
-TEST_F(Traced, what_the_courier_began_before_has_a_negative_time)
+TEST_F(Traced, what_the_chunk_loader_began_before_has_a_negative_time)
 {
     TraceFile sut(file(), milliseconds(1));
     sut.tap().add(frame(0, 5'000));
@@ -148,7 +148,7 @@ TEST_F(Traced, what_the_courier_began_before_has_a_negative_time)
     EXPECT_EQ(
         round->at("args"),
         TraceJson(
-            {{"wishes", 3}, {"pieces", 2}, {"bytes", 600}, {"handed_over", 2}, {"refused", 1}}));
+            {{"requests", 3}, {"pieces", 2}, {"bytes", 600}, {"handed_over", 2}, {"refused", 1}}));
 }
 
 TEST(TraceTap, counts_what_finds_no_room)

@@ -20,21 +20,21 @@ using Report = nlohmann::ordered_json;
 Report good_report()
 {
     return Report::parse(R"({
-        "answers": {"exact": 40, "decided": 60, "within_tolerance": 0, "bracket": 0, "stale": 0},
+        "answers": {"exact": 40, "separated": 60, "within_tolerance": 0, "bounded": 0, "stale": 0},
         "budgets": {"frame_us": null, "splits": 64}, "scene": {"limited": 0},
         "pools": {"total_bytes": 2000000},
         "wire": {"host_lost": false},
-        "deadline": {"own_fault": 0, "stopped": 0},
+        "deadline": {"overrun": 0, "stopped": 0},
         "realtime": {"allocations": 0, "system_calls_in_frame": 0}, "recording": null,
-        "force": {"contact_share": 0.5, "held_back_share": 0.125},
+        "force": {"contact_share": 0.5, "data_limited_share": 0.125},
         "safety": {"supervisor_brakes": 0,
                    "begun": {"velocity": 0, "watchdog": 0, "software": 1, "disconnect": 0,
-                             "stall": 0, "frozen": 0}},
+                             "stall": 0, "halted": 0}},
         "faults": {"split_budget_spent": 0, "forest_full": 0, "chunk_late": 0,
                    "surface_truncated": 0},
         "models": [{"name": "plate", "pieces_refused": 0, "pieces_overdue": 0,
                     "pieces_missing": 0}],
-        "tools": [{"begins_inside": null, "softest_wall_n_per_m": null}]})");
+        "tools": [{"begins_inside": null, "least_stiffness_n_per_m": null}]})");
 }
 
 /// Verdict without the parts that are ok.
@@ -72,8 +72,8 @@ TEST(Verdict, judges_mesh_and_scene_controller_and_machine_apart)
               "faded for a moment 27 times (2 brakes by the supervisor): 'hrtc doctor' says why");
     EXPECT_TRUE(is_machine_alone(complaints_of(report)));
     EXPECT_FALSE(fails_when_strict(report));
-    report["deadline"]["own_fault"] = 1; // The loop itself may then be the cause.
-    EXPECT_EQ(verdict(report), "controller: 1 deadline missed by the loop's own fault; force off "
+    report["deadline"]["overrun"] = 1; // The loop itself may then be the cause.
+    EXPECT_EQ(verdict(report), "controller: 1 deadline missed by an overrun of the loop; force off "
                                "for: watchdog 1, stall 26; 2 brakes by the supervisor");
     EXPECT_FALSE(is_machine_alone(complaints_of(report)));
     report = good_report();
@@ -104,7 +104,7 @@ TEST(Verdict, names_losses_which_fail_a_strict_run)
     EXPECT_EQ(verdict(report), "controller: force off for: disconnect 4; devices gone: 4");
     EXPECT_TRUE(fails_when_strict(report));
     report = good_report();
-    report["tools"][0]["softest_wall_n_per_m"] = 0.5;
+    report["tools"][0]["least_stiffness_n_per_m"] = 0.5;
     EXPECT_EQ(verdict(report), "controller: tool 0: a wall of 0.5 N/m, which no hand feels");
     EXPECT_TRUE(fails_when_strict(report));
 }
@@ -114,8 +114,8 @@ TEST(Verdict, is_never_good_without_one_exact_answer)
     Report report = good_report();
     report["answers"]["exact"] = 0;
     EXPECT_EQ(verdict(report), "ok"); // Nothing came near: separated.
-    report["answers"]["bracket"] = 4'655;
-    EXPECT_EQ(verdict(report), "mesh and scene: no answer was exact, 4655 were brackets");
+    report["answers"]["bounded"] = 4'655;
+    EXPECT_EQ(verdict(report), "mesh and scene: no answer was exact, 4655 were bounded");
     EXPECT_TRUE(fails_when_strict(report));
     report["answers"]["within_tolerance"] = 1;
     EXPECT_EQ(verdict(report), "ok");
@@ -129,18 +129,18 @@ TEST(Verdict, says_why_nothing_was_touched)
 {
     Report report = good_report();
     report["force"]["contact_share"] = 0.0;
-    report["force"]["held_back_share"] = 0.0;
+    report["force"]["data_limited_share"] = 0.0;
     const std::string nothing = "mesh and scene: nothing was touched: ";
     EXPECT_EQ(verdict(report),
               nothing + "a tool came near, and the run ended before it reached the surface");
     EXPECT_TRUE(fails_when_strict(report));
-    report["force"]["held_back_share"] = 0.1;
-    EXPECT_EQ(verdict(report), nothing + "the tool was held back before the surface");
+    report["force"]["data_limited_share"] = 0.1;
+    EXPECT_EQ(verdict(report), nothing + "the tool was data-limited before the surface");
     report["safety"]["begun"]["velocity"] = 2;
     EXPECT_EQ(verdict(report), nothing + "the force was off for velocity | controller: force off "
                                          "for: velocity 2");
     report["answers"] = {
-        {"exact", 0}, {"decided", 100}, {"within_tolerance", 0}, {"bracket", 0}, {"stale", 0}};
+        {"exact", 0}, {"separated", 100}, {"within_tolerance", 0}, {"bounded", 0}, {"stale", 0}};
     report["safety"]["begun"]["velocity"] = 0;
     EXPECT_EQ(verdict(report), nothing + "no tool came near an object; the lines at the start say "
                                          "where they are");
@@ -153,22 +153,25 @@ TEST(Verdict, says_why_nothing_was_touched)
 TEST(Verdict, names_the_limit_that_held_the_tool_back_and_what_helps)
 {
     Report report = good_report();
-    report["force"]["held_back_share"] = 0.86;
-    EXPECT_EQ(verdict(report), "mesh and scene: held back for 86.0 % of the time: the surface at "
-                               "the tool wasn't known");
+    report["force"]["data_limited_share"] = 0.86;
+    EXPECT_EQ(verdict(report),
+              "mesh and scene: data-limited for 86.0 % of the time: the surface at "
+              "the tool wasn't known");
     report["faults"]["chunk_late"] = 7;
     report["faults"]["forest_full"] = 2'554;
-    EXPECT_EQ(verdict(report),
-              "mesh and scene: held back for 86.0 % of the time: no room for faces (forest_full in "
-              "2554 frames): --pool-mib 8, 4 times as much");
+    EXPECT_EQ(
+        verdict(report),
+        "mesh and scene: data-limited for 86.0 % of the time: no room for faces (forest_full in "
+        "2554 frames): --pool-mib 8, 4 times as much");
     EXPECT_TRUE(fails_when_strict(report));
-    report["force"]["held_back_share"] = 0.0;
-    report["safety"]["begun"]["frozen"] = 2;
+    report["force"]["data_limited_share"] = 0.0;
+    report["safety"]["begun"]["halted"] = 2;
     report["faults"]["surface_truncated"] = 2'749;
-    EXPECT_EQ(verdict(report),
-              "mesh and scene: held back for 0.0 % of the time, and the force faded 2 times: more "
-              "triangles are in reach of the tool than a frame looks at (surface_truncated in 2749 "
-              "frames): a smaller --tool, or a model of fewer faces; no memory helps");
+    EXPECT_EQ(
+        verdict(report),
+        "mesh and scene: data-limited for 0.0 % of the time, and the force faded 2 times: more "
+        "triangles are in reach of the tool than a frame looks at (surface_truncated in 2749 "
+        "frames): a smaller --tool, or a model of fewer faces; no memory helps");
     EXPECT_TRUE(fails_when_strict(report));
     report["faults"]["split_budget_spent"] = 3'000;
     EXPECT_NE(verdict(report).find("(split_budget_spent in 3000 frames): --splits 256, the most"),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "host_tools/shapes/shapes.hpp"
-#include "platform/devices/simulated/scripted_hand.hpp"
+#include "platform/devices/simulated/scripted_operator.hpp"
 #include "platform/devices/simulated/simulated_device.hpp"
 #include "platform/devices/simulated/simulated_periodic_timer.hpp"
 #include "platform/devices/wrapped_device.hpp"
@@ -18,7 +18,7 @@
 #include <functional>
 #include <random>
 
-/// The controller as `hrtc` assembles it, in virtual time on one thread: scripted hand, device,
+/// The controller as `hrtc` assembles it, in virtual time on one thread: scripted operator, device,
 /// haptic loop, governor, recording tap, supervisor, and a loader on a link with loss and delay.
 /// The scripted machine wakes it late, stalls it and hangs in a reading.
 namespace tactus::hrtc::test
@@ -186,8 +186,8 @@ public:
         std::ranges::for_each(s.stages, [&](const auto& stage) { digest.add(stage); });
         for (const std::uint64_t number : {s.frames,
                                            s.answers.exact,
-                                           s.answers.decided,
-                                           s.answers.bracket,
+                                           s.answers.separated,
+                                           s.answers.bounded,
                                            s.answers.stale,
                                            s.answers.longest_inexact_run,
                                            s.contact_frames,
@@ -200,7 +200,7 @@ public:
                                            s.evictions,
                                            s.deadlines.missed,
                                            s.work_at_floor,
-                                           s.tools.front().frozen_frames,
+                                           s.tools.front().halted_frames,
                                            s.models.front().state_hash,
                                            timer_.counts().missed_periods,
                                            timer_.counts().episodes,
@@ -241,7 +241,7 @@ private:
 
     void make_device()
     {
-        HandScene scene;
+        OperatorScene scene;
         for (std::size_t i = 0; i < model().faces.size(); i += 37)
         {
             scene.anchors_world_m.push_back(to_vec3(model().faces[i][0]));
@@ -250,7 +250,7 @@ private:
         scene.tool_radius_m = 0.01 * model().diagonal_m;
         scene.period = kPeriod;
         scene.frames_total = kFrames;
-        auto hand = std::move(ScriptedHand::create(scene)).value();
+        auto hand = std::move(ScriptedOperator::create(scene)).value();
         SimulatedDeviceOptions options;
         options.clock = &clock_;
         options.workspace_centre_world_m = hand->centre_world_m();

@@ -6,7 +6,7 @@
 #include "platform/devices/haptic_device.hpp"
 #include "platform/devices/simulated/device_classes.hpp"
 #include "platform/devices/simulated/faulty_device.hpp"
-#include "platform/devices/simulated/hand_motion.hpp"
+#include "platform/devices/simulated/operator_motion.hpp"
 #include "platform/devices/simulated/replay_device.hpp"
 #include "platform/devices/simulated/simulated_device.hpp"
 
@@ -18,11 +18,11 @@ namespace tactus::test
 {
 
 /// Hand at the origin.
-class HandAtRest final : public HandMotion
+class HandAtRest final : public OperatorMotion
 {
 public:
     [[nodiscard]] Vec3 start_world_m() const noexcept override { return Vec3::Zero(); }
-    [[nodiscard]] Vec3 next_world_m(const HandSense&) noexcept override { return Vec3::Zero(); }
+    [[nodiscard]] Vec3 next_world_m(const OperatorSense&) noexcept override { return Vec3::Zero(); }
 };
 
 /// Device under test, with a hand that holds it loosely at one place, and controlled time: nothing

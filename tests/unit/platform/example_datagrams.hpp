@@ -21,15 +21,15 @@ inline udp::DescribeDatagram example_description()
                             .slew_max_n_per_s = 7.0,
                             .stiffness_max_n_per_m = 8.0,
                             .added_damping_max_n_s_per_m = 9.0,
-                            .turn = {.is_measured = true,
-                                     .torque_max_nm = 17.0,
-                                     .inertia_kg_m2 = 18.0,
-                                     .damping_nm_s_per_rad = 19.0,
-                                     .friction_nm = 20.0,
-                                     .quantum_rad = 21.0,
-                                     .slew_max_nm_per_s = 22.0,
-                                     .stiffness_max_nm_per_rad = 23.0,
-                                     .added_damping_max_nm_s_per_rad = 24.0}};
+                            .rotation = {.is_measured = true,
+                                         .torque_max_nm = 17.0,
+                                         .inertia_kg_m2 = 18.0,
+                                         .damping_nm_s_per_rad = 19.0,
+                                         .friction_nm = 20.0,
+                                         .quantum_rad = 21.0,
+                                         .slew_max_nm_per_s = 22.0,
+                                         .stiffness_max_nm_per_rad = 23.0,
+                                         .added_damping_max_nm_s_per_rad = 24.0}};
     datagram.info.gripper_force_max_n = 25.0;
     datagram.info.workspace_centre_world_m = {10.0, 11.0, 12.0};
     datagram.info.workspace_radius_m = 13.0;

@@ -13,9 +13,9 @@ namespace
 
 #ifndef PLUGIN_IS_EMPTY
 tactus::Result<std::unique_ptr<tactus::HapticDevice>, tactus::Refusal>
-make_faulty(const tactus::DeviceWish& wish)
+make_faulty(const tactus::DeviceRequest& request)
 {
-    const std::string_view words = wish.words;
+    const std::string_view words = request.words;
     if (words == "throws")
     {
         throw std::runtime_error("no such port");
@@ -32,9 +32,9 @@ make_faulty(const tactus::DeviceWish& wish)
 }
 
 tactus::Result<std::unique_ptr<tactus::DeviceGuard>, tactus::Refusal>
-make_no_guard(const tactus::DeviceWish& wish)
+make_no_guard(const tactus::DeviceRequest& request)
 {
-    const std::string_view words = wish.words;
+    const std::string_view words = request.words;
     if (words == "throws")
     {
         throw std::runtime_error("no such port");

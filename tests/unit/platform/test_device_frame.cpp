@@ -70,8 +70,8 @@ TEST(DeviceFrame, keeps_power_over_the_scale_and_the_stiffness_cap)
 
         const DeviceInfo world = sut.to_world(device);
         EXPECT_EQ(find_fault(world.limits), nullptr);
-        const double cap = stiffness_cap(device.limits, 1e-3);
-        EXPECT_NEAR(stiffness_cap(world.limits, 1e-3) * scale, cap, 1e-9 * cap);
+        const double cap = stiffness_limit(device.limits, 1e-3);
+        EXPECT_NEAR(stiffness_limit(world.limits, 1e-3) * scale, cap, 1e-9 * cap);
         EXPECT_NEAR(world.workspace_radius_m, 0.1 * scale, 1e-12 * scale);
         EXPECT_NEAR(world.speed_max_m_per_s, 2.0 * scale, 1e-12 * scale);
         EXPECT_EQ(world.limits.force_max_n, 12.0);

@@ -200,8 +200,8 @@ TEST_F(DhdDeviceTest, without_a_wrist_or_its_motors_makes_the_force_alone)
 {
     hand().has_active_wrist = false;
     open_and_write({{1.0, 2.0, 3.0}, {0.01, 0.02, 0.03}, 0.5});
-    EXPECT_TRUE(sut->info().limits.turn.is_measured);
-    EXPECT_EQ(sut->info().limits.turn.torque_max_nm, 0.0);
+    EXPECT_TRUE(sut->info().limits.rotation.is_measured);
+    EXPECT_EQ(sut->info().limits.rotation.torque_max_nm, 0.0);
     EXPECT_EQ(sut->info().gripper_force_max_n, 0.0);
     EXPECT_EQ(motors().force_n, (std::array{1.0, 2.0, 3.0}));
     EXPECT_EQ(motors().torque_nm, (std::array{0.0, 0.0, 0.0}));
@@ -209,7 +209,7 @@ TEST_F(DhdDeviceTest, without_a_wrist_or_its_motors_makes_the_force_alone)
     sut.reset();
     hand().has_wrist = false;
     open();
-    EXPECT_FALSE(sut->info().limits.turn.is_measured);
+    EXPECT_FALSE(sut->info().limits.rotation.is_measured);
     EXPECT_FALSE(await([](const auto& got) { return got.valid; }).rotation_world);
 }
 

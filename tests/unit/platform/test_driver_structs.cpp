@@ -38,15 +38,15 @@ tactus_describe described()
     describe.speed_max_m_per_s = info.speed_max_m_per_s;
     describe.rate_min_hz = info.rate_min_hz;
     describe.rate_max_hz = info.rate_max_hz;
-    describe.torque_max_nm = info.limits.turn.torque_max_nm;
-    describe.inertia_kg_m2 = info.limits.turn.inertia_kg_m2;
-    describe.turning_damping_nm_s_per_rad = info.limits.turn.damping_nm_s_per_rad;
-    describe.turning_friction_nm = info.limits.turn.friction_nm;
-    describe.rotation_step_rad = info.limits.turn.quantum_rad;
-    describe.torque_growth_max_nm_per_s = info.limits.turn.slew_max_nm_per_s;
-    describe.turning_stiffness_max_nm_per_rad = info.limits.turn.stiffness_max_nm_per_rad;
-    describe.added_turning_damping_max_nm_s_per_rad =
-        info.limits.turn.added_damping_max_nm_s_per_rad;
+    describe.torque_max_nm = info.limits.rotation.torque_max_nm;
+    describe.inertia_kg_m2 = info.limits.rotation.inertia_kg_m2;
+    describe.rotational_damping_nm_s_per_rad = info.limits.rotation.damping_nm_s_per_rad;
+    describe.rotational_friction_nm = info.limits.rotation.friction_nm;
+    describe.rotation_step_rad = info.limits.rotation.quantum_rad;
+    describe.torque_growth_max_nm_per_s = info.limits.rotation.slew_max_nm_per_s;
+    describe.rotational_stiffness_max_nm_per_rad = info.limits.rotation.stiffness_max_nm_per_rad;
+    describe.added_rotational_damping_max_nm_s_per_rad =
+        info.limits.rotation.added_damping_max_nm_s_per_rad;
     describe.gripper_force_max_n = info.gripper_force_max_n;
     describe.flags = TACTUS_MEASURES_ROTATION;
     return describe;
@@ -171,7 +171,7 @@ void sum(const void* bytes, std::size_t size, std::uint8_t tag[16])
     }
 }
 
-class SumSeal final : public Seal
+class SumAuthenticator final : public Authenticator
 {
 public:
     [[nodiscard]] Tag tag_of(std::span<const std::byte> bytes) const noexcept override
@@ -186,13 +186,13 @@ public:
 
 TEST_F(DriverStructs, are_sealed_by_a_key_both_ways)
 {
-    const SumSeal seal;
-    driver.seal = sum;
-    EXPECT_TRUE(is_sealed(next(), seal));
+    const SumAuthenticator authenticator;
+    driver.authenticate = sum;
+    EXPECT_TRUE(is_authentic(next(), authenticator));
     EXPECT_FALSE(takes(force));
-    const Datagram datagram = sealed(encode(force), seal);
+    const Datagram datagram = authenticated(encode(force), authenticator);
     ASSERT_EQ(tactus_driver_take(&driver, datagram.data(), datagram.size(), now_ns), 1);
-    EXPECT_TRUE(is_sealed(next(), seal));
+    EXPECT_TRUE(is_authentic(next(), authenticator));
 }
 
 } // namespace

@@ -17,11 +17,11 @@ namespace
 {
 
 /// Hand that moves along x by a millimetre each period.
-class HandThatWalks final : public HandMotion
+class HandThatWalks final : public OperatorMotion
 {
 public:
     [[nodiscard]] Vec3 start_world_m() const noexcept override { return Vec3::Zero(); }
-    [[nodiscard]] Vec3 next_world_m(const HandSense& sense) noexcept override
+    [[nodiscard]] Vec3 next_world_m(const OperatorSense& sense) noexcept override
     {
         return {1e-3 * static_cast<double>(sense.frame), 0.0, 0.0};
     }

@@ -133,7 +133,7 @@ TEST_P(HapticDeviceConformance, gives_way_to_the_force_it_is_told_to_make_or_not
 /// A device without torque takes the force alone; one without rotation reports none.
 TEST_P(HapticDeviceConformance, turns_by_the_torque_it_is_told_to_make_or_not_at_all)
 {
-    const TurnLimits& turn = rig->device().info().limits.turn;
+    const RotationLimits& turn = rig->device().info().limits.rotation;
     const DeviceSample start = rig->next();
     EXPECT_EQ(start.rotation_world.has_value(), turn.is_measured);
     DeviceSample sample;
@@ -161,7 +161,7 @@ TEST_P(HapticDeviceConformance, shortens_force_and_torque_by_one_factor)
     const DeviceLimits& limits = rig->device().info().limits;
     static_cast<void>(rig->next());
     rig->device().write({{0.1 * limits.force_max_n, 0.0, 0.0}, {0.0, 1e3, 0.0}, 0.0});
-    const bool has_torque = limits.turn.torque_max_nm > 0.0;
+    const bool has_torque = limits.rotation.torque_max_nm > 0.0;
     EXPECT_EQ(rig->device().status().forces_clamped, has_torque ? 1U : 0U);
     for (const double bad :
          {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})

@@ -285,7 +285,7 @@ std::int32_t longest_wake_us()
 }
 
 /// Number of open descriptors of that file in this process.
-std::ptrdiff_t wishes_held()
+std::ptrdiff_t requests_held()
 {
     return std::ranges::count_if(std::filesystem::directory_iterator("/proc/self/fd"),
                                  [](const auto& entry)
@@ -299,13 +299,13 @@ std::ptrdiff_t wishes_held()
 TEST(RtThread, keeps_the_processors_awake_until_it_is_joined)
 {
     RtThreadOptions options = as_far_as_allowed();
-    const std::ptrdiff_t before = wishes_held();
+    const std::ptrdiff_t before = requests_held();
     std::int32_t asked_us = -1;
     auto started = RtThread::start(options, [&] { asked_us = longest_wake_us(); });
     ASSERT_TRUE(started);
-    EXPECT_EQ(wishes_held(), before + (started.value().report().processors_awake ? 1 : 0));
+    EXPECT_EQ(requests_held(), before + (started.value().report().processors_awake ? 1 : 0));
     started.value().join();
-    EXPECT_EQ(wishes_held(), before);
+    EXPECT_EQ(requests_held(), before);
     if (!started.value().report().processors_awake)
     {
         GTEST_SKIP() << "/dev/cpu_dma_latency can't be written";
@@ -317,9 +317,9 @@ TEST(RtThread, lets_the_processors_sleep_where_it_was_not_asked)
 {
     RtThreadOptions options = as_far_as_allowed();
     options.processors_awake = false;
-    const std::ptrdiff_t before = wishes_held();
+    const std::ptrdiff_t before = requests_held();
     std::ptrdiff_t meanwhile = -1;
-    auto started = RtThread::start(options, [&] { meanwhile = wishes_held(); });
+    auto started = RtThread::start(options, [&] { meanwhile = requests_held(); });
     ASSERT_TRUE(started);
     started.value().join();
     EXPECT_EQ(meanwhile, before);

@@ -15,24 +15,24 @@ namespace
 {
 
 /// Hand that rests at the origin, jumps to `target` in the first frame and stays.
-class HandThatJumps final : public HandMotion
+class HandThatJumps final : public OperatorMotion
 {
 public:
     explicit HandThatJumps(const Vec3& target) : target_(target) {}
     [[nodiscard]] Vec3 start_world_m() const noexcept override { return Vec3::Zero(); }
-    [[nodiscard]] Vec3 next_world_m(const HandSense&) noexcept override { return target_; }
+    [[nodiscard]] Vec3 next_world_m(const OperatorSense&) noexcept override { return target_; }
 
 private:
     Vec3 target_;
 };
 
 /// Hand that moves at constant speed along x.
-class HandThatPulls final : public HandMotion
+class HandThatPulls final : public OperatorMotion
 {
 public:
     explicit HandThatPulls(double step_m) : step_m_(step_m) {}
     [[nodiscard]] Vec3 start_world_m() const noexcept override { return Vec3::Zero(); }
-    [[nodiscard]] Vec3 next_world_m(const HandSense& sense) noexcept override
+    [[nodiscard]] Vec3 next_world_m(const OperatorSense& sense) noexcept override
     {
         return Vec3::UnitX() * (step_m_ * static_cast<double>(sense.frame));
     }
@@ -42,7 +42,7 @@ private:
 };
 
 std::unique_ptr<SimulatedDevice> make(const SimulatedDeviceOptions& options,
-                                      std::unique_ptr<HandMotion> hand)
+                                      std::unique_ptr<OperatorMotion> hand)
 {
     return std::move(SimulatedDevice::create(options, std::move(hand))).value();
 }

@@ -131,7 +131,7 @@ TEST(UdpDatagram, of_version_1_is_still_understood)
     const auto& device = std::get<DescribeDatagram>(described);
     EXPECT_EQ(device.version, 1);
     EXPECT_EQ(device.info.limits.added_damping_max_n_s_per_m, 9.0);
-    EXPECT_EQ(device.info.limits.turn, TurnLimits{});
+    EXPECT_EQ(device.info.limits.rotation, RotationLimits{});
     EXPECT_EQ(device.info.gripper_force_max_n, 0.0);
     const auto sampled = decode_from_device(encode(of_points(test::example_sample())));
     ASSERT_TRUE(std::holds_alternative<SampleDatagram>(sampled));

@@ -440,13 +440,13 @@ TEST_F(UdpDeviceTest, tells_what_each_way_takes)
 TEST_F(UdpDeviceTest, of_version_1_is_answered_in_its_version)
 {
     DeviceInfo old = desk();
-    old.limits.turn = {};
+    old.limits.rotation = {};
     udp::DescribeDatagram described{{peer.instance(), 0, 1}, old};
     described.version = udp::kVersionOfPoints;
     peer.set_sequence(1);
     peer.send(udp::encode(described));
     sut = std::move(UdpDevice::create(std::move(socket), options)).value();
-    EXPECT_FALSE(sut->info().limits.turn.is_measured);
+    EXPECT_FALSE(sut->info().limits.rotation.is_measured);
     udp::ForceDatagram answer;
     for (bool is_answered = false; !is_answered;)
     {

@@ -106,8 +106,8 @@ TEST(UdpDriver, of_the_examples_attaches_obeys_dies_and_attaches_again)
     EXPECT_EQ(sut.info().limits.force_max_n, 8.0);
     EXPECT_EQ(sut.info().workspace_radius_m, 0.2);
     EXPECT_EQ(sut.info().rate_max_hz, 4'000);
-    EXPECT_EQ(sut.info().limits.turn.torque_max_nm, 0.2);
-    EXPECT_TRUE(sut.info().limits.turn.is_measured);
+    EXPECT_EQ(sut.info().limits.rotation.torque_max_nm, 0.2);
+    EXPECT_TRUE(sut.info().limits.rotation.is_measured);
     turn_to(sut, {0.0, 0.05, 0.0}, 0.1);
     push_to(sut, {0.0, 2.0, 0.0}, 0.01);
     push_to(sut, {0.0, -4.0, 0.0}, -0.02);

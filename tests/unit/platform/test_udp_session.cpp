@@ -219,7 +219,7 @@ TEST_F(UdpSession, believes_a_device_that_samples_for_a_while_and_alone)
 }
 
 /// Tag that the test can compute: the sum of the bytes, and a secret.
-class Sum final : public Seal
+class Sum final : public Authenticator
 {
 public:
     explicit Sum(std::uint8_t secret) : secret_(secret) {}
@@ -241,30 +241,34 @@ private:
 
 TEST_F(UdpSession, with_a_seal_hears_nobody_without_the_key)
 {
-    const Sum seal(7);
+    const Sum authenticator(7);
     const Sum other(8);
-    sut = Session(kSecret, milliseconds(20), {}, &seal);
+    sut = Session(kSecret, milliseconds(20), {}, &authenticator);
     const DescribeDatagram described{{9, 0, 1}, info};
     DescribeDatagram old = described;
     old.version = kVersionOfPoints;
-    for (const Datagram& bytes : {encode(described), sealed(encode(described), other), encode(old)})
+    for (const Datagram& bytes :
+         {encode(described), authenticated(encode(described), other), encode(old)})
     {
         EXPECT_TRUE(is(sut.receive(bytes, kHome, now), DatagramFault::tag));
         EXPECT_FALSE(sut.info());
     }
-    EXPECT_TRUE(is_described(sut.receive(sealed(encode(described), seal), kHome, now)));
+    EXPECT_TRUE(
+        is_described(sut.receive(authenticated(encode(described), authenticator), kHome, now)));
     SampleDatagram datagram;
     datagram.address = {9, kSecret, 2};
     datagram.time_ns = 1;
     EXPECT_TRUE(is(sut.receive(encode(datagram), kHome, now), DatagramFault::tag));
-    EXPECT_TRUE(is(sut.receive(sealed(encode(datagram), other), kHome, now), DatagramFault::tag));
-    EXPECT_TRUE(is_sampled(sut.receive(sealed(encode(datagram), seal), kHome, now)));
+    EXPECT_TRUE(
+        is(sut.receive(authenticated(encode(datagram), other), kHome, now), DatagramFault::tag));
+    EXPECT_TRUE(
+        is_sampled(sut.receive(authenticated(encode(datagram), authenticator), kHome, now)));
 }
 
 /// A change of any byte before the checksum invalidates the tag.
 TEST_F(UdpSession, a_seal_covers_every_byte)
 {
-    const Sum seal(7);
+    const Sum authenticator(7);
     ForceDatagram force;
     force.address = {9, kSecret, 1};
     force.state = DeviceState::force;
@@ -273,8 +277,8 @@ TEST_F(UdpSession, a_seal_covers_every_byte)
     for (const Datagram& whole :
          {encode(DescribeDatagram{{9, 0, 1}, info}), encode(sampled), encode(force)})
     {
-        const Datagram right = sealed(whole, seal);
-        EXPECT_TRUE(is_sealed(right, seal));
+        const Datagram right = authenticated(whole, authenticator);
+        EXPECT_TRUE(is_authentic(right, authenticator));
         std::vector<std::byte> bytes(right.begin(), right.end());
         for (std::size_t i = 0; i + 4 < bytes.size(); ++i)
         {
@@ -283,7 +287,7 @@ TEST_F(UdpSession, a_seal_covers_every_byte)
                 continue; // The kind, which is right in any datagram that decodes.
             }
             bytes[i] ^= std::byte{1};
-            EXPECT_FALSE(is_sealed(bytes, seal)) << i;
+            EXPECT_FALSE(is_authentic(bytes, authenticator)) << i;
             bytes[i] ^= std::byte{1};
         }
     }

@@ -22,10 +22,10 @@ struct ExampleFrame
     std::array<DeviceRecord, 1> devices{};
     std::array<SceneChange, 3> changes{};
     Budgets budgets{11, 12, 13, 14, 15, 16, 17, 18, 19, 20};
-    std::array<DoorEvent, 2> events{
-        DoorEvent{{ContentKind::chunk, 1}, 2, 5, 0xF0F0, DoorEventKind::arrival},
-        DoorEvent{{ContentKind::chunk, 1}, 2, 6, 0xFFF0, DoorEventKind::link_update}};
-    DoorTake door{events, 9};
+    std::array<QueueEvent, 2> events{
+        QueueEvent{{ContentKind::chunk, 1}, 2, 5, 0xF0F0, QueueEventKind::arrival},
+        QueueEvent{{ContentKind::chunk, 1}, 2, 6, 0xFFF0, QueueEventKind::link_update}};
+    QueueTake queues{events, 9};
     std::array<ToolOutput, 1> tool_outputs{};
     std::array<PairOutput, 1> pair_outputs{};
     std::array<ModelOutput, 1> model_outputs{};
@@ -34,7 +34,7 @@ struct ExampleFrame
     {
         tools[0].rotation << 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0;
         DeviceRecord& device = devices[0];
-        device.hand = HandPlace{Vec3(31.0, 32.0, 33.0), Mat3::Identity()};
+        device.hand = DevicePose{Vec3(31.0, 32.0, 33.0), Mat3::Identity()};
         device.velocity_m_per_s = Vec3(34.0, 35.0, 36.0);
         device.angular_velocity_rad_per_s = Vec3(37.0, 38.0, 39.0);
         device.buttons = 40;
@@ -62,7 +62,7 @@ struct ExampleFrame
     [[nodiscard]] FrameInput input() const { return {tools, changes, budgets, 123'456'789}; }
     [[nodiscard]] FrameOutput output() const
     {
-        return {tool_outputs, pair_outputs, model_outputs, {}, FrameFault::none, door, {}};
+        return {tool_outputs, pair_outputs, model_outputs, {}, FrameFault::none, queues, {}};
     }
     /// Frame coded by `encoder`, in separate memory.
     [[nodiscard]] std::vector<std::byte> code(FrameEncoder& encoder) const
@@ -94,7 +94,7 @@ inline RecordedSetup example_setup(const TinyModel& model)
     return setup;
 }
 
-/// Three frames, the first of which takes a chunk from the door.
+/// Three frames, the first of which takes a chunk from the queues.
 inline std::vector<std::byte> example_recording(const TinyModel& model,
                                                 std::uint64_t lost_from = kNoFrame)
 {
@@ -107,7 +107,7 @@ inline std::vector<std::byte> example_recording(const TinyModel& model,
     for (int i = 0; i < 3; ++i)
     {
         writer.add_frame(frame.code(encoder));
-        frame.door.events = {};
+        frame.queues.events = {};
     }
     writer.finish(lost_from);
     return writer.take_bytes();

@@ -111,11 +111,11 @@ TEST(FrameCoding, holds_the_largest_frame_there_can_be)
     {
         change.kind = SceneChangeKind::object_comes;
     }
-    const std::vector<DoorEvent> events(kMaxDoorEvents,
-                                        DoorEvent{{ContentKind::chunk, 1}, 0, 0, 1});
+    const std::vector<QueueEvent> events(kMaxQueueEvents,
+                                         QueueEvent{{ContentKind::chunk, 1}, 0, 0, 1});
     const std::vector<ModelOutput> models(kMaxModels);
     FrameOutput output;
-    output.door = {events, 0};
+    output.queues = {events, 0};
     output.models = models;
     FrameEncoder encoder;
 
@@ -206,7 +206,7 @@ TEST(FrameCoding, of_a_frame_that_failed_says_what_it_was_given_and_nothing_foll
     const ExampleFrame frame;
     FrameEncoder encoder;
     const std::vector<std::byte> whole = frame.code(encoder);
-    const auto given = encoder.encode_given({frame.input(), frame.door, frame.devices});
+    const auto given = encoder.encode_given({frame.input(), frame.queues, frame.devices});
     std::vector<std::byte> bytes(given.begin(), given.end());
     EXPECT_EQ(bytes.size(), whole.size() - 8 - sizeof(OutputHashes));
     EXPECT_EQ(bytes[kFlagsAt], std::byte{7}) << "its budgets are told in any case";

@@ -119,14 +119,14 @@ TEST(FrameTap, of_a_run_ends_with_the_frame_that_failed_unless_one_is_lost)
     FrameDecoder decoder(kExampleShape);
     record(sut, frame, 0);
     frame.tools[0].sample_time_ns = 1;
-    sut.record_failed({frame.input(), frame.door, frame.devices});
+    sut.record_failed({frame.input(), frame.queues, frame.devices});
     EXPECT_EQ(take_all(sut, decoder), (std::vector<std::int64_t>{0, 1}));
     EXPECT_FALSE(decoder.frame().has_hashes);
     EXPECT_EQ(decoder.frame().events.size(), frame.events.size());
 
     FrameTap full(2);
     record(full, frame, 0);
-    full.record_failed({frame.input(), frame.door, frame.devices});
+    full.record_failed({frame.input(), frame.queues, frame.devices});
     EXPECT_EQ(full.lost_from(), 0U);
     EXPECT_TRUE(take_all(full, decoder).empty());
 }

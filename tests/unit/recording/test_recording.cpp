@@ -111,10 +111,10 @@ TEST(RecordingFile, gives_back_what_was_written)
     EXPECT_EQ(setup.tools[0].torque_max_nm, 0.25);
     EXPECT_FALSE(setup.tools[0].wants_contacts);
     EXPECT_TRUE(setup.tools[0].wants_pairs);
-    EXPECT_TRUE(setup.tools[0].passes_through);
+    EXPECT_TRUE(setup.tools[0].query_only);
     EXPECT_TRUE(setup.tools[0].wants_distance);
     EXPECT_EQ(setup.tools[0].angular_stiffness_nm_per_rad, 0.75);
-    EXPECT_EQ(setup.tools[0].smooth_m, 0.002);
+    EXPECT_EQ(setup.tools[0].shading_m, 0.002);
     EXPECT_EQ(setup.objects[0].model.value, 0U);
     EXPECT_EQ(setup.objects[0].material.stiffness_n_per_m, 250.0);
     EXPECT_EQ(setup.objects[0].material.static_friction, 0.5);
@@ -147,7 +147,7 @@ std::vector<std::byte> with_name(const RecordedName& what, const std::string& na
     RecordingWriter writer(setup);
     FrameEncoder encoder;
     ExampleFrame frame;
-    frame.door.events = {};
+    frame.queues.events = {};
     writer.add_frame(frame.code(encoder));
     writer.add_name(what, name);
     writer.finish(kNoFrame);
@@ -194,14 +194,14 @@ Result<Recording, Refusal> with_given_frames(int of_run, int given)
     RecordingWriter writer(example_setup(model()));
     FrameEncoder encoder;
     ExampleFrame frame;
-    frame.door.events = {};
+    frame.queues.events = {};
     for (int i = 0; i < of_run; ++i)
     {
         writer.add_frame(frame.code(encoder));
     }
     for (int i = 0; i < given; ++i)
     {
-        writer.add_frame(encoder.encode_given({frame.input(), frame.door, frame.devices}));
+        writer.add_frame(encoder.encode_given({frame.input(), frame.queues, frame.devices}));
     }
     writer.finish(kNoFrame);
     return Recording::parse(writer.take_bytes(), "run.rec");
@@ -269,7 +269,7 @@ TEST(RecordingFile, is_refused_when_sections_are_out_of_order)
     expect_refusal(joined({kSetup, kSetup}), "out of order");
     expect_refusal(joined({kSetup, kModel, kModel}), "out of order");
     expect_refusal(joined({kSetup, kModel, kFrames, kPiece, kEnd}),
-                   "frame 0 takes piece 1 of model 0 from the door, which is not in the "
+                   "frame 0 takes piece 1 of model 0 from the queues, which is not in the "
                    "recording before it");
     expect_refusal(joined({kSetup, kModel, kPiece, kPiece}), "a piece is in the recording twice");
     expect_refusal(joined({kSetup, kModel, kPiece, kEnd}),
@@ -372,7 +372,7 @@ TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
     constexpr std::size_t kChanges = 1 + 9 + kObjectPoseBytes + kSceneChangeBytes + kFeel;
     constexpr std::size_t kSlot = 4 + 1 + 8 + kToolStateBytes + kChanges + kBudgetsBytes + 13;
     expect_refusal(with_bytes(kFrames, kSlot, {4}), "frame 0 names slot 4 of 4");
-    expect_refusal(with_bytes(kFrames, kSlot - 5, {9}), "takes piece 1 of model 9 from the door");
+    expect_refusal(with_bytes(kFrames, kSlot - 5, {9}), "takes piece 1 of model 9 from the queues");
     expect_refusal(with_bytes(kEnd, 0, {2}), "the end states 2 frames and 1 pieces, but 3 and 1");
     expect_refusal(with_section(kEnd, [](auto& payload) { payload.push_back({}); }),
                    "the end section has another size than its content");
@@ -384,7 +384,7 @@ std::pair<std::vector<std::byte>, std::size_t> long_recording()
     RecordingWriter writer(example_setup(model()));
     FrameEncoder encoder;
     ExampleFrame frame;
-    frame.door.events = {};
+    frame.queues.events = {};
     for (int i = 0; i < 1'000; ++i)
     {
         writer.add_frame(frame.code(encoder));

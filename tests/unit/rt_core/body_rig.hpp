@@ -42,7 +42,7 @@ public:
     {
         return step(hand_at(goal, rotation));
     }
-    ToolOutput step(const ToolGoal& hand)
+    ToolOutput step(const ProxyGoal& hand)
     {
         sut.see(hand);
         carry(sut);
@@ -50,7 +50,7 @@ public:
         ToolOutput output = step_once(hand, clear);
         steps = 1;
         double left = clear;
-        while (takes_steps && sut.goes_on() && !output.squeezed &&
+        while (takes_steps && sut.goes_on() && !output.over_constrained &&
                steps < RigidProxy::kStepsPerFrame)
         {
             left -= sut.went_m();
@@ -92,7 +92,7 @@ public:
     std::vector<Similarity> stations{}; ///< Ends of its steps.
 
 private:
-    ToolOutput step_once(const ToolGoal& hand, double clear_m)
+    ToolOutput step_once(const ProxyGoal& hand, double clear_m)
     {
         std::vector<TouchReport> reports(objects.size());
         std::vector<OwnedSurface> surfaces(objects.size());

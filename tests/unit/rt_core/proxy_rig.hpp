@@ -22,7 +22,7 @@ inline constexpr double kStiffness = 500.0;
 /// Remaining distance between the proxy and the reachable goal, relative to the radius.
 inline constexpr double kRest = 3e-3;
 
-[[nodiscard]] inline ToolSpec ball_tool()
+[[nodiscard]] inline ToolSpec sphere_tool()
 {
     ToolSpec spec;
     spec.radius_m = kRadius;
@@ -32,8 +32,8 @@ inline constexpr double kRest = 3e-3;
 }
 
 /// First goal, at which the proxy begins.
-[[nodiscard]] inline ToolGoal goal_at(const Vec3& position_m,
-                                      const Vec3& velocity_m_per_s = Vec3(0.0, 0.0, 0.0))
+[[nodiscard]] inline ProxyGoal goal_at(const Vec3& position_m,
+                                       const Vec3& velocity_m_per_s = Vec3(0.0, 0.0, 0.0))
 {
     return {position_m, velocity_m_per_s, kPeriod_s, Mat3::Identity(), GoalChange::first};
 }
@@ -57,11 +57,11 @@ class ProxyRig : public Solids
 {
 public:
     ProxyRig(TriangleList list, const Vec3& start, const ObjectPose& pose = {},
-             const ToolSpec& tool = ball_tool())
+             const ToolSpec& tool = sphere_tool())
         : ProxyRig(std::vector<Solid>{{std::move(list), pose}}, start, tool)
     {
     }
-    ProxyRig(std::vector<Solid> solids, const Vec3& start, const ToolSpec& tool = ball_tool())
+    ProxyRig(std::vector<Solid> solids, const Vec3& start, const ToolSpec& tool = sphere_tool())
         : Solids(std::move(solids)), sut(tool)
     {
         sut.see(goal_at(start));
@@ -71,7 +71,7 @@ public:
     {
         return step(goal_at(goal, velocity));
     }
-    ToolOutput step(const ToolGoal& hand)
+    ToolOutput step(const ProxyGoal& hand)
     {
         carry(sut);
         return respond(hand, planes, false);
@@ -142,7 +142,7 @@ public:
     std::uint32_t lists{0};                     ///< Lists of the last step_on().
 
 private:
-    ToolOutput respond(const ToolGoal& hand, std::uint32_t left, bool is_cut)
+    ToolOutput respond(const ProxyGoal& hand, std::uint32_t left, bool is_cut)
     {
         std::vector<std::unique_ptr<OwnedSurface>> surfaces;
         std::vector<PlacedSurface> placed;

@@ -4,7 +4,7 @@
 
 #include "rt_core/force/near_object.hpp"
 #include "rt_core/force/placed_surface.hpp"
-#include "rt_core/force/tool_goal.hpp"
+#include "rt_core/force/proxy_goal.hpp"
 #include "rt_core/records/frame_output.hpp"
 #include "tests/shared/distance_oracle.hpp"
 #include "tests/shared/owned_surface.hpp"
@@ -108,10 +108,10 @@ surface_of(const TriangleList& list, const Vec3& center_m, double certified_m)
     return turned.angle() * turned.axis();
 }
 
-[[nodiscard]] inline ToolGoal hand_at(const Vec3& position_m,
-                                      const Mat3& rotation = Mat3::Identity())
+[[nodiscard]] inline ProxyGoal hand_at(const Vec3& position_m,
+                                       const Mat3& rotation = Mat3::Identity())
 {
-    ToolGoal hand;
+    ProxyGoal hand;
     hand.position_m = position_m;
     hand.rotation = rotation;
     hand.elapsed_s = kPeriod_s;
@@ -165,11 +165,11 @@ template <typename AnyRig, typename Hand>
 double work_of_rounds(AnyRig& rig, const Hand& hand_of, int round, int rounds = 2)
 {
     double work_j = 0.0;
-    ToolGoal before = hand_of(0);
+    ProxyGoal before = hand_of(0);
     ToolOutput last = rig.step(before);
     for (int step = 1; step <= rounds * round; ++step)
     {
-        const ToolGoal hand = hand_of(step);
+        const ProxyGoal hand = hand_of(step);
         const ToolOutput now = rig.step(hand);
         work_j += 0.5 * (now.force_n + last.force_n).dot(hand.position_m - before.position_m) +
                   0.5 * (now.torque_nm + last.torque_nm)

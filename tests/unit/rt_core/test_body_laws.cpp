@@ -29,7 +29,7 @@ struct Kind
     double rest_m;
 };
 
-struct Ball
+struct SphereTool
 {
     using Rig = ProxyRig;
     static constexpr double kRest_m = kRadius;
@@ -48,11 +48,11 @@ struct Ball
     static constexpr int kLetGoFrames = 3;
     static constexpr bool kTurns = false;
 
-    static std::vector<Kind> kinds() { return {{ball_tool(), kRest_m}}; }
+    static std::vector<Kind> kinds() { return {{sphere_tool(), kRest_m}}; }
     /// Tool small compared with bumps, so that the proxy's remainder of a step is small too.
     static Kind on_bumps()
     {
-        ToolSpec pin = ball_tool();
+        ToolSpec pin = sphere_tool();
         pin.radius_m = 5e-4;
         return {pin, pin.radius_m};
     }
@@ -105,7 +105,7 @@ struct Block
     }
     static void blind(Rig& rig, bool is_blind)
     {
-        rig.kind = is_blind ? AnswerKind::bracket : AnswerKind::exact;
+        rig.kind = is_blind ? AnswerKind::bounded : AnswerKind::exact;
         rig.lower_share = is_blind ? 0.5 : 1.0;
     }
     static Similarity place(const Rig& rig) { return rig.sut.place(); }
@@ -134,7 +134,7 @@ protected:
         static_cast<void>(hold(rig, Vec3(0, 0, kind.rest_m - 1e-5), 300));
         return rig;
     }
-    static ToolOutput hold(Rig& rig, const ToolGoal& hand, int frames = 300)
+    static ToolOutput hold(Rig& rig, const ProxyGoal& hand, int frames = 300)
     {
         ToolOutput output;
         for (int i = 0; i < frames; ++i)
@@ -173,7 +173,7 @@ protected:
     }
 };
 
-using Bodies = testing::Types<Ball, Block>;
+using Bodies = testing::Types<SphereTool, Block>;
 TYPED_TEST_SUITE(BodyLaws, Bodies);
 
 Material rubbing(double static_friction, double dynamic_friction)
@@ -202,7 +202,7 @@ TYPED_TEST(BodyLaws, in_free_flight_is_where_the_hand_is_without_a_force)
             ASSERT_TRUE(!TypeParam::kTurns || output.proxy_rotation == rotation) << i;
             ASSERT_EQ(output.force_n, Vec3(0, 0, 0)) << i;
             ASSERT_EQ(output.torque_nm, Vec3(0, 0, 0)) << i;
-            ASSERT_FALSE(output.in_contact || output.frozen) << i;
+            ASSERT_FALSE(output.in_contact || output.halted) << i;
         }
     }
 }
@@ -216,7 +216,7 @@ TYPED_TEST(BodyLaws, pressed_flat_stays_flat_pushes_by_its_depth_and_is_let_go_a
             auto rig = TypeParam::over({{plane()}}, spec, Vec3(0.1, 0.2, 0.05));
             const ToolOutput output = this->hold(rig, Vec3(0.1, 0.2, rest_m - depth));
             EXPECT_TRUE(output.in_contact);
-            EXPECT_FALSE(output.frozen);
+            EXPECT_FALSE(output.halted);
             expect_vector(output.proxy_m, Vec3(0.1, 0.2, rest_m), TypeParam::kPlace_m);
             expect_vector(output.force_n, Vec3(0, 0, kStiffness * depth),
                           kStiffness * TypeParam::kPlace_m + 1e-4);
@@ -245,13 +245,13 @@ TYPED_TEST(BodyLaws, frozen_in_contact_stays_with_its_force_says_so_never_pulls_
     for (int i = 0; i < 60; ++i)
     {
         const ToolOutput output = rig.step(goal);
-        ASSERT_TRUE(has_fault(faults_of(output), FrameFault::proxy_frozen));
+        ASSERT_TRUE(has_fault(faults_of(output), FrameFault::proxy_halted));
         ASSERT_EQ(output.proxy_m, held.proxy_m);
         ASSERT_NEAR(output.force_n.z(), held.force_n.z(), 1e-9) << i;
         ASSERT_TRUE(!TypeParam::kTurns || output.lag_m < 1e-6) << "what presses it is no way";
     }
     const ToolOutput pulled = rig.step(Vec3(0, 0, 0.5));
-    EXPECT_TRUE(pulled.frozen);
+    EXPECT_TRUE(pulled.halted);
     EXPECT_NEAR(pulled.lag_m, 0.5 - held.proxy_m.z(), 1e-4);
     EXPECT_EQ(pulled.force_n, Vec3(0, 0, 0));
     EXPECT_EQ(pulled.proxy_m, held.proxy_m) << "what lies between is not known";
@@ -261,7 +261,7 @@ TYPED_TEST(BodyLaws, frozen_in_contact_stays_with_its_force_says_so_never_pulls_
     for (int i = 0; i < 100; ++i)
     {
         const ToolOutput output = rig.step(goal);
-        ASSERT_FALSE(output.frozen);
+        ASSERT_FALSE(output.halted);
         ASSERT_NEAR(output.force_n.z(), held.force_n.z(), 0.05) << i;
     }
     expect_vector(this->hold(rig, Vec3(0, 0, 0.1)).proxy_m, Vec3(0, 0, 0.1), kRest * kRadius);
@@ -279,7 +279,7 @@ TYPED_TEST(BodyLaws, an_object_that_moves_pushes_it_along_and_one_that_would_run
             double& height = rig.objects[0].pose.translation_m.z();
             height += (i < 200 ? speed : -speed) * kPeriod_s;
             const ToolOutput output = rig.step(hand);
-            ASSERT_FALSE(output.squeezed);
+            ASSERT_FALSE(output.over_constrained);
             ASSERT_TRUE(TypeParam::is_clear(rig)) << speed << " m/s, frame " << i;
             ASSERT_GT(output.proxy_m.z(), height);
         }
@@ -299,22 +299,23 @@ TYPED_TEST(BodyLaws, squeezed_between_objects_says_so_and_stays)
     const Vec3 hand(0, 0, TypeParam::kRest_m + 0.002);
     for (; ceiling_m > room_m + 0.006; ceiling_m -= 0.002)
     {
-        ASSERT_FALSE(rig.step(hand).squeezed);
+        ASSERT_FALSE(rig.step(hand).over_constrained);
     }
     ceiling_m = room_m + 0.006;
-    int squeezed = 0;
+    int over_constrained = 0;
     for (int i = 0; i < 300; ++i)
     {
         ceiling_m -= i < 70 ? 1e-4 : 0.0; // Down to a millimetre below the needed space.
         const ToolOutput output = rig.step(hand);
         ASSERT_TRUE(output.proxy_m.allFinite() && output.force_n.allFinite());
         ASSERT_LE(output.force_n.norm(), TypeParam::kinds()[0].spec.force_max_n) << i;
-        ASSERT_TRUE(!output.squeezed || ceiling_m < room_m * (1.0 + TypeParam::kRoom)) << i;
-        ASSERT_TRUE(output.squeezed || ceiling_m > room_m * (1.0 - TypeParam::kRoom)) << i;
-        ASSERT_EQ(output.squeezed, has_fault(faults_of(output), FrameFault::proxy_squeezed));
-        squeezed += output.squeezed ? 1 : 0;
+        ASSERT_TRUE(!output.over_constrained || ceiling_m < room_m * (1.0 + TypeParam::kRoom)) << i;
+        ASSERT_TRUE(output.over_constrained || ceiling_m > room_m * (1.0 - TypeParam::kRoom)) << i;
+        ASSERT_EQ(output.over_constrained,
+                  has_fault(faults_of(output), FrameFault::proxy_over_constrained));
+        over_constrained += output.over_constrained ? 1 : 0;
     }
-    EXPECT_GT(squeezed, 200);
+    EXPECT_GT(over_constrained, 200);
 }
 
 TYPED_TEST(BodyLaws, the_softer_of_tool_and_object_is_the_spring)
@@ -349,7 +350,7 @@ TYPED_TEST(BodyLaws, damping_is_of_the_motion_across_the_surface_and_never_pulls
     Material material;
     material.damping_n_s_per_m = 8.0;
     auto rig = this->on_plane(material);
-    ToolGoal hand = hand_at(this->at(0, 0, 0.004));
+    ProxyGoal hand = hand_at(this->at(0, 0, 0.004));
     const double still_n = this->hold(rig, hand).force_n.z();
     const auto pushed_n = [&](const Vec3& velocity_m_per_s)
     {
@@ -596,13 +597,13 @@ TYPED_TEST(BodyLaws, a_texture_makes_no_energy_on_closed_ways_and_turns)
                 const Mat3 turned = turn(Vec3(1, 0.4, 0), tilt_rad * std::sin(angle + 1.0)) *
                                     turn(Vec3(0, 0, 1), 0.05 * std::cos(angle));
                 return hand_at(
-                    pose.to_there(Vec3(wide_m.x() * std::cos(angle), wide_m.y() * std::sin(angle),
-                                       kind.rest_m - TypeParam::kBumpDepth_m +
-                                           dip_m * std::sin(angle + phase))),
+                    pose.local_to_world(Vec3(
+                        wide_m.x() * std::cos(angle), wide_m.y() * std::sin(angle),
+                        kind.rest_m - TypeParam::kBumpDepth_m + dip_m * std::sin(angle + phase))),
                     pose.rotation * turned);
             };
             auto rig = TypeParam::over({{plane(), pose, material}}, kind.spec,
-                                       pose.to_there(Vec3(0, 0, 0.05)));
+                                       pose.local_to_world(Vec3(0, 0, 0.05)));
             static_cast<void>(this->hold(rig, hand_of(0), 400));
             return work_of_rounds(rig, hand_of, kRound);
         };

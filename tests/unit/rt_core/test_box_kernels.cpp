@@ -20,7 +20,7 @@ struct BoxScene
 {
     QuantumBox page_box;
     IndexPage page;
-    std::vector<WantedBall> balls;
+    std::vector<WantedSphere> spheres;
 
     explicit BoxScene(Random& random)
     {
@@ -47,13 +47,13 @@ struct BoxScene
         }
         for (std::uint32_t i = 0; i < 1 + random.below(6U); ++i)
         {
-            WantedBall wanted;
+            WantedSphere wanted;
             for (std::size_t axis = 0; axis < 3; ++axis)
             {
-                wanted.ball.center[axis] = middle[axis] + random.between(-0.7, 0.7) * side;
+                wanted.sphere.center[axis] = middle[axis] + random.between(-0.7, 0.7) * side;
             }
-            wanted.ball.radius = random.between(0.0, 0.3) * side;
-            balls.push_back(wanted);
+            wanted.sphere.radius = random.between(0.0, 0.3) * side;
+            spheres.push_back(wanted);
         }
         if (random.one_in(4))
         {
@@ -64,17 +64,17 @@ struct BoxScene
     /// Moves a sphere to a box so that they touch, or nearly.
     void touch(std::uint32_t chunk)
     {
-        QuantumBall& ball = balls[0].ball;
-        const auto off = static_cast<double>(gap_to(chunk, {balls.data(), 1}));
-        ball.radius = std::max(ball.radius + off, 0.0);
+        QuantumSphere& sphere = spheres[0].sphere;
+        const auto off = static_cast<double>(gap_to(chunk, {spheres.data(), 1}));
+        sphere.radius = std::max(sphere.radius + off, 0.0);
     }
 
     /// Least distance of the spheres from a box, in extended precision; negative inside one.
-    [[nodiscard]] long double gap_to(std::uint32_t chunk) const { return gap_to(chunk, balls); }
-    [[nodiscard]] long double gap_to(std::uint32_t chunk, std::span<const WantedBall> from) const
+    [[nodiscard]] long double gap_to(std::uint32_t chunk) const { return gap_to(chunk, spheres); }
+    [[nodiscard]] long double gap_to(std::uint32_t chunk, std::span<const WantedSphere> from) const
     {
         long double least = 1e30L;
-        for (const WantedBall& wanted : from)
+        for (const WantedSphere& wanted : from)
         {
             long double sum = 0.0L;
             for (std::size_t axis = 0; axis < 3; ++axis)
@@ -83,11 +83,11 @@ struct BoxScene
                     static_cast<long double>(index_step(page_box.low[axis], page_box.high[axis]));
                 const long double low = page_box.low[axis] + step * page.low[axis][chunk];
                 const long double high = page_box.low[axis] + step * page.high[axis][chunk];
-                const auto at = static_cast<long double>(wanted.ball.center[axis]);
+                const auto at = static_cast<long double>(wanted.sphere.center[axis]);
                 const long double gap = std::max({low - at, at - high, 0.0L});
                 sum += gap * gap;
             }
-            const auto radius = static_cast<long double>(wanted.ball.radius);
+            const auto radius = static_cast<long double>(wanted.sphere.radius);
             least = std::min(least, std::sqrt(sum) - radius);
         }
         return least;
@@ -103,7 +103,7 @@ TEST(BoxKernels, decide_rightly_or_not_at_all_and_bound_the_gap_to_the_rest)
     for (int round = 0; round < 3'000; ++round)
     {
         const BoxScene scene(random);
-        const BallLanes lanes(scene.balls, 1.0);
+        const SphereLanes lanes(scene.spheres, 1.0);
         const KernelPage page = lanes.page(scene.page_box);
         const std::uint32_t first = 8 * random.below(8U);
         const auto known = random.one_in(2) ? 0U : random.below(256U);
@@ -111,7 +111,7 @@ TEST(BoxKernels, decide_rightly_or_not_at_all_and_bound_the_gap_to_the_rest)
         for (const Kernels* kernels : available_kernels())
         {
             all.push_back(kernels->near_boxes(&scene.page.low[0][first], page, lanes.from(0),
-                                              static_cast<std::uint32_t>(scene.balls.size()),
+                                              static_cast<std::uint32_t>(scene.spheres.size()),
                                               known));
             ASSERT_EQ(all.back().met, all[0].met) << kernels->name << " round " << round;
             ASSERT_EQ(all.back().open, all[0].open) << kernels->name << " round " << round;
@@ -156,11 +156,11 @@ TEST(BoxKernels, decide_nothing_where_squares_are_no_numbers)
 {
     Random random(4'309);
     BoxScene scene(random);
-    scene.balls.resize(1);
+    scene.spheres.resize(1);
     for (const double far : {1e19, 1e30})
     {
-        scene.balls[0].ball.radius = far;
-        const BallLanes lanes(scene.balls, 1.0);
+        scene.spheres[0].sphere.radius = far;
+        const SphereLanes lanes(scene.spheres, 1.0);
         const KernelPage page = lanes.page(scene.page_box);
         for (const Kernels* kernels : available_kernels())
         {

@@ -28,14 +28,14 @@ public:
         sut = BroadPhase(arena, objects, tools);
     }
 
-    void place(std::uint32_t object, const Ball& ball)
+    void place(std::uint32_t object, const Sphere& sphere)
     {
-        balls[object] = ball;
-        sut.place(object, ball);
+        spheres[object] = sphere;
+        sut.place(object, sphere);
     }
     void remove(std::uint32_t object)
     {
-        balls.erase(object);
+        spheres.erase(object);
         sut.remove(object);
     }
     [[nodiscard]] std::vector<std::uint32_t> near(std::uint32_t tool) const
@@ -47,29 +47,29 @@ public:
     [[nodiscard]] long double nearest_other(std::uint32_t tool, const Vec3& center) const
     {
         long double least = std::numeric_limits<long double>::infinity();
-        for (const auto& [object, ball] : balls)
+        for (const auto& [object, sphere] : spheres)
         {
             if (!std::ranges::binary_search(sut.near(tool), object))
             {
-                least = std::min(least, gap(center, ball));
+                least = std::min(least, gap(center, sphere));
             }
         }
         return least;
     }
-    [[nodiscard]] static long double gap(const Vec3& center, const Ball& ball)
+    [[nodiscard]] static long double gap(const Vec3& center, const Sphere& sphere)
     {
         long double square = 0.0L;
         for (int axis = 0; axis < 3; ++axis)
         {
             const long double way = static_cast<long double>(center[axis]) -
-                                    static_cast<long double>(ball.center[axis]);
+                                    static_cast<long double>(sphere.center[axis]);
             square += way * way;
         }
-        return std::sqrt(square) - static_cast<long double>(ball.radius);
+        return std::sqrt(square) - static_cast<long double>(sphere.radius);
     }
 
     BroadPhase sut;
-    std::map<std::uint32_t, Ball> balls;
+    std::map<std::uint32_t, Sphere> spheres;
 
 private:
     static std::size_t bytes(std::uint32_t objects, std::uint32_t tools)
@@ -93,12 +93,12 @@ void expect_proofs(std::uint64_t seed, std::uint32_t objects, std::uint32_t tool
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random = Random::seeded(seed);
     Crowd crowd(objects, tools);
-    const auto any_ball = [&] {
-        return Ball{random.in_cube(world_m), radius_m * random.between(0.0, 2.0)};
+    const auto any_sphere = [&] {
+        return Sphere{random.in_cube(world_m), radius_m * random.between(0.0, 2.0)};
     };
     for (std::uint32_t i = 0; i < objects; i += 1 + random.below(2))
     {
-        crowd.place(i, any_ball());
+        crowd.place(i, any_sphere());
     }
     std::vector<Vec3> centers;
     std::vector<Vec3> ways;
@@ -114,18 +114,18 @@ void expect_proofs(std::uint64_t seed, std::uint32_t objects, std::uint32_t tool
         for (int change = 0; change < 3; ++change)
         {
             const std::uint32_t object = random.below(objects);
-            const bool is_here = crowd.balls.contains(object);
-            if (is_here && random.below(4) == 0)
+            const bool is_resident = crowd.spheres.contains(object);
+            if (is_resident && random.below(4) == 0)
             {
                 crowd.remove(object);
             }
             else
             {
-                crowd.place(object,
-                            is_here && random.below(3) > 0
-                                ? Ball{crowd.balls[object].center + random.in_cube(0.01 * world_m),
-                                       crowd.balls[object].radius}
-                                : any_ball());
+                crowd.place(object, is_resident && random.below(3) > 0
+                                        ? Sphere{crowd.spheres[object].center +
+                                                     random.in_cube(0.01 * world_m),
+                                                 crowd.spheres[object].radius}
+                                        : any_sphere());
             }
         }
         for (std::uint32_t i = 0; i < tools; ++i)
@@ -140,7 +140,7 @@ void expect_proofs(std::uint64_t seed, std::uint32_t objects, std::uint32_t tool
         }
         crowd.sut.walk();
         ASSERT_LE(crowd.sut.walks(), kBroadWalks);
-        ASSERT_EQ(crowd.sut.objects(), crowd.balls.size());
+        ASSERT_EQ(crowd.sut.objects(), crowd.spheres.size());
         for (std::uint32_t i = 0; i < tools; ++i)
         {
             const auto near = crowd.near(i);
@@ -149,10 +149,11 @@ void expect_proofs(std::uint64_t seed, std::uint32_t objects, std::uint32_t tool
             ASSERT_LE(near.size(), kMaxNear);
             for (const std::uint32_t object : near)
             {
-                ASSERT_TRUE(crowd.balls.contains(object));
-                ASSERT_LE(crowd.sut.gap_m(i, object), Crowd::gap(centers[i], crowd.balls[object]));
+                ASSERT_TRUE(crowd.spheres.contains(object));
+                ASSERT_LE(crowd.sut.gap_m(i, object),
+                          Crowd::gap(centers[i], crowd.spheres[object]));
                 ASSERT_GE(crowd.sut.gap_m(i, object) + 1e-12 * world_m,
-                          Crowd::gap(centers[i], crowd.balls[object]));
+                          Crowd::gap(centers[i], crowd.spheres[object]));
             }
             ASSERT_LE(crowd.sut.clear_m(i), crowd.nearest_other(i, centers[i]))
                 << "tool " << i << ", frame " << frame;

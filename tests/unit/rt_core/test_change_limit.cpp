@@ -29,8 +29,8 @@ public:
     static DeviceLimits device()
     {
         DeviceLimits limits;
-        limits.turn.torque_max_nm = 0.5;
-        limits.turn.slew_max_nm_per_s = 1e3;
+        limits.rotation.torque_max_nm = 0.5;
+        limits.rotation.slew_max_nm_per_s = 1e3;
         return limits;
     }
 

@@ -24,9 +24,9 @@ constexpr std::uint32_t kChunks = 8;
 constexpr double kQuantum = 0x1p-10;
 
 /// Sphere around a place on the row, in quanta.
-RankedRegion ball(double x, double radius, std::int64_t lead_ns = 0)
+RankedRegion sphere(double x, double radius, std::int64_t horizon_ns = 0)
 {
-    return {ModelId{0}, Vec3(x, 25.0, 25.0) * kQuantum, radius * kQuantum, lead_ns};
+    return {ModelId{0}, Vec3(x, 25.0, 25.0) * kQuantum, radius * kQuantum, horizon_ns};
 }
 
 /// Cache with its table and inbox; the test acts as the transport thread.
@@ -72,12 +72,12 @@ public:
         ++frame;
         collect_freed();
         std::vector<ContentKey> keys;
-        PieceWish wish;
-        while (pool_->door.wanted.try_pop(wish))
+        PieceRequest request;
+        while (pool_->queues.wanted.try_pop(request))
         {
-            if (wish.owner == table_->owner())
+            if (request.owner == table_->owner())
             {
-                keys.push_back(wish.key);
+                keys.push_back(request.key);
             }
         }
         return keys;
@@ -98,7 +98,7 @@ public:
         ASSERT_FALSE(free_pages_.empty()) << "more was asked for than there are slots";
         slot_of[chunk] = free_pages_.front();
         free_pages_.pop_front();
-        ASSERT_TRUE(pool_->door.arrived.try_push({{ContentKind::chunk, chunk}, slot_of[chunk]}));
+        ASSERT_TRUE(pool_->queues.arrived.try_push({{ContentKind::chunk, chunk}, slot_of[chunk]}));
     }
     /// One frame that requests the whole model.
     std::vector<ContentKey> fill()
@@ -119,7 +119,7 @@ public:
             const auto low = static_cast<std::uint16_t>(100 * i + 10);
             index.set_box(i, {{low, 10, 10}, {static_cast<std::uint16_t>(low + 50), 60, 60}});
         }
-        ASSERT_TRUE(pool_->door.arrived.try_push({{ContentKind::index_page, page}, slot}));
+        ASSERT_TRUE(pool_->queues.arrived.try_push({{ContentKind::index_page, page}, slot}));
     }
     /// Requests and delivers until there are no further requests.
     void load(std::initializer_list<RankedRegion> regions)
@@ -157,10 +157,10 @@ public:
     {
         auto& free = key.kind == ContentKind::chunk ? free_pages_ : free_index_;
         ASSERT_FALSE(free.empty());
-        DoorEvent event{key, free.front()};
+        QueueEvent event{key, free.front()};
         event.owner = owner;
         free.pop_front();
-        ASSERT_TRUE(pool_->door.arrived.try_push(event));
+        ASSERT_TRUE(pool_->queues.arrived.try_push(event));
     }
     [[nodiscard]] bool cache_was_full() const { return has_fault(faults, FrameFault::cache_full); }
 
@@ -168,7 +168,7 @@ private:
     void collect_freed()
     {
         FreedSlot freed;
-        while (pool_->door.freed.try_pop(freed))
+        while (pool_->queues.freed.try_pop(freed))
         {
             (freed.kind == ContentKind::chunk ? free_pages_ : free_index_).push_back(freed.slot);
         }
@@ -206,28 +206,28 @@ TEST(ChunkCache, asks_for_the_index_page_first_and_only_once)
 {
     CacheRig rig = one_index_page(4);
 
-    const auto first = rig.ask({ball(25, 10)});
+    const auto first = rig.ask({sphere(25, 10)});
 
     ASSERT_EQ(first.size(), 1U);
     EXPECT_EQ(first[0], (ContentKey{ContentKind::index_page, 0}));
-    EXPECT_TRUE(rig.ask({ball(25, 10)}).empty());
+    EXPECT_TRUE(rig.ask({sphere(25, 10)}).empty());
 }
 
-TEST(ChunkCache, asks_for_nothing_when_no_ball_is_near)
+TEST(ChunkCache, asks_for_nothing_when_no_sphere_is_near)
 {
     CacheRig rig = one_index_page(4);
 
     EXPECT_TRUE(rig.ask({}).empty());
-    EXPECT_TRUE(rig.ask({ball(5'000, 10)}).empty());
+    EXPECT_TRUE(rig.ask({sphere(5'000, 10)}).empty());
 }
 
-TEST(ChunkCache, asks_for_exactly_the_chunks_whose_boxes_meet_a_ball)
+TEST(ChunkCache, asks_for_exactly_the_chunks_whose_boxes_meet_a_sphere)
 {
     Random random(20);
     for (int round = 0; round < 300; ++round)
     {
         CacheRig fresh = one_index_page(kChunks);
-        fresh.ask({ball(25, 10)});
+        fresh.ask({sphere(25, 10)});
         fresh.deliver_index_page(0);
         const double x = random.between(-100.0, 1'000.0);
         const double radius = random.between(0.0, 200.0);
@@ -240,55 +240,55 @@ TEST(ChunkCache, asks_for_exactly_the_chunks_whose_boxes_meet_a_ball)
                 expected.insert(i);
             }
         }
-        ASSERT_EQ(fresh.ask_chunks({ball(x, radius)}), expected) << x << " " << radius;
-        ASSERT_TRUE(fresh.ask({ball(x, radius)}).empty()) << "all are under way";
+        ASSERT_EQ(fresh.ask_chunks({sphere(x, radius)}), expected) << x << " " << radius;
+        ASSERT_TRUE(fresh.ask({sphere(x, radius)}).empty()) << "all are under way";
     }
 }
 
 TEST(ChunkCache, a_chunk_that_is_here_is_not_asked_for_again)
 {
     CacheRig rig = one_index_page(kChunks);
-    rig.load({ball(25, 10)});
+    rig.load({sphere(25, 10)});
 
     EXPECT_TRUE(rig.has(0));
-    EXPECT_TRUE(rig.ask({ball(25, 10)}).empty());
+    EXPECT_TRUE(rig.ask({sphere(25, 10)}).empty());
     EXPECT_EQ(rig.sut->loads(), 1U);
     rig.sut->set_variant({.keeps_searches = false});
-    EXPECT_TRUE(rig.ask({ball(25, 10)}).empty());
+    EXPECT_TRUE(rig.ask({sphere(25, 10)}).empty());
     EXPECT_GT(rig.work.cache_hits, 0U);
 }
 
-TEST(ChunkCache, sends_no_more_wishes_than_the_budget)
+TEST(ChunkCache, sends_no_more_requests_than_the_budget)
 {
     CacheRig other = one_index_page(kChunks);
-    other.ask({ball(400, 5'000)});
+    other.ask({sphere(400, 5'000)});
     other.deliver_index_page(0);
     other.budgets.requests = 3;
     other.work = {};
 
-    EXPECT_EQ(other.ask_chunks({ball(400, 5'000)}).size(), 3U);
+    EXPECT_EQ(other.ask_chunks({sphere(400, 5'000)}).size(), 3U);
 }
 
 TEST(ChunkCache, asks_for_no_more_chunks_than_the_transport_has_slots)
 {
     CacheRig rig = one_index_page(2);
-    rig.ask({ball(25, 10)});
+    rig.ask({sphere(25, 10)});
     rig.deliver_index_page(0);
 
-    EXPECT_EQ(rig.ask_chunks({ball(400, 5'000)}).size(), 2U);
+    EXPECT_EQ(rig.ask_chunks({sphere(400, 5'000)}).size(), 2U);
     EXPECT_TRUE(rig.cache_was_full());
 }
 
-TEST(ChunkCache, never_evicts_what_this_rounds_balls_need_and_says_that_it_is_full)
+TEST(ChunkCache, never_evicts_what_this_rounds_spheres_need_and_says_that_it_is_full)
 {
     CacheRig rig = one_index_page(2);
-    rig.load({ball(75, 40)});
+    rig.load({sphere(75, 40)});
     ASSERT_TRUE(rig.has(0) && rig.has(1));
     ASSERT_FALSE(rig.cache_was_full());
 
     for (int i = 0; i < 20; ++i)
     {
-        EXPECT_TRUE(rig.ask({ball(125, 140)}).empty());
+        EXPECT_TRUE(rig.ask({sphere(125, 140)}).empty());
         EXPECT_TRUE(rig.cache_was_full());
     }
 
@@ -299,19 +299,19 @@ TEST(ChunkCache, never_evicts_what_this_rounds_balls_need_and_says_that_it_is_fu
 TEST(ChunkCache, never_evicts_a_pinned_page)
 {
     CacheRig rig = one_index_page(2);
-    rig.load({ball(75, 40)});
+    rig.load({sphere(75, 40)});
     rig.table().set_refined({0}, true);
     rig.table().set_refined({64 + 5}, true);
 
     for (int i = 0; i < 20; ++i)
     {
-        EXPECT_TRUE(rig.ask({ball(725, 10)}).empty());
+        EXPECT_TRUE(rig.ask({sphere(725, 10)}).empty());
         EXPECT_TRUE(rig.cache_was_full());
     }
     EXPECT_TRUE(rig.has(0) && rig.has(1));
     rig.table().set_refined({64 + 5}, false);
 
-    EXPECT_EQ(rig.ask_chunks({ball(725, 10)}), Chunks{7});
+    EXPECT_EQ(rig.ask_chunks({sphere(725, 10)}), Chunks{7});
     EXPECT_TRUE(rig.has(0));
     EXPECT_FALSE(rig.has(1));
     EXPECT_FALSE(rig.cache_was_full());
@@ -320,17 +320,17 @@ TEST(ChunkCache, never_evicts_a_pinned_page)
 TEST(ChunkCache, gives_back_the_least_recently_touched_page)
 {
     CacheRig rig = one_index_page(2);
-    rig.load({ball(25, 10)});
-    rig.load({ball(225, 10)});
+    rig.load({sphere(25, 10)});
+    rig.load({sphere(225, 10)});
     ASSERT_TRUE(rig.has(0) && rig.has(2));
     for (int i = 0; i < 5; ++i)
     {
-        rig.ask({ball(25, 10)});
+        rig.ask({sphere(25, 10)});
     }
     rig.ask({});
     rig.ask({});
 
-    EXPECT_EQ(rig.ask_chunks({ball(425, 10)}), Chunks{4});
+    EXPECT_EQ(rig.ask_chunks({sphere(425, 10)}), Chunks{4});
     EXPECT_TRUE(rig.has(0));
     EXPECT_FALSE(rig.has(2));
     EXPECT_EQ(rig.work.evictions, 1U);
@@ -339,11 +339,11 @@ TEST(ChunkCache, gives_back_the_least_recently_touched_page)
 TEST(ChunkCache, what_is_only_predicted_never_evicts_what_is_of_use)
 {
     CacheRig rig = one_index_page(2);
-    rig.load({ball(75, 40)});
+    rig.load({sphere(75, 40)});
 
     for (int i = 0; i < 20; ++i)
     {
-        EXPECT_TRUE(rig.ask({ball(75, 40), ball(725, 10, 15'000'000)}).empty());
+        EXPECT_TRUE(rig.ask({sphere(75, 40), sphere(725, 10, 15'000'000)}).empty());
         EXPECT_FALSE(rig.cache_was_full()) << "a prediction that finds no room is no fault";
     }
     EXPECT_TRUE(rig.has(0) && rig.has(1));
@@ -352,7 +352,7 @@ TEST(ChunkCache, what_is_only_predicted_never_evicts_what_is_of_use)
 TEST(ChunkCache, present_need_takes_the_place_of_what_was_only_predicted)
 {
     CacheRig rig = one_index_page(2);
-    rig.load({ball(25, 10), ball(725, 10, 15'000'000)});
+    rig.load({sphere(25, 10), sphere(725, 10, 15'000'000)});
     ASSERT_TRUE(rig.has(0) && rig.has(7));
     // Adoption counts as a use; after this many frames only the present counts.
     rig.frame += 2'000;
@@ -360,7 +360,7 @@ TEST(ChunkCache, present_need_takes_the_place_of_what_was_only_predicted)
     Chunks asked;
     for (int i = 0; i < 4; ++i)
     {
-        asked.merge(rig.ask_chunks({ball(75, 40), ball(725, 10, 15'000'000)}));
+        asked.merge(rig.ask_chunks({sphere(75, 40), sphere(725, 10, 15'000'000)}));
     }
 
     EXPECT_EQ(asked, Chunks{1});
@@ -371,32 +371,32 @@ TEST(ChunkCache, present_need_takes_the_place_of_what_was_only_predicted)
 TEST(ChunkCache, asks_again_for_what_was_not_answered_in_time)
 {
     CacheRig lost = one_index_page(2);
-    lost.ask({ball(25, 5)});
+    lost.ask({sphere(25, 5)});
     lost.deliver_index_page(0);
-    ASSERT_EQ(lost.ask_chunks({ball(25, 5)}), Chunks{0});
+    ASSERT_EQ(lost.ask_chunks({sphere(25, 5)}), Chunks{0});
     const std::uint32_t asked = lost.frame - 1;
 
-    while (lost.ask_chunks({ball(25, 5)}).empty())
+    while (lost.ask_chunks({sphere(25, 5)}).empty())
     {
-        ASSERT_LT(lost.frame, asked + 2 * kWishTimeoutFrames);
+        ASSERT_LT(lost.frame, asked + 2 * kRequestTimeoutFrames);
     }
 
-    EXPECT_GT(lost.frame - 1, asked + kWishTimeoutFrames);
+    EXPECT_GT(lost.frame - 1, asked + kRequestTimeoutFrames);
 }
 
 TEST(ChunkCache, late_arrivals_never_let_more_be_asked_for_than_there_are_slots)
 {
     CacheRig rig = one_index_page(3);
-    rig.ask({ball(25, 10)});
+    rig.ask({sphere(25, 10)});
     rig.deliver_index_page(0);
-    ASSERT_EQ(rig.ask_chunks({ball(125, 120)}), (Chunks{0, 1, 2}));
+    ASSERT_EQ(rig.ask_chunks({sphere(125, 120)}), (Chunks{0, 1, 2}));
     // The network stalls until all three requests have expired; then two others are wanted.
-    rig.frame += kWishTimeoutFrames + 1;
+    rig.frame += kRequestTimeoutFrames + 1;
     for (int i = 0; i < 4; ++i)
     {
         ASSERT_TRUE(rig.ask({}).empty());
     }
-    ASSERT_EQ(rig.ask_chunks({ball(575, 50)}), (Chunks{5, 6}));
+    ASSERT_EQ(rig.ask_chunks({sphere(575, 50)}), (Chunks{5, 6}));
     // Two of the first three arrive after all: one slot is left for two requests.
     rig.deliver_chunk(0);
     rig.deliver_chunk(1);
@@ -404,24 +404,24 @@ TEST(ChunkCache, late_arrivals_never_let_more_be_asked_for_than_there_are_slots)
     rig.ask({});
     rig.ask({});
 
-    const Chunks asked = rig.ask_chunks({ball(325, 10)});
+    const Chunks asked = rig.ask_chunks({sphere(325, 10)});
 
     const std::size_t under_way = 2 + asked.size();
     EXPECT_TRUE(asked.empty() || under_way <= rig.free_pages())
-        << under_way << " wishes under way for " << rig.free_pages() << " free slots";
+        << under_way << " requests under way for " << rig.free_pages() << " free slots";
 }
 
-TEST(ChunkCache, asks_for_what_comes_into_a_ball_however_slowly_it_moves)
+TEST(ChunkCache, asks_for_what_comes_into_a_sphere_however_slowly_it_moves)
 {
     CacheRig sut = one_index_page(8);
-    sut.load({ball(20, 10)});
+    sut.load({sphere(20, 10)});
     Chunks asked;
 
     // The path is from chunk 0 to chunk 1, each frame within a recent search.
     for (int i = 0; i <= 800; ++i)
     {
         const double x = 20.0 + 0.1 * i;
-        for (const std::uint32_t chunk : sut.ask_chunks({ball(x, 10)}))
+        for (const std::uint32_t chunk : sut.ask_chunks({sphere(x, 10)}))
         {
             asked.insert(chunk);
             sut.deliver_chunk(chunk);
@@ -435,10 +435,10 @@ TEST(ChunkCache, asks_for_what_comes_into_a_ball_however_slowly_it_moves)
 TEST(ChunkCache, rests_for_no_longer_than_the_pages_may_go_untouched)
 {
     CacheRig sut = one_index_page(8);
-    sut.load({ball(25, 10)});
+    sut.load({sphere(25, 10)});
     for (int i = 0; i < 100; ++i)
     {
-        ASSERT_TRUE(sut.ask({ball(25, 10)}).empty());
+        ASSERT_TRUE(sut.ask({sphere(25, 10)}).empty());
         const std::uint32_t slot = sut.table().find({0});
         ASSERT_LE(sut.frame - sut.table().meta(slot).touched, 18U);
     }
@@ -447,49 +447,49 @@ TEST(ChunkCache, rests_for_no_longer_than_the_pages_may_go_untouched)
 TEST(ChunkCache, goes_on_asking_while_something_had_to_wait)
 {
     CacheRig sut = one_index_page(8);
-    sut.ask({ball(400, 5'000)});
+    sut.ask({sphere(400, 5'000)});
     sut.deliver_index_page(0);
     sut.budgets.requests = 1;
     for (std::uint32_t i = 0; i < kChunks; ++i)
     {
         sut.work = {};
-        ASSERT_EQ(sut.ask_chunks({ball(400, 5'000)}), Chunks{i});
+        ASSERT_EQ(sut.ask_chunks({sphere(400, 5'000)}), Chunks{i});
     }
-    EXPECT_TRUE(sut.ask({ball(400, 5'000)}).empty());
+    EXPECT_TRUE(sut.ask({sphere(400, 5'000)}).empty());
 }
 
 TEST(ChunkCache, without_shortcuts_every_frame_is_searched)
 {
     CacheRig sut = one_index_page(8);
     sut.sut->set_variant({.asks_near_models_only = false, .keeps_searches = false});
-    sut.load({ball(25, 10)});
+    sut.load({sphere(25, 10)});
     sut.work = {};
     for (int i = 0; i < 10; ++i)
     {
-        sut.ask({ball(25, 10)});
+        sut.ask({sphere(25, 10)});
     }
     EXPECT_EQ(sut.work.regions_searched, 10U);
     EXPECT_EQ(sut.work.skipped.times(), (std::array<std::uint32_t, kSkips>{}));
 }
 
-TEST(ChunkCache, an_index_page_gives_way_when_the_balls_have_moved_on)
+TEST(ChunkCache, an_index_page_gives_way_when_the_spheres_have_moved_on)
 {
     CacheRig rig(2, 1, 64 * 64 * 2);
-    rig.load({ball(75, 1)});
+    rig.load({sphere(75, 1)});
     ASSERT_EQ(rig.sut->index_pages_used(), 1U);
 
     std::vector<ContentKey> asked;
     for (int i = 0; i < 10 && asked.empty(); ++i)
     {
-        asked = rig.ask({ball(CacheRig::kPageDistance + 75, 1)});
+        asked = rig.ask({sphere(CacheRig::kPageDistance + 75, 1)});
     }
 
     ASSERT_EQ(asked.size(), 1U);
     EXPECT_EQ(asked[0], (ContentKey{ContentKind::index_page, 1}));
     EXPECT_EQ(rig.sut->index_pages_used(), 0U);
     rig.deliver_index_page(1);
-    EXPECT_TRUE(rig.ask({ball(CacheRig::kPageDistance + 75, 1)}).empty()) << "between two boxes";
-    EXPECT_EQ(rig.ask_chunks({ball(CacheRig::kPageDistance + 125, 1)}), Chunks{64 + 1});
+    EXPECT_TRUE(rig.ask({sphere(CacheRig::kPageDistance + 75, 1)}).empty()) << "between two boxes";
+    EXPECT_EQ(rig.ask_chunks({sphere(CacheRig::kPageDistance + 125, 1)}), Chunks{64 + 1});
 }
 
 TEST(ChunkCache, adopts_no_more_arrivals_in_a_frame_than_the_limit_whatever_the_budget)
@@ -507,11 +507,11 @@ TEST(ChunkCache, adopts_no_more_arrivals_in_a_frame_than_the_limit_whatever_the_
     EXPECT_EQ(rig.table().used(), kMaxArrivalsPerFrame + 1);
 }
 
-TEST(ChunkCache, has_no_more_wishes_under_way_for_a_whole_model_than_the_limit)
+TEST(ChunkCache, has_no_more_requests_under_way_for_a_whole_model_than_the_limit)
 {
     constexpr std::uint32_t kPages = 4;
     constexpr std::uint32_t kAll = kPages * kChunksPerIndexPage;
-    static_assert(kAll > kMaxFillingWishes + 1);
+    static_assert(kAll > kMaxFillingRequests + 1);
     CacheRig rig(kAll, kPages, kAll * kRecordsPerChunk);
     rig.budgets.requests = kAll;
     for (std::uint32_t page = 0; page < kPages; ++page)
@@ -524,17 +524,17 @@ TEST(ChunkCache, has_no_more_wishes_under_way_for_a_whole_model_than_the_limit)
         const std::vector<ContentKey> more = rig.fill();
         asked.insert(asked.end(), more.begin(), more.end());
     }
-    EXPECT_EQ(asked.size(), kMaxFillingWishes);
+    EXPECT_EQ(asked.size(), kMaxFillingRequests);
     EXPECT_TRUE(rig.fill().empty());
 
     rig.deliver_chunk(asked.front().number);
     EXPECT_EQ(rig.fill().size(), 1U) << "as soon as one is answered";
 }
 
-TEST(ChunkCache, has_no_more_wishes_under_way_than_the_transport_side_remembers)
+TEST(ChunkCache, has_no_more_requests_under_way_than_the_transport_side_remembers)
 {
     constexpr std::uint32_t kPages = 40; // The sphere meets eight chunks of each.
-    constexpr std::uint32_t kSlots = SlotDoor::kOpenWishes + 32;
+    constexpr std::uint32_t kSlots = SlotQueues::kOpenRequests + 32;
     CacheRig rig(kSlots, kPages, kPages * kChunksPerIndexPage * kRecordsPerChunk);
     rig.budgets.requests = kSlots;
     for (std::uint32_t page = 0; page < kPages; ++page)
@@ -542,7 +542,7 @@ TEST(ChunkCache, has_no_more_wishes_under_way_than_the_transport_side_remembers)
         rig.deliver_index_page(page);
         rig.ask({}); // The page was prefetched before it is needed.
     }
-    const RankedRegion everything = ball(0, kPages * CacheRig::kPageDistance);
+    const RankedRegion everything = sphere(0, kPages * CacheRig::kPageDistance);
     const auto ask_for_long = [&]
     {
         Chunks asked;
@@ -553,7 +553,7 @@ TEST(ChunkCache, has_no_more_wishes_under_way_than_the_transport_side_remembers)
         return asked;
     };
     const Chunks asked = ask_for_long();
-    EXPECT_EQ(asked.size(), SlotDoor::kOpenWishes);
+    EXPECT_EQ(asked.size(), SlotQueues::kOpenRequests);
     EXPECT_TRUE(ask_for_long().empty());
 
     rig.deliver_chunk(*asked.begin());
@@ -575,7 +575,7 @@ TEST(ChunkCache, takes_of_a_model_that_nobody_is_near_all_but_what_is_kept_for_i
         Chunks asked;
         for (int frame = 0; frame < 20; ++frame)
         {
-            const Chunks more = sut.ask_chunks({ball(400, 5'000)});
+            const Chunks more = sut.ask_chunks({sphere(400, 5'000)});
             asked.insert(more.begin(), more.end());
             for (std::uint32_t slot = 0; slot < 4 && is_near; ++slot)
             {
@@ -586,7 +586,7 @@ TEST(ChunkCache, takes_of_a_model_that_nobody_is_near_all_but_what_is_kept_for_i
             }
             if (is_near)
             {
-                neighbour.cache.request_missing(std::array{ball(400, 5'000)}, sut.budgets,
+                neighbour.cache.request_missing(std::array{sphere(400, 5'000)}, sut.budgets,
                                                 sut.frame, sut.work, sut.faults);
             }
         }
@@ -596,7 +596,7 @@ TEST(ChunkCache, takes_of_a_model_that_nobody_is_near_all_but_what_is_kept_for_i
     }
 }
 
-TEST(ChunkCache, in_a_large_pool_looks_at_some_pages_a_wish_and_refuses_after_all_of_them)
+TEST(ChunkCache, in_a_large_pool_looks_at_some_pages_a_request_and_refuses_after_all_of_them)
 {
     constexpr std::uint32_t kLooks = 128;
     constexpr std::uint32_t kPages = 3 * kLooks;
@@ -630,8 +630,8 @@ TEST(ChunkCache, in_a_large_pool_looks_at_some_pages_a_wish_and_refuses_after_al
         std::vector<bool> refused;
         for (int frame = 0; frame < 4; ++frame)
         {
-            asked.push_back(sut.ask({ball(place, 1)}).size());
-            refused.push_back(sut.pool().refused_class() != kUrgencyClasses);
+            asked.push_back(sut.ask({sphere(place, 1)}).size());
+            refused.push_back(sut.pool().refused_class() != kPriorityClasses);
         }
         EXPECT_EQ(asked, (std::vector<std::size_t>{0, 0, is_one_free ? 1U : 0U, 0}));
         EXPECT_EQ(refused, (std::vector<bool>{false, false, !is_one_free, !is_one_free}));
@@ -642,9 +642,9 @@ TEST(ChunkCache, in_a_large_pool_looks_at_some_pages_a_wish_and_refuses_after_al
 TEST(ChunkCache, adopts_no_more_arrivals_than_the_budget)
 {
     CacheRig rig = one_index_page(kChunks);
-    rig.ask({ball(25, 10)});
+    rig.ask({sphere(25, 10)});
     rig.deliver_index_page(0);
-    for (const std::uint32_t chunk : rig.ask_chunks({ball(400, 5'000)}))
+    for (const std::uint32_t chunk : rig.ask_chunks({sphere(400, 5'000)}))
     {
         rig.deliver_chunk(chunk);
     }

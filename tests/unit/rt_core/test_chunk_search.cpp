@@ -34,7 +34,7 @@ struct MovingTool
     Vec3 center{0.0, 0.0, 0.0};
     Vec3 velocity{0.0, 0.0, 0.0};
     double radius{1.0};
-    UrgencyClass of{UrgencyClass::touching};
+    PriorityClass of{PriorityClass::touching};
     bool looks_ahead{true};
 };
 
@@ -116,14 +116,14 @@ public:
             WorkCounters dropped;
             sut->evict_unpinned(dropped);
         }
-        const RegionRanking regions = balls();
+        const RegionRanking regions = spheres();
         work = {};
         FrameFault faults{};
         pool_->adopt_arrivals(1'000, frame, work);
         before_ = resident_chunks();
         sut->request_missing(regions.view(), case_.budgets, frame, work, faults);
         take_freed();
-        return take_wishes();
+        return take_requests();
     }
 
     /// Least level of each met chunk, of resident index pages or of all.
@@ -174,11 +174,11 @@ public:
     }
     [[nodiscard]] bool has_credit() const
     {
-        return free_chunks_.size() > pool_->chunk_wishes.under_way();
+        return free_chunks_.size() > pool_->chunk_requests.under_way();
     }
     [[nodiscard]] bool has_index_credit() const
     {
-        return free_index_.size() > pool_->index_wishes.under_way();
+        return free_index_.size() > pool_->index_requests.under_way();
     }
 
     std::optional<ChunkCache> sut;
@@ -255,7 +255,7 @@ private:
         tool.center = Vec3(0.5, 0.5, 0.5) * kModelSide + random_.in_cube(0.5 * kModelSide);
         tool.velocity = random_.in_cube(random_.one_in(3) ? 0.0 : 0.01 * kModelSide);
         tool.radius = random_.between(0.001, 0.06) * kModelSide;
-        tool.of = static_cast<UrgencyClass>(random_.below(3));
+        tool.of = static_cast<PriorityClass>(random_.below(3));
         tool.looks_ahead = !random_.one_in(4);
     }
     void move()
@@ -272,7 +272,7 @@ private:
             tool.radius *= random_.one_in(10) ? random_.between(0.9, 1.1) : 1.0;
             if (random_.one_in(10))
             {
-                tool.of = static_cast<UrgencyClass>(random_.below(3));
+                tool.of = static_cast<PriorityClass>(random_.below(3));
             }
             if (random_.one_in(5))
             {
@@ -298,10 +298,10 @@ private:
     }
 
     /// Spheres in the order of pairs, at the tools' predicted places.
-    [[nodiscard]] RegionRanking balls()
+    [[nodiscard]] RegionRanking spheres()
     {
         RegionRanking ranking;
-        balls_.clear();
+        spheres_.clear();
         for (std::uint32_t i = 0; i < count_; ++i)
         {
             const MovingTool& tool = tools_[i];
@@ -312,8 +312,9 @@ private:
                 const double radius = tool.radius * (1.0 + 0.1 * ahead) / model_.scale;
                 ranking.push_back({ModelId{0}, center * kModelQuantum, radius * kModelQuantum,
                                    std::int64_t{ahead} * 1'000'000, tool.of});
-                balls_.push_back({center, radius,
-                                  2 * static_cast<std::uint32_t>(tool.of) + (ahead == 0 ? 0 : 1)});
+                spheres_.push_back(
+                    {center, radius,
+                     2 * static_cast<std::uint32_t>(tool.of) + (ahead == 0 ? 0 : 1)});
             }
         }
         return ranking;
@@ -322,7 +323,7 @@ private:
                                                         double wider = 1.0) const
     {
         std::optional<std::uint32_t> least;
-        for (const auto& [center, radius, level] : balls_)
+        for (const auto& [center, radius, level] : spheres_)
         {
             if (distance_to(center, box) <= radius * wider)
             {
@@ -336,7 +337,7 @@ private:
     {
         for (std::size_t i = 0; i < coming_.size();)
         {
-            if (coming_[i].second > frame || pool_->door.arrived.size() > 100)
+            if (coming_[i].second > frame || pool_->queues.arrived.size() > 100)
             {
                 ++i;
                 continue;
@@ -354,20 +355,20 @@ private:
                 slot_of_index_[key.number] = slot;
             }
             asked_.erase({key.kind, key.number});
-            ASSERT_TRUE(pool_->door.arrived.try_push({key, slot}));
+            ASSERT_TRUE(pool_->queues.arrived.try_push({key, slot}));
         }
     }
-    AskedKeys take_wishes()
+    AskedKeys take_requests()
     {
         AskedKeys keys;
-        PieceWish wish;
-        while (pool_->door.wanted.try_pop(wish))
+        PieceRequest request;
+        while (pool_->queues.wanted.try_pop(request))
         {
-            keys.push_back(wish.key);
-            asked_[{wish.key.kind, wish.key.number}] = frame;
+            keys.push_back(request.key);
+            asked_[{request.key.kind, request.key.number}] = frame;
             if (random_.below(100U) >= case_.lost_in_100)
             {
-                coming_.emplace_back(wish.key, frame + 1 + random_.below(20U));
+                coming_.emplace_back(request.key, frame + 1 + random_.below(20U));
             }
         }
         return keys;
@@ -375,7 +376,7 @@ private:
     void take_freed()
     {
         FreedSlot freed;
-        while (pool_->door.freed.try_pop(freed))
+        while (pool_->queues.freed.try_pop(freed))
         {
             (freed.kind == ContentKind::chunk ? free_chunks_ : free_index_).push_back(freed.slot);
             if (freed.kind == ContentKind::index_page)
@@ -398,7 +399,7 @@ private:
         return chunks;
     }
 
-    struct OracleBall
+    struct OracleSphere
     {
         Vec3 center;
         double radius;
@@ -426,7 +427,7 @@ private:
     std::array<MovingTool, kMovingTools> tools_;
     std::uint32_t count_{1};
     MovingModel model_;
-    std::vector<OracleBall> balls_;
+    std::vector<OracleSphere> spheres_;
 };
 
 Budgets budgets_of(std::uint32_t regions, std::uint32_t requests)
@@ -504,7 +505,7 @@ TEST_P(ChunkSearch, asks_in_each_frame_for_what_a_search_of_all_boxes_asks_for)
     EXPECT_GT(rests, 100U);
 }
 
-TEST_P(ChunkSearch, has_all_that_balls_at_rest_meet_after_a_while)
+TEST_P(ChunkSearch, has_all_that_spheres_at_rest_meet_after_a_while)
 {
     const std::uint64_t seed = seed_of(4'306);
     SCOPED_TRACE("TACTUS_SEED=" + std::to_string(seed));

@@ -160,7 +160,7 @@ TEST(CoreQuery, brackets_the_distance_and_finds_what_measuring_every_face_finds)
 {
     Random random(61);
     int exact = 0;
-    int decided = 0;
+    int separated = 0;
     int tolerated = 0;
     for (int round = 0; round < 90; ++round)
     {
@@ -205,7 +205,7 @@ TEST(CoreQuery, brackets_the_distance_and_finds_what_measuring_every_face_finds)
             }
             exact += answer.kind == AnswerKind::exact ? 1 : 0;
             tolerated += answer.kind == AnswerKind::within_tolerance ? 1 : 0;
-            decided += answer.kind == AnswerKind::decided ? 1 : 0;
+            separated += answer.kind == AnswerKind::separated ? 1 : 0;
             if (is_known(answer.kind))
             {
                 ASSERT_TRUE(tolerance != 0 || answer.nearest_face == truth.nearest);
@@ -217,7 +217,7 @@ TEST(CoreQuery, brackets_the_distance_and_finds_what_measuring_every_face_finds)
         }
     }
     EXPECT_GT(exact, 200);
-    EXPECT_GT(decided, 300);
+    EXPECT_GT(separated, 300);
     EXPECT_GT(tolerated, 4);
 }
 
@@ -334,7 +334,7 @@ ToolCore flat_core(int turn)
                        : ToolCore(hull);
 }
 
-/// The exact measurements must not grow with the faces below a flat tool: it was frozen for that.
+/// The exact measurements must not grow with the faces below a flat tool: it was halted for that.
 class FlatCoreQuery : public testing::TestWithParam<std::pair<ErrorCode, ErrorCode>>
 {
 };
@@ -432,7 +432,7 @@ TEST(CoreQuery, from_beyond_the_kernels_the_box_of_everything_answers)
                           {Mat3::Identity(), Vec3(far, 0, 0), 10.0});
     QueryMemory memory;
     const CoreAnswer asked = ask(*rig.sut, core, 1.0, memory);
-    EXPECT_EQ(asked.answer().kind, AnswerKind::decided);
+    EXPECT_EQ(asked.answer().kind, AnswerKind::separated);
     EXPECT_LE(asked.answer().lower_m, far - 10.0 + 3.0);
     EXPECT_GE(asked.answer().upper_m, far - 10.0 - 3.0);
     EXPECT_EQ(asked.surface->count, 0U);
@@ -444,7 +444,7 @@ TEST(CoreQuery, an_empty_tree_has_nothing_near)
     rig.sut->refit();
     QueryMemory memory;
     const CoreAnswer asked = ask(*rig.sut, PlacedCore(Box{{1, 1, 1}}, {}), 1.0, memory);
-    EXPECT_EQ(asked.answer().kind, AnswerKind::decided);
+    EXPECT_EQ(asked.answer().kind, AnswerKind::separated);
     EXPECT_EQ(asked.answer().upper_m, kInfinity);
 }
 

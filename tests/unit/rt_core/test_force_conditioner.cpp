@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "rt_core/force/external_force.hpp"
 #include "rt_core/force/force_conditioner.hpp"
 #include "rt_core/force/force_limiter.hpp"
-#include "rt_core/force/own_force.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
-#include "tests/shared/force_wish.hpp"
+#include "tests/shared/commanded_force.hpp"
 #include "tests/shared/period.hpp"
 #include "tests/shared/random.hpp"
 
@@ -38,34 +38,34 @@ ConditionerSetup plain_setup()
 }
 
 /// Force of a wall and of a program together, for one tool.
-ToolForce with_own(const ForceWish& wish, const OwnForce& own)
+ToolForce with_own(const CommandedForce& commanded, const ExternalForce& own)
 {
     ToolForce both;
-    both.push = wish.spring();
-    both.turn = wish.spring();
-    add_own(both, own);
+    both.push = commanded.spring();
+    both.turn = commanded.spring();
+    add_external(both, own);
     return both;
 }
 
-ForceWish force(double x)
+CommandedForce force(double x)
 {
-    ForceWish wish;
-    wish.force_n = Vec3(x, 0, 0);
-    return wish;
+    CommandedForce commanded;
+    commanded.force_n = Vec3(x, 0, 0);
+    return commanded;
 }
 
 } // namespace
 
-TEST(OwnForce, is_a_spring_to_a_point_of_limited_force)
+TEST(ExternalForce, is_a_spring_to_a_point_of_limited_force)
 {
-    const OwnForce near = spring_to(Vec3(0.01, 0, 0), Vec3(0, 0.01, 0), 200.0, 5.0);
+    const ExternalForce near = spring_to(Vec3(0.01, 0, 0), Vec3(0, 0.01, 0), 200.0, 5.0);
     EXPECT_LT((near.force_n - Vec3(2, -2, 0)).norm(), kRounding);
     EXPECT_EQ(near.stiffness_n_per_m, 200.0);
-    const OwnForce far = spring_to(Vec3(10, 0, 0), Vec3(0, 0, 0), 200.0, 5.0);
+    const ExternalForce far = spring_to(Vec3(10, 0, 0), Vec3(0, 0, 0), 200.0, 5.0);
     EXPECT_LT((far.force_n - Vec3(5, 0, 0)).norm(), kRounding);
 }
 
-TEST(OwnForce, two_springs_hold_together_what_each_holds)
+TEST(ExternalForce, two_springs_hold_together_what_each_holds)
 {
     constexpr double kWall = 500.0;
     constexpr double kOwn = 300.0;
@@ -73,12 +73,12 @@ TEST(OwnForce, two_springs_hold_together_what_each_holds)
     {
         for (const double over_m : {0.0, 0.004}) // The wall's force may be clamped.
         {
-            ForceWish wish = force(3.0);
-            wish.stiffness_n_per_m = kWall;
-            wish.stretch_m = 3.0 / kWall + over_m;
+            CommandedForce commanded = force(3.0);
+            commanded.stiffness_n_per_m = kWall;
+            commanded.stretch_m = 3.0 / kWall + over_m;
             const Vec3 own(0.3 * own_n, own_n, 0.0);
-            const ForceWish both = with_spring(wish, own, kOwn);
-            EXPECT_EQ(both.force_n, Vec3(wish.force_n + own));
+            const CommandedForce both = with_spring(commanded, own, kOwn);
+            EXPECT_EQ(both.force_n, Vec3(commanded.force_n + own));
             EXPECT_EQ(both.stiffness_n_per_m, kWall + kOwn);
             const double wall_j = 0.5 * 3.0 * 3.0 / kWall + 3.0 * over_m;
             const double own_j = 0.5 * own.squaredNorm() / kOwn;
@@ -90,25 +90,25 @@ TEST(OwnForce, two_springs_hold_together_what_each_holds)
     }
 }
 
-TEST(OwnForce, without_one_the_wish_is_as_it_was_and_in_the_air_its_spring_is_alone)
+TEST(ExternalForce, without_one_the_request_is_as_it_was_and_in_the_air_its_spring_is_alone)
 {
-    ForceWish wish = force(0.0);
-    wish.stiffness_n_per_m = 500.0;
-    wish.stretch_m = 0.25;
-    const SpringForce same = with_own(wish, {}).push;
+    CommandedForce commanded = force(0.0);
+    commanded.stiffness_n_per_m = 500.0;
+    commanded.stretch_m = 0.25;
+    const SpringForce same = with_own(commanded, {}).push;
     EXPECT_EQ(same.stiffness_n_per_m, 500.0);
     EXPECT_EQ(same.stretch_m, 0.25);
-    EXPECT_EQ(same.force_n, wish.force_n);
-    OwnForce own;
+    EXPECT_EQ(same.force_n, commanded.force_n);
+    ExternalForce own;
     own.torque_nm = Vec3(0, 0.2, 0);
     own.stiffness_nm_per_rad = 2.0;
-    const SpringForce torque = with_own(wish, own).turn;
+    const SpringForce torque = with_own(commanded, own).turn;
     EXPECT_EQ(torque.stiffness_n_per_m, 2.0);
     EXPECT_NEAR(torque.stretch_m, 0.1, kRounding);
 }
 
 /// A hand moves across a spring of the program's own. A delayed one generates energy.
-TEST(OwnForce, that_is_a_spring_is_not_damped_and_one_that_makes_energy_is)
+TEST(ExternalForce, that_is_a_spring_is_not_damped_and_one_that_makes_energy_is)
 {
     for (const int late : {0, 40})
     {
@@ -117,11 +117,11 @@ TEST(OwnForce, that_is_a_spring_is_not_damped_and_one_that_makes_energy_is)
         std::uint32_t damped = 0;
         for (int i = 0; i < 4'000; ++i)
         {
-            const OwnForce own = spring_to(Vec3(0, 0, 0), place(i - late), 300.0, 8.0);
-            ForceWish wish;
-            wish.position_m = place(i);
+            const ExternalForce own = spring_to(Vec3(0, 0, 0), place(i - late), 300.0, 8.0);
+            CommandedForce commanded;
+            commanded.position_m = place(i);
             const ForceAction actions =
-                condition(sut, with_spring(wish, own.force_n, own.stiffness_n_per_m)).actions;
+                condition(sut, with_spring(commanded, own.force_n, own.stiffness_n_per_m)).actions;
             damped += has_action(actions, ForceAction::damped) ? 1U : 0U;
         }
         EXPECT_EQ(damped > 0, late > 0) << damped;
@@ -139,25 +139,25 @@ TEST(ForceLimiter, clamps_the_norm_and_keeps_the_direction)
     }
 }
 
-TEST(ForceLimiter, changes_by_a_step_at_most_straight_to_the_wish_and_reaches_it)
+TEST(ForceLimiter, changes_by_a_step_at_most_straight_to_the_request_and_reaches_it)
 {
     Random random(2);
     for (int trial = 0; trial < 2'000; ++trial)
     {
         Vec3 now = random.in_cube(5.0);
-        const Vec3 wish = random.in_cube(5.0);
-        const double longest = std::max(now.norm(), wish.norm());
+        const Vec3 commanded = random.in_cube(5.0);
+        const double longest = std::max(now.norm(), commanded.norm());
         const double step = random.between(0.01, 2.0);
-        for (int i = 0; i < 2'000 && now != wish; ++i)
+        for (int i = 0; i < 2'000 && now != commanded; ++i)
         {
-            const Vec3 next = limit_change(now, wish, step);
+            const Vec3 next = limit_change(now, commanded, step);
             ASSERT_LE((next - now).norm(), step * (1.0 + kRounding)) << "trial " << trial;
             ASSERT_LE(next.norm(), longest * (1.0 + kRounding)) << "trial " << trial;
-            ASSERT_LE((next - now).cross(wish - now).norm(), kRounding) << "trial " << trial;
-            ASSERT_LT((wish - next).norm(), (wish - now).norm()) << "trial " << trial;
+            ASSERT_LE((next - now).cross(commanded - now).norm(), kRounding) << "trial " << trial;
+            ASSERT_LT((commanded - next).norm(), (commanded - now).norm()) << "trial " << trial;
             now = next;
         }
-        EXPECT_EQ(now, wish) << "trial " << trial;
+        EXPECT_EQ(now, commanded) << "trial " << trial;
     }
     EXPECT_EQ(limit_change(Vec3(1, 0, 0), Vec3(5, 0, 0), 0.0), Vec3(1, 0, 0));
 }
@@ -190,26 +190,26 @@ TEST(ForceConditioner, gives_no_force_for_what_is_no_number_and_recovers)
     {
         ForceConditioner sut(plain_setup());
         static_cast<void>(condition(sut, force(1.0)));
-        ForceWish wish = force(bad);
-        EXPECT_EQ(condition(sut, wish).force_n, Vec3(0, 0, 0));
-        EXPECT_TRUE(has_action(condition(sut, wish).actions, ForceAction::refused));
-        wish = force(1.0);
-        wish.stiffness_n_per_m = bad;
-        EXPECT_EQ(condition(sut, wish).force_n, Vec3(0, 0, 0));
-        wish = force(1.0);
-        wish.position_m.y() = bad;
-        const SpringForce blind = condition(sut, wish);
+        CommandedForce commanded = force(bad);
+        EXPECT_EQ(condition(sut, commanded).force_n, Vec3(0, 0, 0));
+        EXPECT_TRUE(has_action(condition(sut, commanded).actions, ForceAction::refused));
+        commanded = force(1.0);
+        commanded.stiffness_n_per_m = bad;
+        EXPECT_EQ(condition(sut, commanded).force_n, Vec3(0, 0, 0));
+        commanded = force(1.0);
+        commanded.position_m.y() = bad;
+        const SpringForce blind = condition(sut, commanded);
         EXPECT_EQ(blind.force_n, Vec3(1, 0, 0));
         EXPECT_TRUE(has_action(blind.actions, ForceAction::blind));
-        wish = force(1.0);
-        wish.stretch_m = bad;
-        wish.stiffness_n_per_m = 100.0;
-        const SpringForce last = condition(sut, wish);
+        commanded = force(1.0);
+        commanded.stretch_m = bad;
+        commanded.stiffness_n_per_m = 100.0;
+        const SpringForce last = condition(sut, commanded);
         EXPECT_EQ(last.actions, ForceAction::none);
-        EXPECT_TRUE(std::isfinite(last.work_j) && std::isfinite(last.surplus_j));
+        EXPECT_TRUE(std::isfinite(last.work_j) && std::isfinite(last.observed_energy_j));
     }
     ForceConditioner sut(plain_setup());
-    ForceWish pulling = force(1.0);
+    CommandedForce pulling = force(1.0);
     pulling.stiffness_n_per_m = -1.0;
     EXPECT_EQ(condition(sut, pulling).force_n, Vec3(0, 0, 0));
 }
@@ -226,29 +226,29 @@ TEST(ForceConditioner, clamps_to_the_device_and_says_so)
 TEST(ForceConditioner, scales_a_wall_down_to_the_stiffness_that_the_rule_allows)
 {
     ForceConditioner sut(plain_setup());
-    EXPECT_DOUBLE_EQ(sut.stiffness_cap_n_per_m(), 3'600.0);
-    ForceWish wish = force(0.72);
-    wish.stiffness_n_per_m = 7'200.0;
-    const SpringForce out = condition(sut, wish);
+    EXPECT_DOUBLE_EQ(sut.stiffness_limit_n_per_m(), 3'600.0);
+    CommandedForce commanded = force(0.72);
+    commanded.stiffness_n_per_m = 7'200.0;
+    const SpringForce out = condition(sut, commanded);
     EXPECT_NEAR(out.force_n.x(), 0.36, kRounding);
-    EXPECT_EQ(out.actions, ForceAction::stiffness_capped);
+    EXPECT_EQ(out.actions, ForceAction::stiffness_limited);
     EXPECT_DOUBLE_EQ(out.stiffness_n_per_m, 3'600.0);
 }
 
 TEST(ForceConditioner, counts_the_work_of_what_went_out_in_its_place)
 {
     ForceConditioner sut(plain_setup());
-    ForceWish wish = force(8.0);
-    wish.stiffness_n_per_m = 1'000.0;
+    CommandedForce commanded = force(8.0);
+    commanded.stiffness_n_per_m = 1'000.0;
     for (int i = 0; i < 20; ++i)
     {
-        static_cast<void>(condition(sut, wish));
+        static_cast<void>(condition(sut, commanded));
     }
-    ForceWish sent = wish;
+    CommandedForce sent = commanded;
     sent.force_n = Vec3(2.0, 0, 0);
     sut.follow(sent.spring(), true);
-    wish.position_m = Vec3(0.001, 0, 0);
-    EXPECT_NEAR(condition(sut, wish).work_j, 0.002, kRounding);
+    commanded.position_m = Vec3(0.001, 0, 0);
+    EXPECT_NEAR(condition(sut, commanded).work_j, 0.002, kRounding);
 }
 
 TEST(ForceConditioner, a_force_that_a_gain_lets_in_slowly_comes_from_somewhere)
@@ -256,19 +256,19 @@ TEST(ForceConditioner, a_force_that_a_gain_lets_in_slowly_comes_from_somewhere)
     for (const bool is_ramp : {true, false})
     {
         ForceConditioner sut(plain_setup());
-        ForceWish wish = force(4.0);
-        wish.stiffness_n_per_m = 1'000.0;
+        CommandedForce commanded = force(4.0);
+        commanded.stiffness_n_per_m = 1'000.0;
         for (int i = 0; i < 20; ++i)
         {
-            static_cast<void>(condition(sut, wish));
-            ForceWish sent = wish;
+            static_cast<void>(condition(sut, commanded));
+            CommandedForce sent = commanded;
             sent.force_n = Vec3(0.2 * i, 0, 0);
             sut.follow(sent.spring(), is_ramp);
         }
-        const SpringForce out = condition(sut, wish);
-        EXPECT_EQ(out.force_n, wish.force_n);
+        const SpringForce out = condition(sut, commanded);
+        EXPECT_EQ(out.force_n, commanded.force_n);
         // The rest without a ramp is the wall's energy that the hand did not supply.
-        EXPECT_NEAR(out.surplus_j, is_ramp ? 0.0 : 0.5 * 4.0 * 4.0 / 1'000.0, kRounding);
+        EXPECT_NEAR(out.observed_energy_j, is_ramp ? 0.0 : 0.5 * 4.0 * 4.0 / 1'000.0, kRounding);
     }
 }
 
@@ -278,19 +278,19 @@ TEST(ForceConditioner, takes_no_work_of_those_who_move_a_wall_for_the_walls)
     for (const bool is_carried : {true, false})
     {
         ForceConditioner sut(plain_setup());
-        double surplus_j = 0.0;
+        double observed_energy_j = 0.0;
         double work_j = 0.0;
         for (int i = 0; i < 100; ++i)
         {
-            ForceWish wish = force(2.0);
-            wish.stiffness_n_per_m = 1'000.0;
-            wish.position_m = Vec3(4.5e-4 * i, 0, 0);
-            wish.carried_m = is_carried ? Vec3(4.5e-4, 0, 0) : Vec3(0, 0, 0);
-            const SpringForce out = condition(sut, wish);
-            surplus_j = out.surplus_j;
+            CommandedForce commanded = force(2.0);
+            commanded.stiffness_n_per_m = 1'000.0;
+            commanded.position_m = Vec3(4.5e-4 * i, 0, 0);
+            commanded.carried_m = is_carried ? Vec3(4.5e-4, 0, 0) : Vec3(0, 0, 0);
+            const SpringForce out = condition(sut, commanded);
+            observed_energy_j = out.observed_energy_j;
             work_j = out.work_j;
         }
-        EXPECT_EQ(surplus_j > 0.0, !is_carried) << surplus_j;
+        EXPECT_EQ(observed_energy_j > 0.0, !is_carried) << observed_energy_j;
         EXPECT_GT(work_j, 0.03) << "it is told all the same";
     }
 }
@@ -299,15 +299,15 @@ TEST(ForceConditioner, counts_the_work_of_a_force_held_through_a_stall)
 {
     ForceConditioner sut(plain_setup());
     static_cast<void>(condition(sut, force(1.0)));
-    ForceWish wish = force(0.5);
-    wish.position_m = Vec3(0.01, 0.02, 0);
-    wish.elapsed_periods = 50;
-    EXPECT_NEAR(condition(sut, wish).work_j, 0.01, kRounding);
-    wish.position_m = Vec3(0.0, 0.02, 0);
-    EXPECT_NEAR(condition(sut, wish).work_j, 0.01 - 0.005, kRounding);
-    wish.elapsed_periods = 0; // Counts as one; 10 m/s is the greatest speed of a device.
-    wish.position_m = Vec3(0.02, 0.02, 0);
-    EXPECT_EQ(condition(sut, wish).actions, ForceAction::blind);
+    CommandedForce commanded = force(0.5);
+    commanded.position_m = Vec3(0.01, 0.02, 0);
+    commanded.elapsed_periods = 50;
+    EXPECT_NEAR(condition(sut, commanded).work_j, 0.01, kRounding);
+    commanded.position_m = Vec3(0.0, 0.02, 0);
+    EXPECT_NEAR(condition(sut, commanded).work_j, 0.01 - 0.005, kRounding);
+    commanded.elapsed_periods = 0; // Counts as one; 10 m/s is the greatest speed of a device.
+    commanded.position_m = Vec3(0.02, 0.02, 0);
+    EXPECT_EQ(condition(sut, commanded).actions, ForceAction::blind);
 }
 
 TEST(ForceConditioner, sees_nothing_of_a_device_that_is_faster_than_any)
@@ -316,10 +316,10 @@ TEST(ForceConditioner, sees_nothing_of_a_device_that_is_faster_than_any)
     {
         ForceConditioner sut(plain_setup());
         static_cast<void>(condition(sut, force(1.0)));
-        ForceWish wish = force(1.0);
-        wish.elapsed_periods = 3;
-        wish.position_m.y() = share * kDeviceSpeedMax_m_per_s * 3 * kPeriod_s;
-        EXPECT_EQ(has_action(condition(sut, wish).actions, ForceAction::blind), share > 1.0);
+        CommandedForce commanded = force(1.0);
+        commanded.elapsed_periods = 3;
+        commanded.position_m.y() = share * kDeviceSpeedMax_m_per_s * 3 * kPeriod_s;
+        EXPECT_EQ(has_action(condition(sut, commanded).actions, ForceAction::blind), share > 1.0);
     }
 }
 
@@ -344,11 +344,11 @@ TEST(ForceConditioner, adds_no_damping_that_makes_less_force_than_the_least)
         setup.device.damping_n_s_per_m = 0.5;
         setup.device.added_damping_max_n_s_per_m = 1.0;
         ForceConditioner sut(setup);
-        ForceWish wish = force(0.1);
-        wish.stiffness_n_per_m = 200.0;
-        static_cast<void>(condition(sut, wish));
-        wish.position_m.x() = way_m;
-        const SpringForce out = condition(sut, wish);
+        CommandedForce commanded = force(0.1);
+        commanded.stiffness_n_per_m = 200.0;
+        static_cast<void>(condition(sut, commanded));
+        commanded.position_m.x() = way_m;
+        const SpringForce out = condition(sut, commanded);
         EXPECT_EQ(has_action(out.actions, ForceAction::damped), out.damping_n_s_per_m > 0.0);
         return 0.1 - out.force_n.x();
     };
@@ -372,17 +372,17 @@ TEST(ForceConditioner, damps_what_came_from_nowhere_and_never_pulls)
         speed = std::clamp(speed + random.between(-0.02, 0.02) - x, -0.3, 0.3);
         x += speed * kPeriod_s;
         places = {x, places[0], places[1]};
-        ForceWish wish = force(std::max(0.0, -800.0 * places[2]));
-        wish.position_m = Vec3(x, 0, 0);
-        wish.stiffness_n_per_m = 800.0;
-        const SpringForce out = condition(sut, wish);
-        const double added = (out.force_n - wish.force_n).norm();
+        CommandedForce commanded = force(std::max(0.0, -800.0 * places[2]));
+        commanded.position_m = Vec3(x, 0, 0);
+        commanded.stiffness_n_per_m = 800.0;
+        const SpringForce out = condition(sut, commanded);
+        const double added = (out.force_n - commanded.force_n).norm();
         ASSERT_GE(out.force_n.x(), -kRounding) << "frame " << i;
         ASSERT_LE(out.force_n.norm(), 10.0 * (1.0 + kRounding)) << "frame " << i;
         ASSERT_LE(out.damping_n_s_per_m, 5.0) << "frame " << i;
         ASSERT_LE(added, 5.0 * 0.31) << "frame " << i;
         ASSERT_EQ(has_action(out.actions, ForceAction::damped), out.damping_n_s_per_m > 0.0);
-        ASSERT_TRUE(wish.force_n.x() > 0.0 || added == 0.0) << "frame " << i;
+        ASSERT_TRUE(commanded.force_n.x() > 0.0 || added == 0.0) << "frame " << i;
         damped += out.damping_n_s_per_m > 0.0 ? 1U : 0U;
     }
     EXPECT_GT(damped, 10U);
@@ -395,11 +395,11 @@ TEST(ForceConditioner, takes_the_same_bits_to_the_same_bits)
     Random random(5);
     for (int i = 0; i < 1'000; ++i)
     {
-        ForceWish wish;
-        wish.force_n = random.in_cube(12.0);
-        wish.position_m = random.in_cube(1e-3);
-        wish.stiffness_n_per_m = random.between(0.0, 6'000.0);
-        EXPECT_EQ(condition(one, wish).force_n, condition(other, wish).force_n);
+        CommandedForce commanded;
+        commanded.force_n = random.in_cube(12.0);
+        commanded.position_m = random.in_cube(1e-3);
+        commanded.stiffness_n_per_m = random.between(0.0, 6'000.0);
+        EXPECT_EQ(condition(one, commanded).force_n, condition(other, commanded).force_n);
     }
 }
 
@@ -410,30 +410,31 @@ namespace
 ConditionerSetup turning_setup()
 {
     ConditionerSetup setup = plain_setup();
-    setup.device.turn = {.is_measured = true,
-                         .torque_max_nm = 0.5,
-                         .inertia_kg_m2 = 1e-4,
-                         .damping_nm_s_per_rad = 1e-3,
-                         .slew_max_nm_per_s = 1.0,
-                         .stiffness_max_nm_per_rad = 3.0,
-                         .added_damping_max_nm_s_per_rad = 5e-3};
+    setup.device.rotation = {.is_measured = true,
+                             .torque_max_nm = 0.5,
+                             .inertia_kg_m2 = 1e-4,
+                             .damping_nm_s_per_rad = 1e-3,
+                             .slew_max_nm_per_s = 1.0,
+                             .stiffness_max_nm_per_rad = 3.0,
+                             .added_damping_max_nm_s_per_rad = 5e-3};
     return setup;
 }
 
-WrenchWish wrench(const Vec3& force_n, const Vec3& torque_nm, double stiffness = 100.0,
-                  double angular = 0.1)
+CommandedWrench wrench(const Vec3& force_n, const Vec3& torque_nm, double stiffness = 100.0,
+                       double angular = 0.1)
 {
     return {{force_n, Vec3(0, 0, 0), stiffness, 0.0, 1},
             {torque_nm, Vec3(0, 0, 0), angular, 0.0, 1}};
 }
 
 /// Expects the same gain of force and torque.
-void expect_gain(const WrenchWish& wish, double gain, ForceAction on_force, ForceAction on_torque)
+void expect_gain(const CommandedWrench& commanded, double gain, ForceAction on_force,
+                 ForceAction on_torque)
 {
     WrenchConditioner sut(turning_setup());
-    const ToolForce out = condition(sut, wish);
-    EXPECT_LT((out.push.force_n - gain * wish.force.force_n).norm(), kRounding);
-    EXPECT_LT((out.turn.force_n - gain * wish.torque.force_n).norm(), kRounding);
+    const ToolForce out = condition(sut, commanded);
+    EXPECT_LT((out.push.force_n - gain * commanded.force.force_n).norm(), kRounding);
+    EXPECT_LT((out.turn.force_n - gain * commanded.torque.force_n).norm(), kRounding);
     EXPECT_EQ(out.push.actions, on_force);
     EXPECT_EQ(out.turn.actions, on_torque);
 }
@@ -443,7 +444,7 @@ void expect_gain(const WrenchWish& wish, double gain, ForceAction on_force, Forc
 TEST(WrenchConditioner, shortens_force_and_torque_by_one_gain)
 {
     constexpr ForceAction kNone = ForceAction::none;
-    constexpr ForceAction kCapped = ForceAction::stiffness_capped;
+    constexpr ForceAction kCapped = ForceAction::stiffness_limited;
     constexpr ForceAction kClamped = ForceAction::clamped;
     const Vec3 force_n(3, 4, 0);
     const Vec3 torque_nm(0, 0, 0.4);
@@ -463,9 +464,9 @@ TEST(WrenchConditioner, caps_by_the_damping_of_what_is_touched_and_of_nothing_el
     WrenchConditioner sut(setup);
     const auto force_of = [&sut](double damping_n_s_per_m)
     {
-        WrenchWish wish = wrench(Vec3(1, 0, 0), Vec3(0, 0, 0.1), 3'600.0, 0.1);
-        wish.force.surface_damping_n_s_per_m = damping_n_s_per_m;
-        return condition(sut, wish).push.force_n.x();
+        CommandedWrench commanded = wrench(Vec3(1, 0, 0), Vec3(0, 0, 0.1), 3'600.0, 0.1);
+        commanded.force.surface_damping_n_s_per_m = damping_n_s_per_m;
+        return condition(sut, commanded).push.force_n.x();
     };
     EXPECT_NEAR(force_of(0.0), 1.0, kRounding);
     // The force changes there and back within the time of a material change, step by step; in free
@@ -496,12 +497,12 @@ TEST(WrenchConditioner, takes_of_the_damping_what_its_lever_makes_of_it_and_half
     for (const auto& [damping, cap_nm_per_rad] : {std::pair(1.0, 1.08), std::pair(1.9, 0.9)})
     {
         WrenchConditioner sut(setup);
-        WrenchWish wish = wrench(Vec3(0, 0, 0), Vec3(0, 0, 0), 100.0, 1.8);
-        wish.force.surface_damping_n_s_per_m = damping;
-        static_cast<void>(condition(sut, wish)); // The hand is in free air.
-        wish.force.force_n = Vec3(1, 0, 0);
-        wish.torque.force_n = Vec3(0, 0, 0.1);
-        EXPECT_NEAR(condition(sut, wish).turn.force_n.z(), 0.1 * cap_nm_per_rad / 1.8, 1e-9);
+        CommandedWrench commanded = wrench(Vec3(0, 0, 0), Vec3(0, 0, 0), 100.0, 1.8);
+        commanded.force.surface_damping_n_s_per_m = damping;
+        static_cast<void>(condition(sut, commanded)); // The hand is in free air.
+        commanded.force.force_n = Vec3(1, 0, 0);
+        commanded.torque.force_n = Vec3(0, 0, 0.1);
+        EXPECT_NEAR(condition(sut, commanded).turn.force_n.z(), 0.1 * cap_nm_per_rad / 1.8, 1e-9);
     }
 }
 
@@ -509,12 +510,12 @@ TEST(WrenchConditioner, makes_nothing_of_garbage_in_either)
 {
     for (const double bad : {kNan, kInfinite})
     {
-        for (const WrenchWish& wish :
+        for (const CommandedWrench& commanded :
              {wrench(Vec3(1, bad, 0), Vec3(0, 0, 0.1)), wrench(Vec3(1, 0, 0), Vec3(0, bad, 0.1)),
               wrench(Vec3(1, 0, 0), Vec3(0, 0, 0.1), 100.0, bad)})
         {
             WrenchConditioner sut(turning_setup());
-            const ToolForce out = condition(sut, wish);
+            const ToolForce out = condition(sut, commanded);
             EXPECT_EQ(out.push.force_n, Vec3(0, 0, 0));
             EXPECT_EQ(out.turn.force_n, Vec3(0, 0, 0));
             EXPECT_TRUE(has_action(out.push.actions | out.turn.actions, ForceAction::refused));
@@ -525,14 +526,14 @@ TEST(WrenchConditioner, makes_nothing_of_garbage_in_either)
 TEST(WrenchConditioner, leaves_the_force_alone_of_a_device_without_a_torque)
 {
     ConditionerSetup setup = turning_setup();
-    setup.device.turn.torque_max_nm = 0.0;
+    setup.device.rotation.torque_max_nm = 0.0;
     WrenchConditioner sut(setup);
     ForceConditioner point(setup);
-    const WrenchWish wish = wrench(Vec3(3, 4, 0), Vec3(0, kNan, 1e9));
+    const CommandedWrench commanded = wrench(Vec3(3, 4, 0), Vec3(0, kNan, 1e9));
     for (int i = 0; i < 10; ++i)
     {
-        const ToolForce out = condition(sut, wish);
-        EXPECT_EQ(out.push.force_n, condition(point, wish.force).force_n);
+        const ToolForce out = condition(sut, commanded);
+        EXPECT_EQ(out.push.force_n, condition(point, commanded.force).force_n);
         EXPECT_EQ(out.turn.force_n, Vec3(0, 0, 0));
     }
 }

@@ -77,7 +77,7 @@ public:
     ToolState state;
     ToolOutput output;
     DeviceRecord device;
-    OwnForce own;
+    ExternalForce own;
     PeriodContext context;
 };
 
@@ -117,7 +117,7 @@ public:
     {
         const Vec3 last_n = tool_.sut.force().push.force_n;
         const Vec3 last_nm = tool_.sut.force().turn.force_n;
-        const OwnForce last_own = tool_.own;
+        const ExternalForce last_own = tool_.own;
         happen();
         const ToolForce& now = tool_.step();
         const double way_m =
@@ -133,11 +133,12 @@ public:
         const double angular =
             arm_m * arm_m * tool_.output.stiffness_n_per_m + tool_.own.stiffness_nm_per_rad;
         const double most_nm = angular * hand_turn_rad_ + stiffness * arm_m * (way_m + moved_m) +
-                               slew_ * device_.turn.torque_max_nm + kRounding;
+                               slew_ * device_.rotation.torque_max_nm + kRounding;
         check(frame, "force", now.push.force_n, last_n, last_own.force_n, most_n, now.causes);
         check(frame, "torque", now.turn.force_n, last_nm, last_own.torque_nm, most_nm, now.causes);
         EXPECT_LE(now.push.force_n.norm(), device_.force_max_n * (1.0 + kRounding)) << frame;
-        EXPECT_LE(now.turn.force_n.norm(), device_.turn.torque_max_nm * (1.0 + kRounding)) << frame;
+        EXPECT_LE(now.turn.force_n.norm(), device_.rotation.torque_max_nm * (1.0 + kRounding))
+            << frame;
         const bool is_held =
             has_action(now.push.actions | now.turn.actions, ForceAction::change_limited);
         held += is_held ? 1U : 0U;
@@ -187,7 +188,7 @@ private:
             random_.one_in(10) ? random_.between(0.0, 0.03) : random_.between(0.0, 1e-4);
         tool_.output.object_turn_rad = random_.one_in(10) ? random_.between(0.0, 0.1) : 0.0;
         tool_.output.carried_m = random_.in_cube(2e-4);
-        tool_.output.frozen = random_.one_in(800);
+        tool_.output.halted = random_.one_in(800);
         if (random_.one_in(50))
         {
             tool_.own.force_n = random_.one_in(2) ? random_.in_cube(3.0) : Vec3(0.0, 0.0, 0.0);
@@ -271,7 +272,7 @@ TEST(ForcePipeline, gives_no_force_to_a_hand_whose_rotation_is_none)
                 tool.state.rotation = rotation;
                 if (is_held)
                 {
-                    tool.device.hand = HandPlace{tool.state.position_m, rotation};
+                    tool.device.hand = DevicePose{tool.state.position_m, rotation};
                 }
                 const double before_n = tool.sent_n().norm();
                 EXPECT_TRUE(has_cause(tool.step().causes, ForceOff::garbage));
@@ -394,7 +395,7 @@ TEST(ForcePipeline, materials_that_change_make_no_step_of_the_force)
         {
             const bool is_other = i / 60 % 2 == 1;
             tool.context.surface_damping_n_s_per_m = is_damping && is_other ? 20.0 : 0.0;
-            // The change is that of MaterialGlide.
+            // The change is that of MaterialBlend.
             stiffness += std::clamp((is_other ? 50.0 : 3'000.0) - stiffness, -59.0, 59.0);
             tool.output.stiffness_n_per_m = is_damping ? 3'000.0 : stiffness;
             tool.press(0.002);

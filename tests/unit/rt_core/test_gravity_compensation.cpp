@@ -106,8 +106,8 @@ TEST(GravityCompensation, holds_while_the_scene_is_at_fault_and_lets_go_with_the
     {
         const auto cause = static_cast<ForceOff>(1U << bit);
         const bool is_scene = cause == ForceOff::host || cause == ForceOff::stall ||
-                              cause == ForceOff::jump || cause == ForceOff::frozen ||
-                              cause == ForceOff::squeezed || cause == ForceOff::clutch ||
+                              cause == ForceOff::jump || cause == ForceOff::halted ||
+                              cause == ForceOff::over_constrained || cause == ForceOff::clutch ||
                               cause == ForceOff::starved || cause == ForceOff::growth;
         GravityCompensation sut = carrying(hammer_load());
         CarryInput input;
@@ -160,7 +160,7 @@ TEST(GravityCompensation, a_rotation_that_jumps_turns_the_torque_no_faster_than_
     {
         const ToolForce sent = carry(sut, input);
         EXPECT_LE((sent.load_nm - last_nm).norm(),
-                  hammer_load().torque_max_nm() * kTurningMax_rad_per_s * kPeriod_s +
+                  hammer_load().torque_max_nm() * kRotationMax_rad_per_s * kPeriod_s +
                       kCarryRounding);
         EXPECT_LE(sent.load_nm.norm(), hammer_load().torque_max_nm() + kCarryRounding);
         last_nm = sent.load_nm;

@@ -100,7 +100,7 @@ TEST_F(IndexPageTest, a_box_inside_out_or_an_impossible_size_is_refused)
 }
 
 /// Gap in doubles, which are exact enough.
-double gap_of(const QuantumBox& page, const InfluenceBox& box, const QuantumBall& ball)
+double gap_of(const QuantumBox& page, const InfluenceBox& box, const QuantumSphere& sphere)
 {
     double sum = 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -108,13 +108,13 @@ double gap_of(const QuantumBox& page, const InfluenceBox& box, const QuantumBall
         const double step = index_step(page.low[axis], page.high[axis]);
         const double low = page.low[axis] + step * box.low[axis];
         const double high = page.low[axis] + step * box.high[axis];
-        const double gap = std::max({low - ball.center[axis], ball.center[axis] - high, 0.0});
+        const double gap = std::max({low - sphere.center[axis], sphere.center[axis] - high, 0.0});
         sum += gap * gap;
     }
     return std::sqrt(sum);
 }
 
-TEST(IndexBoxes, meet_the_balls_that_come_to_them)
+TEST(IndexBoxes, meet_the_spheres_that_come_to_them)
 {
     std::mt19937_64 random(7); // NOLINT: the same every time.
     const auto below = [&](std::int64_t end)
@@ -143,20 +143,20 @@ TEST(IndexBoxes, meet_the_balls_that_come_to_them)
             }
             page.set_box(i, box);
         }
-        QuantumBall ball;
+        QuantumSphere sphere;
         for (std::size_t axis = 0; axis < 3; ++axis)
         {
-            ball.center[axis] = static_cast<double>(page_box.low[axis]) +
-                                0.001 * static_cast<double>(below(1'500 * side) - 250 * side);
+            sphere.center[axis] = static_cast<double>(page_box.low[axis]) +
+                                  0.001 * static_cast<double>(below(1'500 * side) - 250 * side);
         }
-        ball.radius = 0.001 * static_cast<double>(below(1'000 * side));
+        sphere.radius = 0.001 * static_cast<double>(below(1'000 * side));
 
         for (std::uint32_t i = 0; i < page.chunks; ++i)
         {
-            const double gap = gap_of(page_box, page.box(i), ball);
-            const bool is_named = meets(ball, box_of(page, page_box, i));
-            const double slack = 1e-12 * (gap + ball.radius);
-            ASSERT_TRUE(is_named ? gap <= ball.radius + slack : gap > ball.radius - slack)
+            const double gap = gap_of(page_box, page.box(i), sphere);
+            const bool is_named = meets(sphere, box_of(page, page_box, i));
+            const double slack = 1e-12 * (gap + sphere.radius);
+            ASSERT_TRUE(is_named ? gap <= sphere.radius + slack : gap > sphere.radius - slack)
                 << "round " << round << " chunk " << i;
             ++(is_named ? met : missed);
         }

@@ -57,7 +57,7 @@ TEST(Mailbox, gives_the_newest_value_again_and_again)
 /// writes do interleave.
 TEST(Mailbox, never_mixes_two_letters_and_never_goes_back)
 {
-    constexpr int kLetters = 1'000;
+    constexpr int kPoseSamples = 1'000;
     Mailbox<Letter> sut;
     sut.write(letter_of(0));
     std::atomic<int> reading{2};
@@ -65,7 +65,7 @@ TEST(Mailbox, never_mixes_two_letters_and_never_goes_back)
     const auto read = [&]
     {
         std::uint32_t last = 0;
-        for (int seen = 0; seen < kLetters;)
+        for (int seen = 0; seen < kPoseSamples;)
         {
             Letter letter;
             if (!sut.try_read(letter))

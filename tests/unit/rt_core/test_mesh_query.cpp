@@ -55,7 +55,7 @@ Triangle placed(const ChangedFace& face, const MeshPlacement& place)
     Triangle triangle = to_triangle(face.corners_m);
     for (Vec3& corner : triangle)
     {
-        corner = place.to_there(corner);
+        corner = place.local_to_world(corner);
     }
     return triangle;
 }
@@ -468,8 +468,8 @@ TEST(OtherSurface, is_no_nearer_than_all_of_its_faces_less_their_errors)
             double truth = kInfinity;
             for (const ChangedFace& face : object.present())
             {
-                const ClosestPoint closest =
-                    closest_point_on_triangle(place.to_there(point), to_triangle(face.corners_m));
+                const ClosestPoint closest = closest_point_on_triangle(place.local_to_world(point),
+                                                                       to_triangle(face.corners_m));
                 truth = std::min(truth, std::sqrt(closest.distance_sq) - error_of(face));
             }
             truth = std::max(0.0, truth) / place.place.scale;
@@ -510,7 +510,8 @@ TEST(MeshPlacement, has_an_inverse)
     {
         const MeshPlacement place = random_placement(random);
         const Vec3 point = random.in_cube(2.0);
-        EXPECT_LT((place.inverse().to_there(place.to_there(point)) - point).norm(), 1e-14);
+        EXPECT_LT((place.inverse().local_to_world(place.local_to_world(point)) - point).norm(),
+                  1e-14);
     }
 }
 
@@ -518,7 +519,7 @@ TEST(MeshQuery, finds_what_measuring_all_pairs_finds)
 {
     Random random(73);
     int exact = 0;
-    int decided = 0;
+    int separated = 0;
     int met = 0;
     for (int round = 0; round < 120; ++round)
     {
@@ -546,7 +547,7 @@ TEST(MeshQuery, finds_what_measuring_all_pairs_finds)
             ASSERT_EQ(asked.report.intersection, truth.intersection());
             met += truth.meeting.empty() ? 0 : 1;
             exact += answer.kind == AnswerKind::exact ? 1 : 0;
-            decided += answer.kind == AnswerKind::decided ? 1 : 0;
+            separated += answer.kind == AnswerKind::separated ? 1 : 0;
             if (answer.kind == AnswerKind::exact)
             {
                 const double apart = (answer.nearest_point_m - answer.tool_point_m).norm();
@@ -567,7 +568,7 @@ TEST(MeshQuery, finds_what_measuring_all_pairs_finds)
         }
     }
     EXPECT_GT(exact, 60);
-    EXPECT_GT(decided, 100);
+    EXPECT_GT(separated, 100);
     EXPECT_GT(met, 60);
 }
 
@@ -851,8 +852,8 @@ TEST(NearestFaces, are_bracketed_where_the_budget_ends_the_search)
             ASSERT_TRUE(asked.report.intersection != Intersection::none || truth.meeting.empty());
             ASSERT_TRUE(answer.kind != AnswerKind::exact ||
                         answer.upper_m <= truth.upper + 1e-13 * (1.0 + truth.upper));
-            cut += answer.kind == AnswerKind::bracket ? 1 : 0;
-            lower_known += answer.kind == AnswerKind::bracket && answer.lower_m > 0.0 ? 1 : 0;
+            cut += answer.kind == AnswerKind::bounded ? 1 : 0;
+            lower_known += answer.kind == AnswerKind::bounded && answer.lower_m > 0.0 ? 1 : 0;
         }
     }
     EXPECT_GT(cut, 50);
@@ -937,7 +938,7 @@ TEST(MeshQuery, beyond_single_precision_bounds_what_it_can)
         EXPECT_LE(asked.answer.lower_m, truth.lower);
         EXPECT_GT(asked.answer.lower_m, 0.8 * truth.lower);
         EXPECT_GE(asked.answer.upper_m, truth.lower);
-        EXPECT_EQ(asked.answer.kind, AnswerKind::decided);
+        EXPECT_EQ(asked.answer.kind, AnswerKind::separated);
         EXPECT_EQ(asked.report.intersection, Intersection::none);
         EXPECT_EQ(ask_meeting(tool, object, place, 1, memory).report.intersection,
                   Intersection::none);
@@ -954,7 +955,7 @@ TEST(MeshQuery, a_place_that_is_no_number_proves_nothing)
 
     const Asked asked = ask(tool, object, place, 0.1, 0.1, memory);
 
-    EXPECT_NE(asked.answer.kind, AnswerKind::decided);
+    EXPECT_NE(asked.answer.kind, AnswerKind::separated);
     EXPECT_LE(asked.answer.lower_m, 0.0);
     EXPECT_EQ(asked.report.intersection, Intersection::open);
     EXPECT_FALSE(asked.report.is_complete);
@@ -1038,7 +1039,7 @@ TEST(MeshQuery, keeps_the_lowest_of_too_many_meeting_faces_and_contacts)
 TEST(MeshQuery, keeps_the_nearest_contacts_whatever_met_before)
 {
     Random random(89);
-    int crowded = 0;
+    int capacity_exceeded = 0;
     int apart = 0;
     for (int round = 0; round < 120; ++round)
     {
@@ -1049,10 +1050,10 @@ TEST(MeshQuery, keeps_the_nearest_contacts_whatever_met_before)
         const std::size_t count = std::min<std::size_t>(truth.contacts.size(), kMaxContacts);
         std::ranges::sort(truth.contacts);
         DistanceAnswer first;
-        for (const bool was_crowded : {false, true})
+        for (const bool exceeded_capacity : {false, true})
         {
             MeshMemory memory{{random.below(10), random.below(10)},
-                              was_crowded,
+                              exceeded_capacity,
                               random.between(-0.1, 1.0) * reach}; // Any earlier result.
             ContactEnds ends;
             const Asked asked = ask(tool, object, place, reach, reach, memory, kAmple, 0.0, &ends);
@@ -1060,7 +1061,7 @@ TEST(MeshQuery, keeps_the_nearest_contacts_whatever_met_before)
             ASSERT_EQ(as_set(asked.report.meeting), truth.meeting) << round;
             ASSERT_TRUE(asked.report.is_complete);
             ASSERT_EQ(asked.contacts.is_complete, truth.contacts.size() <= kMaxContacts) << round;
-            ASSERT_EQ(memory.is_crowded, truth.meeting.size() > kMaxContacts) << round;
+            ASSERT_EQ(memory.exceeds_capacity, truth.meeting.size() > kMaxContacts) << round;
             ASSERT_EQ(asked.contacts.contacts.size(), count) << round;
             for (std::size_t i = 0; i < count; ++i)
             {
@@ -1074,16 +1075,16 @@ TEST(MeshQuery, keeps_the_nearest_contacts_whatever_met_before)
             {
                 ASSERT_LE(end.distance_m, count == 0 ? 0.0 : reach);
             }
-            first = was_crowded ? first : asked.answer;
+            first = exceeded_capacity ? first : asked.answer;
             ASSERT_EQ(asked.answer.kind, first.kind);
             ASSERT_TRUE(first.kind != AnswerKind::exact || asked.answer.upper_m == first.upper_m);
             ASSERT_EQ(asked.answer.certified_radius_m, first.certified_radius_m);
             ASSERT_EQ(asked.answer.nearest_face, first.nearest_face);
         }
-        crowded += truth.meeting.size() > kMaxContacts ? 1 : 0;
+        capacity_exceeded += truth.meeting.size() > kMaxContacts ? 1 : 0;
         apart += truth.meeting.size() < kMaxContacts && truth.contacts.size() > kMaxContacts;
     }
-    EXPECT_GT(crowded, 2);
+    EXPECT_GT(capacity_exceeded, 2);
     EXPECT_GT(apart, 10);
 }
 
@@ -1119,7 +1120,7 @@ TEST(MeshQuery, ends_where_enough_meets_for_a_tool_that_wants_contacts)
         EXPECT_EQ(asked.answer.upper_m, 0.0);
         EXPECT_EQ(asked.contacts.contacts.size(), kMaxContacts);
         EXPECT_FALSE(asked.contacts.is_complete);
-        EXPECT_TRUE(memory.is_crowded);
+        EXPECT_TRUE(memory.exceeds_capacity);
     }
 }
 
@@ -1175,7 +1176,7 @@ TEST(MeshQuery, asks_for_less_of_a_far_distance_after_it_was_cut_and_for_more_ag
         MeshMemory free_memory;
         const Asked free =
             ask_for(1, meshes.tool, meshes.object, place, 1e-3, -1.0, free_memory, kAmple);
-        ASSERT_EQ(free.answer.kind, AnswerKind::decided) << round;
+        ASSERT_EQ(free.answer.kind, AnswerKind::separated) << round;
         ASSERT_EQ(free_memory.share, kUsual);
         WalkBudget half = kAmple;
         half.nodes = free.budget.nodes_visited / 2;
@@ -1192,7 +1193,7 @@ TEST(MeshQuery, asks_for_less_of_a_far_distance_after_it_was_cut_and_for_more_ag
             cut += sut.budget.is_spent ? 1U : 0U;
             share = memory.share;
         }
-        AnswerKind kind = AnswerKind::bracket;
+        AnswerKind kind = AnswerKind::bounded;
         for (int frame = 0; frame < 12; ++frame)
         {
             const Asked sut =
@@ -1270,7 +1271,7 @@ TEST(MeshQuery, an_empty_tree_is_infinitely_far)
     TreeRig object({8, 50, 50});
     MeshMemory memory;
     const Asked asked = ask(tool, object, MeshPlacement{}, 0.1, 0.1, memory);
-    EXPECT_EQ(asked.answer.kind, AnswerKind::decided);
+    EXPECT_EQ(asked.answer.kind, AnswerKind::separated);
     EXPECT_EQ(asked.report.intersection, Intersection::none);
     EXPECT_TRUE(asked.contacts.contacts.empty());
 }

@@ -55,9 +55,9 @@ TEST_F(ObjectTableTest, has_nobody_at_first_and_room_up_to_its_capacity)
     EXPECT_EQ(sut.capacity(), kCapacity);
     for (std::uint32_t i = 0; i < kCapacity; ++i)
     {
-        EXPECT_FALSE(sut[i].is_here);
+        EXPECT_FALSE(sut[i].is_resident);
         EXPECT_EQ(change(comes(i, 5)), std::nullopt);
-        EXPECT_TRUE(sut[i].is_here);
+        EXPECT_TRUE(sut[i].is_resident);
         EXPECT_EQ(sut[i].came_frame, 7U);
         EXPECT_EQ(sut[i].generation, 5U);
     }
@@ -93,13 +93,13 @@ TEST_F(ObjectTableTest, takes_no_change_of_an_object_that_is_gone_or_another)
                   ChangeRefusal::old_generation);
         EXPECT_EQ(change(with(comes(0, other), SceneChangeKind::object_goes)),
                   ChangeRefusal::old_generation);
-        EXPECT_TRUE(sut[0].is_here);
+        EXPECT_TRUE(sut[0].is_resident);
     }
     ASSERT_EQ(change(with(comes(0, 4), SceneChangeKind::object_goes)), std::nullopt);
     EXPECT_EQ(change(with(comes(0, 4), SceneChangeKind::object_goes)), ChangeRefusal::not_here);
     EXPECT_EQ(change(comes(0, 4)), ChangeRefusal::old_generation);
     EXPECT_EQ(change(comes(0, 3)), ChangeRefusal::old_generation);
-    EXPECT_FALSE(sut[0].is_here);
+    EXPECT_FALSE(sut[0].is_resident);
     EXPECT_EQ(change(comes(0, 5)), std::nullopt);
 }
 
@@ -143,7 +143,7 @@ TEST_F(ObjectTableTest, refuses_poses_that_are_not_rigid_or_out_of_range)
         object.kind = SceneChangeKind::object_goes; // The pose of a removed object is ignored.
         EXPECT_EQ(sut.find_refusal(object, kShown), std::nullopt);
     }
-    EXPECT_FALSE(sut[0].is_here);
+    EXPECT_FALSE(sut[0].is_resident);
     SceneChange edge = comes(0, 0);
     edge.pose.scale = kPoseScaleMax;
     edge.pose.translation_m = Vec3(kPoseReachMax_m, -kPoseReachMax_m, 0.0);

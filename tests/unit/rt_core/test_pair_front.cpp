@@ -112,7 +112,7 @@ struct Truth
             Triangle first = to_triangle(own.corners_m);
             for (Vec3& corner : first)
             {
-                corner = place.to_there(corner);
+                corner = place.local_to_world(corner);
             }
             for (const ChangedFace& face : object.present())
             {
@@ -368,12 +368,12 @@ TEST(PairFront, counts_a_motion_at_least_as_long_as_that_of_any_point)
                                                           random.in_cube(1.0).normalized())
                                             .toRotationMatrix();
         }
-        const Ball ball{random.in_cube(1.0), random.between(0.0, 2.0)};
-        const double motion = motion_between(before, now, ball);
+        const Sphere sphere{random.in_cube(1.0), random.between(0.0, 2.0)};
+        const double motion = motion_between(before, now, sphere);
         for (int point = 0; point < 5; ++point)
         {
-            const Vec3 at = ball.center + ball.radius * random.in_cube(1.0).normalized();
-            ASSERT_GE(motion + 1e-14, (now.to_there(at) - before.to_there(at)).norm());
+            const Vec3 at = sphere.center + sphere.radius * random.in_cube(1.0).normalized();
+            ASSERT_GE(motion + 1e-14, (now.local_to_world(at) - before.local_to_world(at)).norm());
         }
     }
 }

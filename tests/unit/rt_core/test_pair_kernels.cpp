@@ -92,7 +92,7 @@ struct BoxScene
         const double gap = random.one_in(3) ? 0.0 : size * std::exp2(-random.between(0.0, 20.0));
         const Vec3 way = gap * random.in_cube(1.0).normalized();
         const Vec3 to = point_in(random, boxes.get(touched)) + way;
-        place.place.translation_m = to - place.to_there(point_in(random, other));
+        place.place.translation_m = to - place.local_to_world(point_in(random, other));
         apart_units = gap * units_per_m;
     }
 
@@ -119,7 +119,7 @@ std::array<double, 2> extent(const Aabb& box, const MeshPlacement& place, const 
             at[static_cast<int>(axis)] =
                 static_cast<double>((corner >> axis & 1U) != 0 ? box.high[axis] : box.low[axis]);
         }
-        const double height = direction.dot(place.to_there(at));
+        const double height = direction.dot(place.local_to_world(at));
         ends = {std::min(ends[0], height), std::max(ends[1], height)};
     }
     return ends;
@@ -225,7 +225,7 @@ struct BlocksScene
         Triangle triangle = to_triangle(block_triangle(tool, lane));
         for (Vec3& corner : triangle)
         {
-            corner = place.to_there(corner);
+            corner = place.local_to_world(corner);
         }
         return triangle;
     }
@@ -468,7 +468,8 @@ TEST(PairKernels, bound_the_distance_of_turned_boxes_from_below_and_closely)
         {
             const Aabb own = scene.boxes.get(child);
             const double sum =
-                (to_vec3(own.low) - scene.place.to_there(to_vec3(scene.other.low))).lpNorm<1>() +
+                (to_vec3(own.low) - scene.place.local_to_world(to_vec3(scene.other.low)))
+                    .lpNorm<1>() +
                 (to_vec3(own.high) - to_vec3(own.low)).lpNorm<1>() +
                 5.0 * scene.place.place.scale *
                     (to_vec3(scene.other.high) - to_vec3(scene.other.low)).lpNorm<1>();
@@ -569,7 +570,7 @@ TEST(PairKernels, place_turned_vertices_where_they_are)
     {
         for (std::size_t row = 0; row < 15; ++row)
         {
-            const Vec3 at = scene.place.to_there(
+            const Vec3 at = scene.place.local_to_world(
                 to_vec3(Vec3f{scene.tool.coordinates[0][row], scene.tool.coordinates[1][row],
                               scene.tool.coordinates[2][row]}));
             for (std::size_t axis = 0; axis < 3; ++axis)
@@ -629,7 +630,7 @@ TEST(PairKernels, leave_out_no_pair_of_faces_within_the_bound)
 TEST(PairKernels, decide_no_pair_otherwise_than_exact_arithmetic)
 {
     std::uint32_t plain = 0;
-    std::uint32_t decided = 0;
+    std::uint32_t separated = 0;
     Random random(87);
     for (const BlocksScene& scene : pairs_of_shapes(random, 12))
     {
@@ -644,10 +645,10 @@ TEST(PairKernels, decide_no_pair_otherwise_than_exact_arithmetic)
         if (std::string_view(scene.object.shape) == face_shapes()[0].name)
         {
             plain += queue.size();
-            decided += static_cast<std::uint32_t>(std::popcount(sides.meet | sides.apart));
+            separated += static_cast<std::uint32_t>(std::popcount(sides.meet | sides.apart));
         }
     }
-    EXPECT_GT(decided, plain / 2);
+    EXPECT_GT(separated, plain / 2);
 }
 
 TEST(PairKernels, decide_and_bound_near_ties_needles_and_faces_in_one_plane)

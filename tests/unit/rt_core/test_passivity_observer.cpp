@@ -98,7 +98,7 @@ TEST(PassivityObserver, sees_no_surplus_in_a_spring_that_gives_back_what_it_got)
         sut.observe(Vec3(500.0 * (depth + next), 0, 0), Vec3(depth - next, 0, 0), kPeriod_s);
         sut.hold(500.0 * next * next);
         depth = next;
-        EXPECT_NEAR(sut.surplus_j(), 0.0, 1e-15);
+        EXPECT_NEAR(sut.observed_energy_j(), 0.0, 1e-15);
     }
     EXPECT_NEAR(sut.work_j(), 0.0, 1e-15);
 }
@@ -115,7 +115,7 @@ TEST(PassivityObserver, sees_what_a_sampled_spring_makes_of_each_step)
         sut.hold(500.0 * next * next);
         expected += 500.0 * (next - depth) * (next - depth); // K dx^2 / 2.
         depth = next;
-        EXPECT_NEAR(sut.surplus_j(), expected, 1e-12);
+        EXPECT_NEAR(sut.observed_energy_j(), expected, 1e-12);
     }
     EXPECT_NEAR(sut.work_j(), expected, 1e-12);
 }
@@ -128,16 +128,16 @@ TEST(PassivityObserver, takes_off_what_damping_and_friction_lose_and_keeps_no_cr
     PassivityObserver sut(device, kPeriod_s);
     sut.observe(Vec3(3, 0, 0), Vec3(1e-3, 0, 0), 2e-3);
     sut.hold(0.0);
-    EXPECT_NEAR(sut.surplus_j(), 3e-3 - 2.0 * 1e-6 / 2e-3 - 0.1e-3, 1e-15);
+    EXPECT_NEAR(sut.observed_energy_j(), 3e-3 - 2.0 * 1e-6 / 2e-3 - 0.1e-3, 1e-15);
     sut.observe(Vec3(-3, 0, 0), Vec3(1.0, 0, 0), 1e-3);
     sut.hold(0.0);
-    EXPECT_EQ(sut.surplus_j(), 0.0);
+    EXPECT_EQ(sut.observed_energy_j(), 0.0);
     sut.observe(Vec3(3, 0, 0), Vec3(1e-4, 0, 0), 1e-3);
     sut.hold(0.0);
-    EXPECT_NEAR(sut.surplus_j(), 3e-4 - 2.0 * 1e-8 / 1e-3 - 1e-5, 1e-15);
+    EXPECT_NEAR(sut.observed_energy_j(), 3e-4 - 2.0 * 1e-8 / 1e-3 - 1e-5, 1e-15);
     EXPECT_NEAR(sut.work_j(), 3e-3 - 3.0 + 3e-4, 1e-12);
     sut.hold_nothing();
-    EXPECT_EQ(sut.surplus_j(), 0.0);
+    EXPECT_EQ(sut.observed_energy_j(), 0.0);
 }
 
 TEST(PassivityObserver, asks_for_the_damping_that_loses_the_surplus_in_a_period)

@@ -40,7 +40,7 @@ TEST(Proxy, moves_in_free_flight_only_where_it_is_proven_free)
     const ToolOutput output = rig.step(Vec3(0, 0, 0.3));
 
     EXPECT_FALSE(output.in_contact);
-    EXPECT_FALSE(output.frozen);
+    EXPECT_FALSE(output.halted);
     EXPECT_NEAR(output.proxy_m.z(), 0.5 - (0.03 - kRadius), 1e-5);
 }
 
@@ -114,7 +114,7 @@ TEST(Proxy, frozen_in_free_flight_has_no_force)
 
     const ToolOutput output = rig.step(Vec3(0, 0, -0.5));
 
-    EXPECT_TRUE(output.frozen);
+    EXPECT_TRUE(output.halted);
     EXPECT_EQ(faults_of(output), FrameFault::none) << "there is nothing to fade";
     EXPECT_FALSE(output.in_contact);
     EXPECT_EQ(output.force_n, Vec3(0, 0, 0));
@@ -198,7 +198,7 @@ TEST(Proxy, among_more_faces_than_fit_goes_as_far_as_those_that_do_and_on_in_the
     {
         output = rig.step(goal);
         was_under_way = was_under_way || output.under_way;
-        ASSERT_FALSE(output.frozen);
+        ASSERT_FALSE(output.halted);
         ASSERT_GE(output.proxy_m.z(), kRadius * (1.0 - 2e-6));
     }
     EXPECT_TRUE(was_under_way);
@@ -239,11 +239,11 @@ TriangleList bent_top(int faces)
 TEST(Proxy, goes_on_in_the_next_frame_when_its_steps_are_over)
 {
     const Vec3 goal(6, 0, -6);
-    Proxy few(ball_tool());
+    Proxy few(sphere_tool());
     EXPECT_FALSE(leap_among(bent_top(5), goal, few).under_way);
     EXPECT_LT(few.path_m().size(), kProxySteps);
 
-    Proxy many(ball_tool());
+    Proxy many(sphere_tool());
     EXPECT_TRUE(leap_among(bent_top(60), goal, many).under_way);
     EXPECT_EQ(many.path_m().size(), kProxySteps)
         << "where it was, and after all steps but the last";
@@ -265,7 +265,7 @@ TEST(Proxy, among_more_faces_than_a_step_has_rounds_enters_none_and_comes_to_res
             points.push_back({at, at, at});
         }
         const Vec3 goal = random.in_cube(1.0) + Vec3(0, 0, -2);
-        Proxy sut(ball_tool());
+        Proxy sut(sphere_tool());
         static_cast<void>(leap_among(points, goal, sut));
         const std::span<const Vec3> path = sut.path_m();
         for (std::size_t i = 1; i < path.size(); ++i)
@@ -379,18 +379,18 @@ TEST(Proxy, says_that_it_is_crowded_when_more_touches_than_planes_fit)
         ProxyRig rig(TriangleList(count, plane().front()), Vec3(0.5, 0, kRadius));
         const ToolOutput output = rig.step(Vec3(0.5, 0, 0.005));
         EXPECT_TRUE(output.in_contact);
-        EXPECT_EQ(rig.sut.is_crowded(), count > kMaxHalfSpaces);
+        EXPECT_EQ(rig.sut.exceeds_capacity(), count > kMaxHalfSpaces);
         rig.step(Vec3(0.5, 0, 0.5));
         EXPECT_FALSE(rig.settle(Vec3(0.5, 0, 0.5), 3).in_contact);
-        EXPECT_FALSE(rig.sut.is_crowded());
+        EXPECT_FALSE(rig.sut.exceeds_capacity());
     }
 }
 
-TEST(Proxy, held_back_before_an_edge_and_let_go_the_force_turns_by_its_rate_or_the_devices_share)
+TEST(Proxy, data_limited_before_an_edge_and_let_go_the_force_turns_by_its_rate_or_the_devices_share)
 {
     for (const double force_max_n : {8.0, 2.0})
     {
-        ToolSpec tool = ball_tool();
+        ToolSpec tool = sphere_tool();
         tool.force_max_n = force_max_n;
         const double rate_n_per_s = std::min(kCatchUp_n_per_s, kCatchUpShare_per_s * force_max_n);
         EXPECT_EQ(rate_n_per_s < kCatchUp_n_per_s, force_max_n < 8.0);
@@ -402,7 +402,7 @@ TEST(Proxy, held_back_before_an_edge_and_let_go_the_force_turns_by_its_rate_or_t
         rig.settle(Vec3(0.045, 0.0, 0.058));
         rig.certified = kRadius + 0.001;
         Vec3 before = rig.step(goal).force_n;
-        ASSERT_TRUE(rig.step(goal).held_back);
+        ASSERT_TRUE(rig.step(goal).data_limited);
         ASSERT_GT((turned - before).norm(), 0.25 * force_max_n);
         before = rig.step(goal).force_n;
         rig.certified = 0.05;
@@ -512,7 +512,7 @@ TEST(Proxy, every_step_of_its_path_is_free)
 TEST(Proxy, a_tool_without_a_radius_stays_a_skin_away)
 {
     Random random(76);
-    ToolSpec point = ball_tool();
+    ToolSpec point = sphere_tool();
     point.radius_m = 0.0;
     ProxyRig rig(cube(0.05), Vec3(0.0, 0.0, 0.08), {}, point);
     rig.quantum = 1e-6;
@@ -528,7 +528,7 @@ TEST(Proxy, a_tool_without_a_radius_stays_a_skin_away)
 
 TEST(Proxy, a_point_with_no_surface_near_goes_as_far_as_everything_is_clear)
 {
-    ToolSpec point = ball_tool();
+    ToolSpec point = sphere_tool();
     point.radius_m = 0.0;
     for (const double hand_m : {0.0, 1.0, 2.9999999, 3.1, 6.0, 7.3})
     {
@@ -568,7 +568,7 @@ TEST(Proxy, without_room_rests_and_moves_exactly_along_the_walls_with_friction_a
                 {
                     hand.x() += step_m;
                     const ToolOutput output = rig.step(hand);
-                    ASSERT_EQ(output.squeezed, room_m != 0.0)
+                    ASSERT_EQ(output.over_constrained, room_m != 0.0)
                         << room_m << ", " << friction << ", " << step_m;
                     ASSERT_TRUE(output.force_n.allFinite());
                     ASSERT_TRUE(rig.sut.position_m().allFinite());
@@ -594,7 +594,7 @@ TEST(Proxy, a_push_too_weak_for_a_direction_leaves_the_last_one)
     EXPECT_NEAR((rig.sut.position_m() - across).norm(), 0.0, 1e-6);
 }
 
-TEST(Proxy, friction_rounds_a_ball_as_well)
+TEST(Proxy, friction_rounds_a_sphere_as_well)
 {
     // Fan of thin faces: the bent top of a cylinder of radius 0.1 along y.
     TriangleList list;
@@ -738,7 +738,7 @@ TEST(Proxy, frozen_when_it_goes_on_stays_as_it_was)
     }
     rig.certified = 0.0;
     rig.sut.go_on();
-    EXPECT_TRUE(rig.step(goal).frozen);
+    EXPECT_TRUE(rig.step(goal).halted);
     rig.certified = 1.4 * kRadius;
     EXPECT_EQ(rig.step(goal).force_n, other.step(goal).force_n);
     EXPECT_EQ(rig.sut.position_m(), other.sut.position_m());
@@ -756,7 +756,7 @@ TEST(Proxy, behind_a_fast_hand_is_never_without_force_and_on_it_again_when_that_
         goal.x() += 0.003;
         const ToolOutput output = rig.step_on(goal, Vec3(3, 0, 0));
         ASSERT_GT(output.force_n.norm(), 0.0) << frame;
-        ASSERT_FALSE(output.frozen);
+        ASSERT_FALSE(output.halted);
         ASSERT_GE(output.lag_m, lag_m);
         lag_m = output.lag_m;
     }

@@ -16,10 +16,10 @@ namespace tactus::test
 namespace
 {
 
-constexpr double kLead_s = 0.02;
+constexpr double kHorizon_s = 0.02;
 constexpr double kSpeedMax_m_per_s = 10.0;
 /// One sphere at the tool, and one for each quarter of the horizon.
-constexpr std::size_t kBalls = 5;
+constexpr std::size_t kSpheres = 5;
 constexpr std::size_t kHalfway = 2;
 constexpr std::size_t kLast = 4;
 
@@ -27,11 +27,11 @@ constexpr std::array<Prediction, 5> kWays{Prediction::local_neighbours, Predicti
                                           Prediction::quadratic, Prediction::distance_query,
                                           Prediction::automatic};
 
-CoreCover one_ball(const Vec3& center)
+CoreCover one_sphere(const Vec3& center)
 {
-    CoreCover balls;
-    balls.push_back({center, 0.0});
-    return balls;
+    CoreCover spheres;
+    spheres.push_back({center, 0.0});
+    return spheres;
 }
 
 PairMotion motion_to(const Vec3& center_m)
@@ -48,14 +48,14 @@ void follow(RegionPredictor& sut, const std::function<Vec3(double)>& place_at, i
 {
     for (int i = 0; i <= frames; ++i)
     {
-        sut.observe(motion_to(place_at(i * kPeriod_s)), kLead_s);
+        sut.observe(motion_to(place_at(i * kPeriod_s)), kHorizon_s);
     }
 }
 
 RegionRanking ranked(const RegionPredictor& sut, Prediction way, const Vec3& at)
 {
     RegionRanking ranking;
-    sut.rank(way, {5}, one_ball(at), 0.02, ranking);
+    sut.rank(way, {5}, one_sphere(at), 0.02, ranking);
     return ranking;
 }
 
@@ -69,13 +69,13 @@ Vec3 on_circle(double time_s)
 TEST(RegionPredictor, after_the_first_observation_every_way_stands_still)
 {
     RegionPredictor sut;
-    sut.observe(motion_to(Vec3(1, 2, 3)), kLead_s);
+    sut.observe(motion_to(Vec3(1, 2, 3)), kHorizon_s);
 
     for (const Prediction way : kWays)
     {
         const RegionRanking ranking = ranked(sut, way, Vec3(1, 2, 3));
 
-        ASSERT_EQ(ranking.size(), kBalls);
+        ASSERT_EQ(ranking.size(), kSpheres);
         for (const RankedRegion& region : ranking)
         {
             EXPECT_EQ(region.model, ModelId{5});
@@ -88,14 +88,14 @@ TEST(RegionPredictor, after_the_first_observation_every_way_stands_still)
 TEST(RegionPredictor, the_most_urgent_comes_first_and_the_lead_last)
 {
     RegionPredictor sut;
-    sut.observe(motion_to(Vec3(0, 0, 0)), kLead_s);
+    sut.observe(motion_to(Vec3(0, 0, 0)), kHorizon_s);
 
     const RegionRanking ranking = ranked(sut, Prediction::linear, Vec3(0, 0, 0));
 
-    ASSERT_EQ(ranking.size(), kBalls);
+    ASSERT_EQ(ranking.size(), kSpheres);
     for (std::int64_t i = 0; i < 5; ++i)
     {
-        EXPECT_EQ(ranking[static_cast<std::size_t>(i)].lead_ns, 5'000'000 * i);
+        EXPECT_EQ(ranking[static_cast<std::size_t>(i)].horizon_ns, 5'000'000 * i);
     }
 }
 
@@ -110,7 +110,7 @@ TEST(RegionPredictor, linear_finds_a_constant_velocity_and_the_places_it_leads_t
     EXPECT_NEAR((sut.velocity_m_per_s() - velocity).norm(), 0.0, 1e-9);
     for (const RankedRegion& region : ranked(sut, Prediction::linear, at))
     {
-        const Vec3 way = velocity * (static_cast<double>(region.lead_ns) * 1e-9);
+        const Vec3 way = velocity * (static_cast<double>(region.horizon_ns) * 1e-9);
         EXPECT_NEAR((region.center_m - (at + way)).norm(), 0.0, 1e-9);
         EXPECT_NEAR(region.radius_m, 0.02, 1e-3) << "what it erred while it learned wears off";
     }
@@ -123,13 +123,13 @@ TEST(RegionPredictor, quadratic_foretells_an_acceleration_that_linear_misses)
     { return 0.5 * time_s * time_s * acceleration; };
     RegionPredictor sut;
     follow(sut, place_at, 600);
-    const Vec3 truth = place_at(0.6 + kLead_s);
+    const Vec3 truth = place_at(0.6 + kHorizon_s);
 
     const Vec3 linear = ranked(sut, Prediction::linear, place_at(0.6))[kLast].center_m;
     const Vec3 quadratic = ranked(sut, Prediction::quadratic, place_at(0.6))[kLast].center_m;
 
     const double missed_by_linear = (linear - truth).norm();
-    EXPECT_GT(missed_by_linear, 0.5 * 0.5 * kLead_s * kLead_s * acceleration.norm());
+    EXPECT_GT(missed_by_linear, 0.5 * 0.5 * kHorizon_s * kHorizon_s * acceleration.norm());
     EXPECT_LT((quadratic - truth).norm(), 0.2 * missed_by_linear);
 }
 
@@ -142,8 +142,8 @@ TEST(RegionPredictor, local_neighbours_stay_and_reach_as_far_as_the_speed_leads)
     const RegionRanking ranking = ranked(sut, Prediction::local_neighbours, Vec3(0.15, 0.0, 0.0));
 
     EXPECT_EQ(ranking[kLast].center_m, Vec3(0.15, 0.0, 0.0));
-    EXPECT_NEAR(ranking[kLast].radius_m, 0.02 + 0.5 * kLead_s, 1e-9);
-    EXPECT_NEAR(ranking[kHalfway].radius_m, 0.02 + 0.25 * kLead_s, 1e-9);
+    EXPECT_NEAR(ranking[kLast].radius_m, 0.02 + 0.5 * kHorizon_s, 1e-9);
+    EXPECT_NEAR(ranking[kHalfway].radius_m, 0.02 + 0.25 * kHorizon_s, 1e-9);
 }
 
 TEST(RegionPredictor, distance_query_does_not_go_through_the_surface)
@@ -155,7 +155,7 @@ TEST(RegionPredictor, distance_query_does_not_go_through_the_surface)
         motion.center_m = Vec3(0.4 * i * kPeriod_s, 0.0, 1.0 - 0.3 * i * kPeriod_s);
         motion.outward = Vec3(0, 0, 1);
         motion.gap_m = 0.002;
-        through.observe(motion, kLead_s);
+        through.observe(motion, kHorizon_s);
     }
 
     const Vec3 straight =
@@ -163,7 +163,7 @@ TEST(RegionPredictor, distance_query_does_not_go_through_the_surface)
     const Vec3 held = ranked(through, Prediction::distance_query, motion.center_m)[kLast].center_m -
                       motion.center_m;
 
-    EXPECT_NEAR(straight.z(), -0.3 * kLead_s, 1e-9);
+    EXPECT_NEAR(straight.z(), -0.3 * kHorizon_s, 1e-9);
     EXPECT_NEAR(held.z(), -0.002, 1e-9) << "as far as touching";
     EXPECT_NEAR(held.x(), straight.x(), 1e-9);
 }
@@ -177,13 +177,13 @@ TEST(RegionPredictor, a_tool_behind_its_hand_is_expected_on_the_way_to_it)
     motion.speed_max_m_per_s = 2.0;
     for (int i = 0; i < 100; ++i)
     {
-        sut.observe(motion, kLead_s);
+        sut.observe(motion, kHorizon_s);
     }
 
     const RegionRanking ranking = ranked(sut, Prediction::linear, Vec3(0, 0, 0));
 
-    EXPECT_NEAR(ranking[kLast].center_m.x(), 2.0 * kLead_s, 1e-12);
-    EXPECT_NEAR(ranking[kHalfway].center_m.x(), 1.0 * kLead_s, 1e-12);
+    EXPECT_NEAR(ranking[kLast].center_m.x(), 2.0 * kHorizon_s, 1e-12);
+    EXPECT_NEAR(ranking[kHalfway].center_m.x(), 1.0 * kHorizon_s, 1e-12);
 }
 
 TEST(RegionPredictor, automatic_believes_the_way_that_errs_least)
@@ -191,17 +191,17 @@ TEST(RegionPredictor, automatic_believes_the_way_that_errs_least)
     RegionPredictor straight;
     follow(
         straight, [](double time_s) { return Vec3(0.3 * time_s, 0.0, 0.0); }, 600);
-    EXPECT_NE(straight.believed(), Prediction::local_neighbours);
+    EXPECT_NE(straight.limited(), Prediction::local_neighbours);
 
     RegionPredictor turning;
     follow(turning, on_circle, 600);
-    EXPECT_EQ(turning.believed(), Prediction::quadratic);
+    EXPECT_EQ(turning.limited(), Prediction::quadratic);
 
     Random random(7);
     RegionPredictor trembling;
     follow(
         trembling, [&](double) { return random.in_cube(1e-3); }, 2'000);
-    EXPECT_EQ(trembling.believed(), Prediction::local_neighbours);
+    EXPECT_EQ(trembling.limited(), Prediction::local_neighbours);
 }
 
 TEST(RegionPredictor, automatic_ranks_as_the_way_it_believes)
@@ -211,30 +211,30 @@ TEST(RegionPredictor, automatic_ranks_as_the_way_it_believes)
     const Vec3 at = on_circle(0.6);
 
     const RegionRanking automatic = ranked(sut, Prediction::automatic, at);
-    const RegionRanking believed = ranked(sut, sut.believed(), at);
+    const RegionRanking limited = ranked(sut, sut.limited(), at);
 
-    for (std::size_t i = 0; i < kBalls; ++i)
+    for (std::size_t i = 0; i < kSpheres; ++i)
     {
-        EXPECT_EQ(automatic[i].center_m, believed[i].center_m);
-        EXPECT_EQ(automatic[i].radius_m, believed[i].radius_m);
+        EXPECT_EQ(automatic[i].center_m, limited[i].center_m);
+        EXPECT_EQ(automatic[i].radius_m, limited[i].radius_m);
     }
 }
 
-TEST(RegionPredictor, balls_are_wider_by_what_forecasts_erred)
+TEST(RegionPredictor, spheres_are_wider_by_what_forecasts_erred)
 {
     RegionPredictor sut;
     follow(sut, on_circle, 2'000);
-    const double before_m = (on_circle(2.0 - kLead_s) - on_circle(2.0)).norm();
+    const double before_m = (on_circle(2.0 - kHorizon_s) - on_circle(2.0)).norm();
 
     const RegionRanking ranking = ranked(sut, Prediction::linear, on_circle(2.0));
-    const double erred_m = (ranking[kLast].center_m - on_circle(2.0 + kLead_s)).norm();
+    const double erred_m = (ranking[kLast].center_m - on_circle(2.0 + kHorizon_s)).norm();
 
     EXPECT_GT(ranking[kLast].radius_m - 0.02, 0.8 * erred_m);
     EXPECT_LT(ranking[kLast].radius_m - 0.02, 1.2 * erred_m);
     EXPECT_LT(erred_m, before_m) << "better than staying";
 }
 
-TEST(RegionPredictor, no_ball_is_wider_than_by_as_much_as_is_asked_for)
+TEST(RegionPredictor, no_sphere_is_wider_than_by_as_much_as_is_asked_for)
 {
     RegionPredictor sut;
     follow(
@@ -247,11 +247,11 @@ TEST(RegionPredictor, no_ball_is_wider_than_by_as_much_as_is_asked_for)
 TEST(RegionPredictor, a_stall_counts_with_its_whole_time)
 {
     RegionPredictor sut;
-    sut.observe(motion_to(Vec3(0, 0, 0)), kLead_s);
+    sut.observe(motion_to(Vec3(0, 0, 0)), kHorizon_s);
     PairMotion later = motion_to(Vec3(0.5, 0, 0));
     later.elapsed_s = 0.5;
 
-    sut.observe(later, kLead_s);
+    sut.observe(later, kHorizon_s);
 
     EXPECT_GT(sut.velocity_m_per_s().x(), 0.9);
     EXPECT_LE(sut.velocity_m_per_s().x(), 1.0);
@@ -262,7 +262,7 @@ TEST(RegionPredictor, smooths_a_tremor_away)
     RegionPredictor sut;
     for (int i = 0; i < 1'000; ++i)
     {
-        sut.observe(motion_to(Vec3(i % 2 == 0 ? 1e-4 : -1e-4, 0, 0)), kLead_s);
+        sut.observe(motion_to(Vec3(i % 2 == 0 ? 1e-4 : -1e-4, 0, 0)), kHorizon_s);
     }
     EXPECT_LT(sut.velocity_m_per_s().norm(), 0.1 * 0.2);
 }
@@ -270,33 +270,33 @@ TEST(RegionPredictor, smooths_a_tremor_away)
 TEST(RegionPredictor, a_full_ranking_keeps_what_it_has)
 {
     RegionPredictor sut;
-    sut.observe(motion_to(Vec3(1, 0, 0)), kLead_s);
+    sut.observe(motion_to(Vec3(1, 0, 0)), kHorizon_s);
     RegionRanking ranking;
     while (ranking.try_push_back({ModelId{9}, Vec3(0, 0, 0), 1.0, 0}))
     {
     }
 
-    sut.rank(Prediction::automatic, {0}, one_ball(Vec3(1, 0, 0)), 0.02, ranking);
+    sut.rank(Prediction::automatic, {0}, one_sphere(Vec3(1, 0, 0)), 0.02, ranking);
 
     EXPECT_TRUE(ranking.full());
     EXPECT_EQ(ranking[ranking.size() - 1].model, ModelId{9});
 }
 
-TEST(RegionPredictor, a_full_ranking_says_when_it_lacks_a_ball_where_a_tool_is)
+TEST(RegionPredictor, a_full_ranking_says_when_it_lacks_a_sphere_where_a_tool_is)
 {
     RegionPredictor sut;
-    sut.observe(motion_to(Vec3(1, 0, 0)), kLead_s);
+    sut.observe(motion_to(Vec3(1, 0, 0)), kHorizon_s);
     RegionRanking ranking;
     while (ranking.size() + 1 < kMaxRankedRegions)
     {
         ranking.push_back({ModelId{9}, Vec3(0, 0, 0), 1.0, 0});
     }
 
-    sut.rank(Prediction::automatic, {0}, one_ball(Vec3(1, 0, 0)), 0.02, ranking);
+    sut.rank(Prediction::automatic, {0}, one_sphere(Vec3(1, 0, 0)), 0.02, ranking);
 
     EXPECT_EQ(ranking.size(), kMaxRankedRegions);
-    EXPECT_FALSE(ranking.lacks_present) << "only balls that look ahead were left out";
-    RegionPredictor::rank_present({0}, one_ball(Vec3(1, 0, 0)), 0.02, ranking);
+    EXPECT_FALSE(ranking.lacks_present) << "only spheres that look ahead were left out";
+    RegionPredictor::rank_present({0}, one_sphere(Vec3(1, 0, 0)), 0.02, ranking);
     EXPECT_EQ(ranking.size(), kMaxRankedRegions);
     EXPECT_TRUE(ranking.lacks_present);
 }
@@ -306,7 +306,7 @@ TEST(RegionPredictorDeathTest, time_that_stands_still_is_a_bug)
     RegionPredictor sut;
     PairMotion motion = motion_to(Vec3(0, 0, 0));
     motion.elapsed_s = 0.0;
-    EXPECT_DEATH(sut.observe(motion, kLead_s), "");
+    EXPECT_DEATH(sut.observe(motion, kHorizon_s), "");
     EXPECT_DEATH(sut.observe(motion_to(Vec3(0, 0, 0)), 0.0), "");
 }
 

@@ -33,7 +33,7 @@ double least_on_way(const Rig& rig, const ToolCore& core, const Similarity& from
 {
     const Similarity& to = rig.sut.place();
     const Vec3 center = PlacedCore(core, {}).center();
-    const Vec3 way = to.to_there(center) - from.to_there(center);
+    const Vec3 way = to.local_to_world(center) - from.local_to_world(center);
     const Eigen::AngleAxisd turned(to.rotation * from.rotation.transpose());
     double least = std::numeric_limits<double>::infinity();
     for (const double share : {0.2, 0.4, 0.6, 0.8, 1.0})
@@ -41,7 +41,7 @@ double least_on_way(const Rig& rig, const ToolCore& core, const Similarity& from
         const Mat3 rotation =
             Eigen::AngleAxisd(share * turned.angle(), turned.axis()).toRotationMatrix() *
             from.rotation;
-        const Vec3 at = from.to_there(center) + share * way - rotation * center;
+        const Vec3 at = from.local_to_world(center) + share * way - rotation * center;
         least = std::min(least, rig.distance_at({rotation, at, 1.0}));
     }
     return least;
@@ -231,7 +231,7 @@ TEST(RigidProxy, between_brackets_goes_no_farther_than_they_allow)
 {
     Rig rig = on_plane(Box{kHalf});
     rig.settle(Vec3(0, 0, 0.05));
-    rig.kind = AnswerKind::bracket;
+    rig.kind = AnswerKind::bounded;
     rig.lower_share = 0.5;
     for (int i = 0; i < 100; ++i)
     {
@@ -272,8 +272,8 @@ TEST(RigidProxy, is_not_run_over_by_an_object_that_turns_and_leaps)
             pose.rotation = turn(axis, random.between(0.0, 0.05)) * pose.rotation;
             pose.translation_m += random.in_cube(0.004);
             const ToolOutput output = rig.step(to_world(pose, over), pose.rotation);
-            ASSERT_FALSE(output.frozen) << i;
-            ASSERT_FALSE(output.squeezed) << i;
+            ASSERT_FALSE(output.halted) << i;
+            ASSERT_FALSE(output.over_constrained) << i;
             ASSERT_GT(rig.distance(), 0.0) << i;
             ASSERT_GT(to_model(pose, output.proxy_m).z(), 0.0)
                 << i; // The side is the previous one.
@@ -288,15 +288,15 @@ TEST(RigidProxy, held_by_an_object_that_moves_is_not_taken_through_one_that_stan
         Rig rig(tool_of(Box{kHalf}), {{plane(), {}}, {plane(), {}}});
         rig.objects[1].pose.translation_m.z() = 0.03;
         rig.settle(Vec3(0, 0, 0.015));
-        bool was_squeezed = false;
+        bool was_over_constrained = false;
         for (int i = 0; i < 60; ++i)
         {
             rig.objects[0].pose.translation_m.z() += leap_m;
             const ToolOutput output = rig.step(Vec3(0, 0, 0.0));
-            was_squeezed = was_squeezed || output.squeezed;
-            ASSERT_TRUE(was_squeezed || rig.distance() > 0.0) << leap_m << ", " << i;
+            was_over_constrained = was_over_constrained || output.over_constrained;
+            ASSERT_TRUE(was_over_constrained || rig.distance() > 0.0) << leap_m << ", " << i;
         }
-        EXPECT_TRUE(was_squeezed);
+        EXPECT_TRUE(was_over_constrained);
     }
 }
 
@@ -309,8 +309,8 @@ TEST(RigidProxy, that_an_object_came_over_is_given_up_when_its_force_has_faded)
     rig.objects[0].pose.translation_m.z() = 0.025;
 
     const ToolOutput over = rig.step(Vec3(0, 0, 0.0));
-    EXPECT_TRUE(over.frozen);
-    EXPECT_TRUE(over.squeezed);
+    EXPECT_TRUE(over.halted);
+    EXPECT_TRUE(over.over_constrained);
     const ToolOutput output = rig.settle(Vec3(0, 0, 0.1));
 
     EXPECT_EQ(output.proxy_m, Vec3(0, 0, 0.1));
@@ -318,7 +318,7 @@ TEST(RigidProxy, that_an_object_came_over_is_given_up_when_its_force_has_faded)
 }
 
 /// Sphere's proxy at the origin with given contacts with one object.
-class ToldBall
+class RegionSphere
 {
 public:
     ToolOutput step(const std::vector<Contact>& contacts, const Vec3& goal)
@@ -365,15 +365,16 @@ Vec3 on_cone(std::size_t i, std::size_t count)
 
 TEST(RigidProxy, remembers_as_many_holds_as_the_limit_and_says_when_it_forgets_one)
 {
-    ToldBall ball;
-    static_cast<void>(ball.step({}, Vec3(0, 0, 0)));
+    RegionSphere sphere;
+    static_cast<void>(sphere.step({}, Vec3(0, 0, 0)));
     for (std::size_t i = 0; i <= kMaxHolds; ++i)
     {
         const Vec3 normal = on_cone(i, kMaxHolds + 1);
-        const ToolOutput output = ball.step({ball.contact(normal, kBodyRadius)},
-                                            ball.sut.place().translation_m - kBodyRadius * normal);
+        const ToolOutput output =
+            sphere.step({sphere.contact(normal, kBodyRadius)},
+                        sphere.sut.place().translation_m - kBodyRadius * normal);
         ASSERT_TRUE(output.in_contact) << i;
-        EXPECT_EQ(ball.sut.is_crowded(), i == kMaxHolds) << i;
+        EXPECT_EQ(sphere.sut.exceeds_capacity(), i == kMaxHolds) << i;
     }
 }
 
@@ -381,34 +382,34 @@ TEST(RigidProxy, takes_as_many_planes_as_the_limit_and_says_when_it_leaves_one_o
 {
     for (const std::size_t count : {std::size_t{kMaxHalfSpaces}, std::size_t{kMaxHalfSpaces} + 1})
     {
-        ToldBall ball;
-        static_cast<void>(ball.step({}, Vec3(0, 0, 0)));
+        RegionSphere sphere;
+        static_cast<void>(sphere.step({}, Vec3(0, 0, 0)));
         std::vector<Contact> contacts;
         for (std::size_t i = 1; i < count; ++i)
         {
-            contacts.push_back(ball.contact(on_cone(i, count), 1.5 * kBodyRadius));
+            contacts.push_back(sphere.contact(on_cone(i, count), 1.5 * kBodyRadius));
         }
         // Holding contacts are kept in any order of reports: then only one more is added from those
         // that held.
         static_cast<void>(
-            ball.step({ball.contact(on_cone(0, count), kBodyRadius)},
-                      ball.sut.place().translation_m - kBodyRadius * on_cone(0, count)));
-        EXPECT_FALSE(ball.sut.is_crowded());
-        const ToolOutput output =
-            ball.step(contacts, ball.sut.place().translation_m - kBodyRadius * on_cone(0, count));
+            sphere.step({sphere.contact(on_cone(0, count), kBodyRadius)},
+                        sphere.sut.place().translation_m - kBodyRadius * on_cone(0, count)));
+        EXPECT_FALSE(sphere.sut.exceeds_capacity());
+        const ToolOutput output = sphere.step(contacts, sphere.sut.place().translation_m -
+                                                            kBodyRadius * on_cone(0, count));
         EXPECT_TRUE(output.in_contact);
-        EXPECT_EQ(ball.sut.is_crowded(), count > kMaxHalfSpaces);
+        EXPECT_EQ(sphere.sut.exceeds_capacity(), count > kMaxHalfSpaces);
     }
 }
 
 TEST(RigidProxy, that_is_not_told_of_all_touches_says_so)
 {
-    ToldBall ball;
-    static_cast<void>(ball.step({}, Vec3(0, 0, 0)));
-    EXPECT_FALSE(ball.sut.is_crowded());
-    ball.is_truncated = true;
-    static_cast<void>(ball.step({}, Vec3(0, 0, 0)));
-    EXPECT_TRUE(ball.sut.is_crowded());
+    RegionSphere sphere;
+    static_cast<void>(sphere.step({}, Vec3(0, 0, 0)));
+    EXPECT_FALSE(sphere.sut.exceeds_capacity());
+    sphere.is_truncated = true;
+    static_cast<void>(sphere.step({}, Vec3(0, 0, 0)));
+    EXPECT_TRUE(sphere.sut.exceeds_capacity());
 }
 
 TEST(RigidProxy, that_is_not_told_of_all_touches_fades_where_its_radius_is_all_but_used_up)
@@ -417,14 +418,14 @@ TEST(RigidProxy, that_is_not_told_of_all_touches_fades_where_its_radius_is_all_b
     {
         for (const double left : {0.2, 0.05})
         {
-            ToldBall ball;
-            static_cast<void>(ball.step({}, Vec3(0, 0, 0)));
-            ball.is_truncated = is_truncated;
-            ball.lower_m = left * kBodyRadius;
+            RegionSphere sphere;
+            static_cast<void>(sphere.step({}, Vec3(0, 0, 0)));
+            sphere.is_truncated = is_truncated;
+            sphere.lower_m = left * kBodyRadius;
             const ToolOutput output =
-                ball.step({ball.contact(Vec3(0, 0, 1), kBodyRadius)}, Vec3(0, 0, -0.1));
+                sphere.step({sphere.contact(Vec3(0, 0, 1), kBodyRadius)}, Vec3(0, 0, -0.1));
             EXPECT_TRUE(output.in_contact);
-            EXPECT_EQ(output.squeezed, is_truncated && left < 0.1) << left;
+            EXPECT_EQ(output.over_constrained, is_truncated && left < 0.1) << left;
         }
     }
 }
@@ -491,7 +492,7 @@ TEST(RigidProxy, damping_brakes_a_turn_and_an_object_that_comes_nearer)
     Material material;
     material.damping_n_s_per_m = 8.0;
     Rig rig = box_on_plane(material);
-    ToolGoal hand = hand_at(Vec3(0, 0, 0.008));
+    ProxyGoal hand = hand_at(Vec3(0, 0, 0.008));
     rig.settle(hand.position_m);
     const double still_n = rig.step(hand).force_n.z();
     // A rotation moves one side in as fast as the other one out; contact on both is damped.

@@ -56,7 +56,7 @@ public:
 
     SampleWatch sut;
     ToolSpec spec{0.002, 500.0, 8.0, 1.0};
-    ToolGoal goal;
+    ProxyGoal goal;
     Mat3 rotation{Mat3::Identity()};
     Mat3 proxy_rotation{Mat3::Identity()}; ///< Rotation of the tool in contact.
 };
@@ -219,11 +219,12 @@ TEST(SampleWatch, a_goal_has_jumped_that_turns_faster_than_any_hand)
         WatchedTool tool;
         tool.spec.core = Box{Vec3(0.01, 0.02, 0.03)};
         ASSERT_TRUE(tool.give(kHere, 0).is_taken);
-        EXPECT_EQ(tool.turn_to(share * kJumpTurning_rad_per_s * kPeriod_s).fault,
+        EXPECT_EQ(tool.turn_to(share * kJumpRotation_rad_per_s * kPeriod_s).fault,
                   share < 1.0 ? FrameFault::none : FrameFault::tool_jumped);
-        WatchedTool ball;
-        ASSERT_TRUE(ball.give(kHere, 0).is_taken);
-        EXPECT_EQ(ball.turn_to(share * kJumpTurning_rad_per_s * kPeriod_s).fault, FrameFault::none);
+        WatchedTool sphere;
+        ASSERT_TRUE(sphere.give(kHere, 0).is_taken);
+        EXPECT_EQ(sphere.turn_to(share * kJumpRotation_rad_per_s * kPeriod_s).fault,
+                  FrameFault::none);
     }
 }
 

@@ -16,40 +16,40 @@ namespace tactus::test
 namespace
 {
 
-constexpr double kSlow = Urgency::kLeastSpeed_m_per_s;
+constexpr double kSlow = Priority::kLeastSpeed_m_per_s;
 
-TEST(Urgency, goes_by_the_time_until_contact_at_the_hands_speed)
+TEST(Priority, goes_by_the_time_until_contact_at_the_hands_speed)
 {
-    EXPECT_EQ(Urgency::at(0.0, 0.0, false).of, UrgencyClass::touching);
-    EXPECT_EQ(Urgency::at(0.001, 1.0, false).of, UrgencyClass::touching);
-    EXPECT_EQ(Urgency::at(0.0011, 1.0, false).of, UrgencyClass::soon);
-    EXPECT_EQ(Urgency::at(0.05, 1.0, false).of, UrgencyClass::soon);
-    EXPECT_EQ(Urgency::at(0.051, 1.0, false).of, UrgencyClass::later);
-    EXPECT_DOUBLE_EQ(Urgency::at(0.5, 2.0, false).contact_s, 0.25);
+    EXPECT_EQ(Priority::at(0.0, 0.0, false).of, PriorityClass::touching);
+    EXPECT_EQ(Priority::at(0.001, 1.0, false).of, PriorityClass::touching);
+    EXPECT_EQ(Priority::at(0.0011, 1.0, false).of, PriorityClass::soon);
+    EXPECT_EQ(Priority::at(0.05, 1.0, false).of, PriorityClass::soon);
+    EXPECT_EQ(Priority::at(0.051, 1.0, false).of, PriorityClass::later);
+    EXPECT_DOUBLE_EQ(Priority::at(0.5, 2.0, false).contact_s, 0.25);
 }
 
-TEST(Urgency, counts_a_hand_at_rest_as_one_that_may_move)
+TEST(Priority, counts_a_hand_at_rest_as_one_that_may_move)
 {
-    EXPECT_DOUBLE_EQ(Urgency::at(kSlow, 0.0, false).contact_s, 1.0);
-    EXPECT_EQ(Urgency::at(0.0009 * kSlow, 0.0, false).of, UrgencyClass::touching);
+    EXPECT_DOUBLE_EQ(Priority::at(kSlow, 0.0, false).contact_s, 1.0);
+    EXPECT_EQ(Priority::at(0.0009 * kSlow, 0.0, false).of, PriorityClass::touching);
 }
 
-TEST(Urgency, lets_tools_without_a_force_come_a_class_later)
+TEST(Priority, lets_tools_without_a_force_come_a_class_later)
 {
-    EXPECT_EQ(Urgency::at(0.0, 0.0, true).of, UrgencyClass::soon);
-    EXPECT_EQ(Urgency::at(1.0, 0.0, true).of, UrgencyClass::last);
+    EXPECT_EQ(Priority::at(0.0, 0.0, true).of, PriorityClass::soon);
+    EXPECT_EQ(Priority::at(1.0, 0.0, true).of, PriorityClass::last);
 }
 
-TEST(Urgency, orders_by_class_and_then_by_time)
+TEST(Priority, orders_by_class_and_then_by_time)
 {
-    const Urgency passing = Urgency::at(0.0, 1.0, true);
-    const Urgency sooner = Urgency::at(0.01, 1.0, false);
-    const Urgency touching = Urgency::at(0.0, 1.0, false);
+    const Priority passing = Priority::at(0.0, 1.0, true);
+    const Priority sooner = Priority::at(0.01, 1.0, false);
+    const Priority touching = Priority::at(0.0, 1.0, false);
     EXPECT_LT(touching, sooner);
-    EXPECT_LT(Urgency::at(0.01, 1.0, false), Urgency::at(0.02, 1.0, false));
+    EXPECT_LT(Priority::at(0.01, 1.0, false), Priority::at(0.02, 1.0, false));
     EXPECT_LT(sooner, passing) << "of the same class, and not there yet";
     EXPECT_FALSE(passing < sooner);
-    EXPECT_LT(passing, Urgency::at(0.01, 1.0, true));
+    EXPECT_LT(passing, Priority::at(0.01, 1.0, true));
     EXPECT_FALSE(touching < touching);
 }
 
@@ -58,26 +58,26 @@ struct SharedFrame
 {
     std::uint32_t splits{0};
     std::uint32_t saved{0};
-    std::array<std::vector<bool>, kUrgencyClasses> takes; ///< Takers by class and request.
-    std::array<std::vector<std::uint32_t>, kUrgencyClasses> got;
+    std::array<std::vector<bool>, kPriorityClasses> takes; ///< Takers by class and request.
+    std::array<std::vector<std::uint32_t>, kPriorityClasses> got;
 
     std::uint32_t run()
     {
         SplitShares sut(splits);
-        for (std::size_t of = 0; of < kUrgencyClasses; ++of)
+        for (std::size_t of = 0; of < kPriorityClasses; ++of)
         {
             for (std::size_t i = 0; i < takes[of].size(); ++i)
             {
-                sut.add(static_cast<UrgencyClass>(of));
+                sut.add(static_cast<PriorityClass>(of));
             }
         }
         std::uint32_t done = 0;
-        for (std::size_t of = 0; of < kUrgencyClasses; ++of)
+        for (std::size_t of = 0; of < kPriorityClasses; ++of)
         {
             got[of].clear();
             for (const bool takes_all : takes[of])
             {
-                const auto share = sut.take(static_cast<UrgencyClass>(of), saved, done);
+                const auto share = sut.take(static_cast<PriorityClass>(of), saved, done);
                 EXPECT_GE(share.limit, done + share.equal);
                 got[of].push_back(share.equal);
                 done = takes_all ? share.limit : done;
@@ -123,7 +123,7 @@ TEST(SplitShares, keeps_an_eighth_for_each_class_below_in_which_somebody_waits)
     frame.takes[2] = {true};
     frame.run();
     EXPECT_EQ(frame.got[0][0], 40U);
-    for (std::size_t of = 1; of < kUrgencyClasses; ++of)
+    for (std::size_t of = 1; of < kPriorityClasses; ++of)
     {
         EXPECT_EQ(frame.got[of][0], 8U) << of;
     }
@@ -134,12 +134,12 @@ TEST(SplitShares, what_was_saved_comes_on_top_but_leaves_one_for_each_other)
     SplitShares sut(16);
     for (int i = 0; i < 4; ++i)
     {
-        sut.add(UrgencyClass::touching);
+        sut.add(PriorityClass::touching);
     }
-    const auto first = sut.take(UrgencyClass::touching, 6, 0);
+    const auto first = sut.take(PriorityClass::touching, 6, 0);
     EXPECT_EQ(first.equal, 4U);
     EXPECT_EQ(first.limit, 10U);
-    EXPECT_EQ(sut.take(UrgencyClass::touching, 100, 10).limit, 14U) << "two others wait";
+    EXPECT_EQ(sut.take(PriorityClass::touching, 100, 10).limit, 14U) << "two others wait";
 }
 
 TEST(SplitShares, what_is_left_is_saved_and_what_is_used_beyond_is_paid)
@@ -174,7 +174,7 @@ TEST(SplitShares, no_class_is_starved_and_no_budget_overdrawn)
         }
         ASSERT_LE(frame.run(), frame.splits);
         const std::uint32_t eighth = (frame.splits + 7) / 8;
-        for (std::size_t of = 0; of < kUrgencyClasses; ++of)
+        for (std::size_t of = 0; of < kPriorityClasses; ++of)
         {
             std::uint32_t served = 0;
             for (const std::uint32_t got : frame.got[of])
@@ -189,7 +189,7 @@ TEST(SplitShares, no_class_is_starved_and_no_budget_overdrawn)
 
 struct WaitingRequest
 {
-    UrgencyClass of;
+    PriorityClass of;
     std::uint32_t saved{0};
     std::uint32_t waited{0};
     std::uint32_t longest{0};
@@ -205,13 +205,13 @@ class WaitingRequests
 public:
     WaitingRequests(std::uint32_t splits, Random random) : splits_(splits), random_(random) {}
 
-    void add(UrgencyClass of) { requests_.push_back({of}); }
-    [[nodiscard]] std::uint32_t count(UrgencyClass of) const
+    void add(PriorityClass of) { requests_.push_back({of}); }
+    [[nodiscard]] std::uint32_t count(PriorityClass of) const
     {
         return static_cast<std::uint32_t>(std::ranges::count(requests_, of, &WaitingRequest::of));
     }
     /// Longest sequence of frames that left nothing for one request of a class.
-    [[nodiscard]] std::uint32_t longest_wait(UrgencyClass of) const
+    [[nodiscard]] std::uint32_t longest_wait(PriorityClass of) const
     {
         std::uint32_t longest = 0;
         for (const WaitingRequest& request : requests_)
@@ -267,22 +267,22 @@ TEST(SplitShares, each_of_64_waiting_requests_has_its_turn_within_the_stated_num
     Random random = Random::seeded(seed);
     for (const std::uint32_t splits : {8U, 9U, 16U, 20U, 64U, 100U, 256U})
     {
-        constexpr std::uint32_t classes = kUrgencyClasses;
+        constexpr std::uint32_t classes = kPriorityClasses;
         for (std::uint32_t mix = 0; mix < 2 * classes; ++mix) // First all in one class.
         {
             WaitingRequests requests(splits, random);
             for (int i = 0; i < 64; ++i)
             {
                 requests.add(
-                    static_cast<UrgencyClass>(mix < classes ? mix : random.below(classes)));
+                    static_cast<PriorityClass>(mix < classes ? mix : random.below(classes)));
             }
             for (int frame = 0; frame < 2'000; ++frame)
             {
                 ASSERT_NO_FATAL_FAILURE(requests.run_frame(true));
             }
-            for (std::uint32_t i = 0; i < kUrgencyClasses; ++i)
+            for (std::uint32_t i = 0; i < kPriorityClasses; ++i)
             {
-                const auto of = static_cast<UrgencyClass>(i);
+                const auto of = static_cast<PriorityClass>(i);
                 const std::uint32_t count = requests.count(of);
                 ASSERT_LT(requests.longest_wait(of),
                           std::max(1U, share_up(count, share_up(splits, 8))))
@@ -298,13 +298,13 @@ TEST(SplitShares, leave_nothing_for_the_last_of_64_whose_turn_never_changes)
     WaitingRequests requests(16, Random::seeded(1));
     for (int i = 0; i < 64; ++i)
     {
-        requests.add(UrgencyClass::soon);
+        requests.add(PriorityClass::soon);
     }
     for (int frame = 0; frame < 100; ++frame)
     {
         ASSERT_NO_FATAL_FAILURE(requests.run_frame(false));
     }
-    EXPECT_EQ(requests.longest_wait(UrgencyClass::soon), 100U);
+    EXPECT_EQ(requests.longest_wait(PriorityClass::soon), 100U);
 }
 
 } // namespace

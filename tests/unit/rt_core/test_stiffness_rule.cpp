@@ -65,26 +65,26 @@ TEST(StiffnessRule, gives_the_numbers_of_a_calculation_by_hand)
 {
     DeviceLimits device = some_device();
     EXPECT_DOUBLE_EQ(stiffness_limits(device, 1e-3).sampling_n_per_m, 4'000.0);
-    EXPECT_DOUBLE_EQ(stiffness_cap(device, 1e-3), 3'600.0);
-    EXPECT_DOUBLE_EQ(stiffness_cap(device, 0.25e-3), 14'400.0);
-    EXPECT_DOUBLE_EQ(stiffness_cap(device, 1e-3, 0.5), 2'700.0);
+    EXPECT_DOUBLE_EQ(stiffness_limit(device, 1e-3), 3'600.0);
+    EXPECT_DOUBLE_EQ(stiffness_limit(device, 0.25e-3), 14'400.0);
+    EXPECT_DOUBLE_EQ(stiffness_limit(device, 1e-3, 0.5), 2'700.0);
     device.delay_s = 1e-3;
-    EXPECT_DOUBLE_EQ(stiffness_cap(device, 1e-3), 1'200.0);
+    EXPECT_DOUBLE_EQ(stiffness_limit(device, 1e-3), 1'200.0);
     device.friction_n = 0.01;
     device.quantum_m = 20e-6;
     EXPECT_DOUBLE_EQ(stiffness_limits(device, 1e-3).quantisation_n_per_m, 1'000.0);
-    EXPECT_DOUBLE_EQ(stiffness_cap(device, 1e-3), 900.0);
+    EXPECT_DOUBLE_EQ(stiffness_limit(device, 1e-3), 900.0);
     // 0.1 N s/m x 20 um a ms is 0.002 N of noise.
     EXPECT_DOUBLE_EQ(stiffness_limits(device, 1e-3, -0.1).quantisation_n_per_m, 800.0);
     device.stiffness_max_n_per_m = 500.0;
-    EXPECT_DOUBLE_EQ(stiffness_cap(device, 1e-3), 500.0);
+    EXPECT_DOUBLE_EQ(stiffness_limit(device, 1e-3), 500.0);
 }
 
 TEST(StiffnessRule, leaves_nothing_where_surface_damping_takes_all)
 {
-    EXPECT_EQ(stiffness_cap(some_device(), 1e-3, 2.0), 0.0);
-    EXPECT_EQ(stiffness_cap(some_device(), 1e-3, 3.0), 0.0);
-    EXPECT_EQ(stiffness_cap(some_device(), 1e-3, -3.0), 0.0);
+    EXPECT_EQ(stiffness_limit(some_device(), 1e-3, 2.0), 0.0);
+    EXPECT_EQ(stiffness_limit(some_device(), 1e-3, 3.0), 0.0);
+    EXPECT_EQ(stiffness_limit(some_device(), 1e-3, -3.0), 0.0);
 }
 
 TEST(StiffnessRule, knows_no_quantisation_limit_without_friction_or_quantum)
@@ -95,7 +95,7 @@ TEST(StiffnessRule, knows_no_quantisation_limit_without_friction_or_quantum)
               std::numeric_limits<double>::infinity());
     device.friction_n = 0.1;
     device.quantum_m = 0.0;
-    EXPECT_EQ(stiffness_cap(device, 1e-3), 3'600.0);
+    EXPECT_EQ(stiffness_limit(device, 1e-3), 3'600.0);
 }
 
 TEST(StiffnessRule, is_exact_for_whole_periods_of_delay_and_within_its_margin_for_others)

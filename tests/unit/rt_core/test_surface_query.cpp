@@ -145,7 +145,7 @@ TEST(SurfaceQuery, an_empty_tree_is_free_space)
 
     const PointAnswer asked = ask(*rig.sut, Vec3(0, 0, 0), 1.0);
 
-    EXPECT_EQ(asked.surface->answer.kind, AnswerKind::decided);
+    EXPECT_EQ(asked.surface->answer.kind, AnswerKind::separated);
     EXPECT_EQ(asked.surface->count, 0U);
     EXPECT_EQ(asked.surface->answer.certified_radius_m, 1.0);
     EXPECT_TRUE(asked.surface->answer.nearest_face.is_none());
@@ -185,7 +185,7 @@ TEST(SurfaceQuery, equals_brute_force_in_every_style)
                 if (exact_only)
                 {
                     ASSERT_EQ(answer.kind,
-                              truth.lower > reach ? AnswerKind::decided : AnswerKind::exact);
+                              truth.lower > reach ? AnswerKind::separated : AnswerKind::exact);
                     if (is_exact)
                     {
                         ASSERT_EQ(answer.nearest_face, truth.nearest) << style.name << " " << i;
@@ -246,7 +246,7 @@ TEST(SurfaceQuery, takes_faces_within_the_tolerance_for_the_surface)
                 }
                 exact += answer.kind == AnswerKind::exact ? 1 : 0;
                 tolerated += answer.kind == AnswerKind::within_tolerance ? 1 : 0;
-                open += answer.kind == AnswerKind::bracket ? 1 : 0;
+                open += answer.kind == AnswerKind::bounded ? 1 : 0;
             }
         }
     }
@@ -320,7 +320,7 @@ TEST(SurfaceQuery, any_budget_leaves_a_valid_bracket)
             ASSERT_LE(asked.surface->answer.lower_m, truth.lower) << style.name << " " << i;
             ASSERT_GE(asked.surface->answer.upper_m, truth.upper) << style.name << " " << i;
             ASSERT_NO_FATAL_FAILURE(expect_certified(*rig.sut, *asked.surface, faces, truth));
-            if (asked.surface->answer.kind == AnswerKind::decided)
+            if (asked.surface->answer.kind == AnswerKind::separated)
             {
                 ASSERT_GT(truth.lower, reach);
             }
@@ -340,7 +340,7 @@ TEST(SurfaceQuery, no_budget_at_all_proves_nothing)
         EXPECT_EQ(asked.surface->count, 0U);
         EXPECT_EQ(asked.surface->answer.lower_m, 0.0);
         EXPECT_LT(asked.surface->answer.certified_radius_m, 0.0);
-        EXPECT_EQ(asked.surface->answer.kind, AnswerKind::bracket);
+        EXPECT_EQ(asked.surface->answer.kind, AnswerKind::bounded);
     }
 }
 
@@ -355,7 +355,7 @@ TEST(SurfaceQuery, an_incomplete_tree_proves_nothing)
 
     EXPECT_EQ(asked.surface->answer.lower_m, 0.0);
     EXPECT_LT(asked.surface->answer.certified_radius_m, 0.0);
-    EXPECT_NE(asked.surface->answer.kind, AnswerKind::decided);
+    EXPECT_NE(asked.surface->answer.kind, AnswerKind::separated);
 }
 
 TEST(SurfaceQuery, more_triangles_than_fit_keep_the_nearest_and_shrink_the_certified_radius)

@@ -209,7 +209,7 @@ TEST(Vicinity, a_motion_enters_nothing_that_it_does_not_name)
     EXPECT_LT(named, 1'800);
 }
 
-TEST(Vicinity, with_any_allowance_and_however_deep_the_ball_is_lets_it_come_no_nearer)
+TEST(Vicinity, with_any_allowance_and_however_deep_the_sphere_is_lets_it_come_no_nearer)
 {
     Random random(65);
     const ObjectPose pose = turned();
@@ -462,7 +462,7 @@ TEST(Vicinity, of_every_set_of_kernels_finds_the_same)
     }
 }
 
-TEST(Vicinity, a_ball_in_a_face_goes_no_way_along_it_or_deeper)
+TEST(Vicinity, a_sphere_in_a_face_goes_no_way_along_it_or_deeper)
 {
     const ObjectPose pose;
     const Material material;

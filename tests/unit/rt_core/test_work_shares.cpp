@@ -47,7 +47,7 @@ TEST(WorkShares, keep_of_a_frame_what_its_answers_took_in_the_last_one)
         work.spend(frame.answers / 2);
         sut.end();
     }
-    EXPECT_EQ(sut.for_rehearsal().left(), 250'000U);
+    EXPECT_EQ(sut.for_warming().left(), 250'000U);
 }
 
 TEST(WorkShares, keep_something_for_each_query_that_follows)
@@ -105,7 +105,7 @@ TEST(WorkShares, are_of_the_least_work_where_less_is_given_and_no_limit_where_th
     sut.begin_queries();
     sut.begin_query(0);
     EXPECT_EQ(limit_of(work), WorkBudget::kUnlimited);
-    EXPECT_EQ(limit_of(sut.for_rehearsal()), WorkBudget::kUnlimited);
+    EXPECT_EQ(limit_of(sut.for_warming()), WorkBudget::kUnlimited);
 }
 
 } // namespace

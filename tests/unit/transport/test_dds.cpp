@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "tests/unit/transport/dds_rig.hpp"
-#include "tests/unit/transport/door_side.hpp"
+#include "tests/unit/transport/queue_side.hpp"
 #include "tests/unit/transport/tiny_model.hpp"
 #include "transport/base_fetch.hpp"
+#include "transport/chunk_loader.hpp"
 #include "transport/content_hash.hpp"
-#include "transport/courier.hpp"
 #include "transport/dds/dds_client.hpp"
 #include "transport/dds/dds_host.hpp"
 #include "transport/dds/header_fetch.hpp"
@@ -41,11 +41,11 @@ namespace
 {
 
 using namespace std::chrono_literals;
-using test::DoorSide;
 using test::eventually;
 using test::kPatience;
 using test::Lines;
 using test::make_tiny_model;
+using test::QueueSide;
 using test::TemporaryFolder;
 using test::TinyModel;
 
@@ -413,12 +413,12 @@ TEST_F(Dds, a_model_that_is_announced_otherwise_than_it_is_is_refused_or_never_c
     }
 }
 
-TEST_F(Dds, a_courier_fills_the_door_over_dds)
+TEST_F(Dds, a_chunk_loader_fills_the_door_over_dds)
 {
     const TinyModel model = make_tiny_model({.records = 64 * 8});
     connect(model);
-    DoorSide side(model, 8, 1, 32);
-    Courier sut(side.arena, side.slots, side.door, lines.log());
+    QueueSide side(model, 8, 1, 32);
+    ChunkLoader sut(side.arena, side.slots, side.queues, lines.log());
     sut.add(side.header, side.linker, *served.link, "tiny");
     std::int64_t now_ns = 0;
     const auto comes = [&](std::size_t count)
@@ -432,11 +432,11 @@ TEST_F(Dds, a_courier_fills_the_door_over_dds)
                 return adopted == count;
             });
     };
-    ASSERT_TRUE(side.wish({ContentKind::index_page, 0}));
+    ASSERT_TRUE(side.request({ContentKind::index_page, 0}));
     ASSERT_TRUE(comes(1));
     for (std::uint32_t chunk = 0; chunk < 8; ++chunk)
     {
-        ASSERT_TRUE(side.wish({ContentKind::chunk, chunk}));
+        ASSERT_TRUE(side.request({ContentKind::chunk, chunk}));
     }
     ASSERT_TRUE(comes(8));
     side.check_links();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// Common laws of the two reports of a controller, telemetry and front, in transit.
+/// Common laws of the two reports of a controller, telemetry and refinement state, in transit.
 
 #include "rt_core/math/infinity.hpp"
 #include "tests/unit/transport/dds_rig.hpp"
@@ -94,11 +94,11 @@ Telemetry telemetry_of(const Size& size)
 {
     Telemetry telemetry;
     Distinct distinct;
-    auto& [frame, period_ns, time_ns, exact, decided, bracket, stale, within_tolerance, missed,
-           own_faults, machine_late, faults_now, faults_seen, tool_count, pair_count, model_count,
+    auto& [frame, period_ns, time_ns, exact, separated, bounded, stale, within_tolerance, missed,
+           overruns, latency_misses, faults_now, faults_seen, tool_count, pair_count, model_count,
            tools, pairs, models] = telemetry;
-    distinct.fill(frame, period_ns, time_ns, exact, decided, bracket, stale, within_tolerance,
-                  missed, own_faults, machine_late, faults_now, faults_seen);
+    distinct.fill(frame, period_ns, time_ns, exact, separated, bounded, stale, within_tolerance,
+                  missed, overruns, latency_misses, faults_now, faults_seen);
     time_ns = -time_ns;
     tool_count = size.tools;
     pair_count = size.pairs;
@@ -106,9 +106,9 @@ Telemetry telemetry_of(const Size& size)
     for (std::uint32_t i = 0; i < size.tools; ++i)
     {
         auto& [position_m, rotation, proxy_m, proxy_rotation, force_n, torque_nm, gripper_m,
-               buttons, has_gripper, in_contact, frozen, squeezed, held_back] = tools[i];
+               buttons, has_gripper, in_contact, halted, over_constrained, data_limited] = tools[i];
         distinct.fill(position_m, rotation, proxy_m, proxy_rotation, force_n, torque_nm, gripper_m,
-                      buttons, has_gripper, in_contact, frozen, squeezed, held_back);
+                      buttons, has_gripper, in_contact, halted, over_constrained, data_limited);
     }
     for (std::uint32_t i = 0; i < size.pairs; ++i)
     {
@@ -142,9 +142,9 @@ std::vector<ModelIdentity> identities(std::uint32_t count)
     return models;
 }
 
-Front front_of(const Size& size)
+RefinementState refinement_state_of(const Size& size)
 {
-    Front front;
+    RefinementState front;
     Distinct distinct;
     distinct.fill(front.frame, front.time_ns, front.times, front.slots_left_out,
                   front.regions_left_out);
@@ -163,7 +163,7 @@ Front front_of(const Size& size)
     }
     for (std::uint32_t i = 0; i < size.models; ++i)
     {
-        FrontModel& model = front.models.emplace_back();
+        RefinementStateModel& model = front.models.emplace_back();
         model.hash.fill(static_cast<std::uint8_t>(i + 1));
         const std::uint32_t each = size.pages / size.models;
         const std::uint32_t share = i + 1 < size.models ? each : size.pages - i * each;
@@ -171,15 +171,15 @@ Front front_of(const Size& size)
         {
             model.pages.push_back({{3 * page + 1}, distinct.next<std::uint64_t>() << 20U});
         }
-        for (std::uint32_t wish = 0; wish < kMaxFrontWishes / size.models; ++wish)
+        for (std::uint32_t request = 0; request < kMaxStateRequests / size.models; ++request)
         {
-            model.wished.push_back({3 * wish + 2});
+            model.requested.push_back({3 * request + 2});
         }
     }
-    for (std::uint32_t i = 0; size.models > 0 && i < kMaxFrontRegions; ++i)
+    for (std::uint32_t i = 0; size.models > 0 && i < kMaxStateRegions; ++i)
     {
-        auto& [model, is_foretold, center_m, radius_m] = front.regions.emplace_back();
-        distinct.fill(is_foretold, center_m, radius_m);
+        auto& [model, is_predicted, center_m, radius_m] = front.regions.emplace_back();
+        distinct.fill(is_predicted, center_m, radius_m);
         model = i % size.models;
         center_m[1] = -center_m[1];
     }
@@ -213,21 +213,21 @@ struct TelemetrySample
     }
 };
 
-struct FrontSample
+struct RefinementStateSample
 {
-    tactus_v5_FrontTool tool = {};
-    tactus_v5_FrontModel model = {};
-    tactus_v5_FrontObject object = {};
+    tactus_v5_RefinementStateTool tool = {};
+    tactus_v5_RefinementStateModel model = {};
+    tactus_v5_RefinementStateObject object = {};
     std::array<std::uint32_t, 2> chunks{3, 4};
     std::array<std::uint64_t, 2> refined{};
-    std::array<std::uint32_t, 2> wished{5, 6};
-    tactus_v5_FrontRegion region = {};
-    tactus_v5_Front sample = {};
+    std::array<std::uint32_t, 2> requested{5, 6};
+    tactus_v5_RefinementStateRegion region = {};
+    tactus_v5_RefinementState sample = {};
 
-    FrontSample()
+    RefinementStateSample()
     {
         model.pages = 2;
-        model.wished = 2;
+        model.requested = 2;
         object.pose.rotation[3] = 1.0;
         object.pose.scale = 1.0;
         sample.tools = {1, 1, &tool, false};
@@ -235,7 +235,7 @@ struct FrontSample
         sample.objects = {1, 1, &object, false};
         sample.chunks = {2, 2, chunks.data(), false};
         sample.refined = {2, 2, refined.data(), false};
-        sample.wished = {2, 2, wished.data(), false};
+        sample.requested = {2, 2, requested.data(), false};
         sample.regions = {1, 1, &region, false};
     }
 };
@@ -278,18 +278,18 @@ struct TelemetryReport
     };
 };
 
-struct FrontReport
+struct RefinementStateReport
 {
-    using Reader = FrontReader;
-    using Sample = FrontSample;
+    using Reader = RefinementStateReader;
+    using Sample = RefinementStateSample;
     static constexpr Topic kTopic = Topic::front;
-    static constexpr Size kLargest{kMaxTools, kMaxModels, 0, kMaxFrontPages, kMaxFrontObjects};
+    static constexpr Size kLargest{kMaxTools, kMaxModels, 0, kMaxStatePages, kMaxStateObjects};
 
     static auto writer(const Domain& domain, const std::string& name, const Size& /*size*/)
     {
-        return std::move(FrontWriter::create(domain, name)).value();
+        return std::move(RefinementStateWriter::create(domain, name)).value();
     }
-    static Front made(const Size& size) { return front_of(size); }
+    static RefinementState made(const Size& size) { return refinement_state_of(size); }
     static const auto& seen(const Reader& reader) { return reader.fronts(); }
     static void expect_same(const SeenFront& got, const Size& size)
     {
@@ -315,10 +315,10 @@ struct FrontReport
         [](S& s) { s.sample.refined._length = 1; },
         [](S& s) { s.chunks[1] = s.chunks[0]; },
         [](S& s) { s.chunks[1] = 0xFFFF'FFFFU; },
-        [](S& s) { s.model.wished = 1; },
-        [](S& s) { s.model.wished = 0xFFFF'FFFFU; },
-        [](S& s) { s.wished[1] = s.wished[0]; },
-        [](S& s) { s.wished[1] = 0xFFFF'FFFFU; },
+        [](S& s) { s.model.requested = 1; },
+        [](S& s) { s.model.requested = 0xFFFF'FFFFU; },
+        [](S& s) { s.requested[1] = s.requested[0]; },
+        [](S& s) { s.requested[1] = 0xFFFF'FFFFU; },
         [](S& s) { s.region.model = 1; },
         [](S& s) { s.region.center_m[1] = static_cast<float>(kNan); },
         [](S& s) { s.region.radius_m = static_cast<float>(kNan); },
@@ -367,7 +367,7 @@ protected:
     std::unique_ptr<typename Report::Reader> sut_;
 };
 
-using Reports = ::testing::Types<TelemetryReport, FrontReport>;
+using Reports = ::testing::Types<TelemetryReport, RefinementStateReport>;
 TYPED_TEST_SUITE(DdsReports, Reports);
 
 TYPED_TEST(DdsReports, come_as_they_were_sent_and_go_with_their_controller)

@@ -364,11 +364,11 @@ TEST_F(DdsServers, the_first_server_s_word_counts_until_it_is_gone_and_another_s
     ASSERT_TRUE(step_until([&] { return !catalogue().has_host(true_epoch); }));
     step_all();
     EXPECT_EQ(strict.host(), true_epoch);
-    EXPECT_FALSE(strict.is_here());
+    EXPECT_FALSE(strict.is_resident());
     EXPECT_EQ(listed.host(), true_epoch);
-    EXPECT_FALSE(listed.is_here());
+    EXPECT_FALSE(listed.is_resident());
     EXPECT_EQ(open.host(), second.epoch());
-    EXPECT_TRUE(open.is_here());
+    EXPECT_TRUE(open.is_resident());
     EXPECT_EQ(events_of(strict), "pinned namesake lost not_followed ");
     EXPECT_EQ(events_of(listed), "pinned namesake lost not_followed ");
     EXPECT_EQ(events_of(open), "pinned namesake lost replaced ");

@@ -396,9 +396,9 @@ TEST_F(DdsVersions, who_asks_for_too_much_in_a_second_is_counted_by_name_and_ser
     ASSERT_NO_FATAL_FAILURE(connect());
     const ControllerId own = stranger.participants().own();
     const Endpoint writer = heard_writer(Topic::wanted, "stranger");
-    std::vector<tactus_v5_PieceName> names(kMaxWishes, {0, 2, 0});
+    std::vector<tactus_v5_PieceName> names(kMaxRequests, {0, 2, 0});
     tactus_v5_Wanted wanted = request(own, "stranger");
-    wanted.pieces = {kMaxWishes, kMaxWishes, names.data(), false};
+    wanted.pieces = {kMaxRequests, kMaxRequests, names.data(), false};
     const auto refused = [&]
     {
         const auto list = host->domain().participants().refusals().list();

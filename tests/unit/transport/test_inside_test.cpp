@@ -77,7 +77,7 @@ TEST(InsideTest, finds_nothing_inside_an_open_mesh)
 
 TEST(InsideTest, finds_nothing_inside_a_model_whose_base_mesh_is_not_here)
 {
-    const TestModel& model = test_model("inside_ball", make_shape(Shape::sphere, 2'000).value());
+    const TestModel& model = test_model("inside_sphere", make_shape(Shape::sphere, 2'000).value());
     const ServedModel served = serve_from_file(model.path, "ball", {}).value();
     const ModelHeader header = ModelHeader::parse(served.header).value();
     const Vec3 middle_m = -header.origin_m();

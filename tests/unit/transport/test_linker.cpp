@@ -7,7 +7,7 @@
 #include "host_tools/encode/record_coder.hpp"
 #include "rt_core/spm/chunk_coding.hpp"
 #include "rt_core/spm/linker.hpp"
-#include "tests/unit/transport/door_side.hpp"
+#include "tests/unit/transport/queue_side.hpp"
 #include "tests/unit/transport/tiny_model.hpp"
 
 #include <gtest/gtest.h>
@@ -23,8 +23,8 @@ namespace tactus
 namespace
 {
 
-using test::DoorSide;
 using test::make_tiny_model;
+using test::QueueSide;
 using test::TinyModel;
 
 /// Parses and links chunks without a loader.
@@ -49,16 +49,16 @@ struct Bench
     {
         ASSERT_TRUE(parse_chunk(bytes, side.header, {chunk}, side.slots.pages[slot]).has_value());
         side.linker.link_page({chunk}, slot);
-        ASSERT_TRUE(side.door.arrived.try_push(
+        ASSERT_TRUE(side.queues.arrived.try_push(
             {{ContentKind::chunk, chunk}, slot, 0, side.linker.tell_linked(slot)}));
         for (Linker::Update update; side.linker.try_take_update(update);)
         {
             ASSERT_NE(update.chunk.value, chunk) << "was told with its arrival";
-            ASSERT_TRUE(side.door.arrived.try_push({{ContentKind::chunk, update.chunk.value},
-                                                    update.slot,
-                                                    0,
-                                                    update.linked,
-                                                    DoorEventKind::link_update}));
+            ASSERT_TRUE(side.queues.arrived.try_push({{ContentKind::chunk, update.chunk.value},
+                                                      update.slot,
+                                                      0,
+                                                      update.linked,
+                                                      QueueEventKind::link_update}));
             side.adopt();
         }
         side.adopt();
@@ -69,7 +69,7 @@ struct Bench
         side.linker.release_page(side.slot_of(key));
         side.give_back(key);
         FreedSlot freed;
-        ASSERT_TRUE(side.door.freed.try_pop(freed));
+        ASSERT_TRUE(side.queues.freed.try_pop(freed));
     }
     [[nodiscard]] std::size_t linked() const
     {
@@ -82,7 +82,7 @@ struct Bench
     }
 
     const TinyModel& model;
-    DoorSide side;
+    QueueSide side;
 };
 
 RC_GTEST_PROP(Linker, links_everything_in_any_order_of_arrival, (std::uint32_t seed, bool shuffled))
@@ -341,7 +341,7 @@ TEST(Linker, models_of_one_pool_have_chunks_of_the_same_numbers)
 {
     const TinyModel first = make_tiny_model({.seed = 1, .records = 64 * 3});
     const TinyModel second = make_tiny_model({.seed = 2, .records = 64 * 3});
-    DoorSide side(first, 6, 1, 1);
+    QueueSide side(first, 6, 1, 1);
     const ModelHeader header = parse_trusted_header(second.header).value();
     const PageSlots slots = side.slots.of_model(side.arena, second.counts);
     ASSERT_TRUE(load_base_mesh(second.base, header, slots.base).has_value());

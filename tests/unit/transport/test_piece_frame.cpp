@@ -3,7 +3,7 @@
 #include "transport/dds/credit.hpp"
 #include "transport/dds/model_pieces.hpp"
 #include "transport/dds/piece_frame.hpp"
-#include "transport/dds/wish_queue.hpp"
+#include "transport/dds/request_queue.hpp"
 
 #include <gtest/gtest.h>
 
@@ -69,9 +69,9 @@ TEST(CreditWindow, grants_a_window_beyond_what_was_seen_and_survives_loss)
     EXPECT_EQ(sut.granted(), 29U);
 }
 
-TEST(WishQueue, puts_the_newest_generation_first_and_keeps_its_order)
+TEST(RequestQueue, puts_the_newest_generation_first_and_keeps_its_order)
 {
-    WishQueue sut(8);
+    RequestQueue sut(8);
     const auto add = [&](std::uint32_t number, std::uint32_t generation) {
         sut.add({number % 2, {ContentKind::chunk, number}}, generation);
     };
@@ -89,9 +89,9 @@ TEST(WishQueue, puts_the_newest_generation_first_and_keeps_its_order)
     EXPECT_EQ(order, (std::vector<std::uint32_t>{3, 4, 1, 2, 5}));
 }
 
-TEST(WishQueue, tells_the_same_piece_of_two_models_apart)
+TEST(RequestQueue, tells_the_same_piece_of_two_models_apart)
 {
-    WishQueue sut(8);
+    RequestQueue sut(8);
     sut.add({0, {ContentKind::chunk, 1}}, 5);
     sut.add({1, {ContentKind::chunk, 1}}, 5);
     sut.add({1, {ContentKind::chunk, 1}}, 5);
@@ -115,9 +115,9 @@ TEST(ModelParts, are_of_one_size_but_the_last_and_make_the_whole)
     }
 }
 
-TEST(WishQueue, forgets_the_oldest_generation_when_full_and_generations_may_wrap)
+TEST(RequestQueue, forgets_the_oldest_generation_when_full_and_generations_may_wrap)
 {
-    WishQueue sut(2);
+    RequestQueue sut(2);
     sut.add({0, {ContentKind::chunk, 1}}, 0xFFFF'FFFFU);
     sut.add({0, {ContentKind::chunk, 2}}, 0);
     sut.add({0, {ContentKind::chunk, 3}}, 1);
@@ -129,17 +129,17 @@ TEST(WishQueue, forgets_the_oldest_generation_when_full_and_generations_may_wrap
 }
 
 /// Random requests in a random order, compared with a sorted list.
-TEST(WishQueue, is_in_the_order_of_a_list_that_is_searched)
+TEST(RequestQueue, is_in_the_order_of_a_list_that_is_searched)
 {
     constexpr std::size_t kCapacity = 40;
-    struct Wish
+    struct Request
     {
         std::uint32_t number;
         std::uint32_t generation;
     };
     std::mt19937 random(20260731);
-    WishQueue sut(kCapacity);
-    std::vector<Wish> list;
+    RequestQueue sut(kCapacity);
+    std::vector<Request> list;
     std::uint64_t forgotten = 0;
     for (int i = 0; i < 20'000; ++i)
     {
@@ -150,17 +150,17 @@ TEST(WishQueue, is_in_the_order_of_a_list_that_is_searched)
             list.erase(list.begin());
             continue;
         }
-        const Wish wish{static_cast<std::uint32_t>(random() % 60),
-                        static_cast<std::uint32_t>(i / 50) +
-                            static_cast<std::uint32_t>(random() % 4) - 10};
-        sut.add({0, {ContentKind::chunk, wish.number}}, wish.generation);
-        std::erase_if(list, [&](const Wish& known) { return known.number == wish.number; });
+        const Request request{static_cast<std::uint32_t>(random() % 60),
+                              static_cast<std::uint32_t>(i / 50) +
+                                  static_cast<std::uint32_t>(random() % 4) - 10};
+        sut.add({0, {ContentKind::chunk, request.number}}, request.generation);
+        std::erase_if(list, [&](const Request& known) { return known.number == request.number; });
         list.insert(std::ranges::find_if(list,
-                                         [&](const Wish& known) {
-                                             return static_cast<std::int32_t>(known.generation -
-                                                                              wish.generation) < 0;
+                                         [&](const Request& known) {
+                                             return static_cast<std::int32_t>(
+                                                        known.generation - request.generation) < 0;
                                          }),
-                    wish);
+                    request);
         if (list.size() > kCapacity)
         {
             list.pop_back();
@@ -170,9 +170,9 @@ TEST(WishQueue, is_in_the_order_of_a_list_that_is_searched)
     }
     EXPECT_GT(forgotten, 0U);
     EXPECT_EQ(sut.forgotten(), forgotten);
-    for (const Wish& wish : list)
+    for (const Request& request : list)
     {
-        EXPECT_EQ(sut.front().key.number, wish.number);
+        EXPECT_EQ(sut.front().key.number, request.number);
         sut.pop_front();
     }
     EXPECT_TRUE(sut.empty());

@@ -4,7 +4,7 @@
 #include "rt_core/frame/frame.hpp"
 #include "tests/unit/rt_core/coded_bytes.hpp"
 #include "tests/unit/transport/tiny_model.hpp"
-#include "transport/courier.hpp"
+#include "transport/chunk_loader.hpp"
 #include "transport/pool_plan.hpp"
 
 #include <gtest/gtest.h>
@@ -65,12 +65,12 @@ void expect_room_for_all(PlannedScene& scene, std::size_t bytes)
     std::optional<Frame> frame;
     ASSERT_TRUE(Frame::start(frame, arena, scene.setup).has_value()) << bytes;
     ModelPools& pools = frame->pools();
-    const Courier courier(arena, pools.slots, pools.cache.door, {});
+    const ChunkLoader chunk_loader(arena, pools.slots, pools.cache.queues, {});
     EXPECT_LE(arena.used(), bytes);
     scene.setup.models = {};
 }
 
-TEST(PoolPlan, leaves_room_for_frame_and_courier_in_what_it_plans_for)
+TEST(PoolPlan, leaves_room_for_frame_and_chunk_loader_in_what_it_plans_for)
 {
     for (const std::size_t models : {1U, 2U, 5U})
     {

@@ -110,7 +110,7 @@ struct SoakFigures
     std::uint64_t unasked{0}; ///< Includes duplicates.
     std::uint64_t asked_again{0};
 
-    void operator+=(const CourierCounters& counters)
+    void operator+=(const ChunkLoaderCounters& counters)
     {
         loads += counters.delivered;
         refused += counters.refused();
@@ -133,7 +133,7 @@ public:
         , rig_(model, bad_weather(model, seed))
     {
     }
-    ~Controller() { figures_ += rig_.courier().counters(); }
+    ~Controller() { figures_ += rig_.chunk_loader().counters(); }
     Controller(const Controller&) = delete;
     Controller& operator=(const Controller&) = delete;
 
@@ -148,7 +148,7 @@ public:
     /// Moves far away until nothing is in transit and all slots are in place.
     [[nodiscard]] Verdict come_to_rest()
     {
-        constexpr std::uint32_t most = 6'000; // Frames: many times kWishTimeoutFrames.
+        constexpr std::uint32_t most = 6'000; // Frames: many times kRequestTimeoutFrames.
         const Vec3 far_off = to_world(rig_.pose(), Vec3(100.0 * model_.diagonal_m, 0.0, 0.0));
         std::uint32_t quiet =
             0; // Consecutive frames; late and unrequested pieces arrive in them too.
@@ -156,7 +156,7 @@ public:
         {
             const FrameOutput output = rig_.step(far_off, budgets_);
             const bool is_quiet = output.work.requests == 0 && output.work.pages_adopted == 0 &&
-                                  rig_.model().cache.wishes_under_way() == 0;
+                                  rig_.model().cache.requests_under_way() == 0;
             quiet = is_quiet ? quiet + 1 : 0;
         }
         if (quiet < 100)
@@ -165,11 +165,11 @@ public:
         }
         const FrameOutput output = rig_.step(far_off, budgets_);
         const ModelOutput& model = output.models[0];
-        const Courier& courier = rig_.courier();
-        if (courier.free_pages() + model.pages.used != model.pages.capacity ||
-            courier.free_index_pages() + model.index_pages.used != model.index_pages.capacity)
+        const ChunkLoader& chunk_loader = rig_.chunk_loader();
+        if (chunk_loader.free_pages() + model.pages.used != model.pages.capacity ||
+            chunk_loader.free_index_pages() + model.index_pages.used != model.index_pages.capacity)
         {
-            return "slots are lost: " + std::to_string(courier.free_pages()) + " free and " +
+            return "slots are lost: " + std::to_string(chunk_loader.free_pages()) + " free and " +
                    std::to_string(model.pages.used) + " used of " +
                    std::to_string(model.pages.capacity);
         }
@@ -186,7 +186,7 @@ private:
         ++figures_.frames;
         figures_.contacts += output.tools[0].in_contact ? 1U : 0U;
         figures_.answered +=
-            pair.kind == AnswerKind::exact || pair.kind == AnswerKind::decided ? 1U : 0U;
+            pair.kind == AnswerKind::exact || pair.kind == AnswerKind::separated ? 1U : 0U;
         if (const BracketVerdict verdict = judge_bracket(oracle_, pair, pose); verdict.error > 1.0)
         {
             return verdict.text;
@@ -233,14 +233,15 @@ public:
         const std::uint32_t mended = cut + 1 + random_.below(200U);
         const std::uint32_t comes = random_.below(4'000U);
         const std::uint32_t goes = comes + 1 + random_.below(1'500U);
-        std::unique_ptr<Controller> guest;
+        std::unique_ptr<Controller> streamed_model;
         for (std::uint32_t frame = 0; frame < kCycleFrames; ++frame)
         {
             if (frame == comes)
             {
-                guest = std::make_unique<Controller>(model_, oracle_, seed_ + 1 + cycle, figures_);
+                streamed_model =
+                    std::make_unique<Controller>(model_, oracle_, seed_ + 1 + cycle, figures_);
             }
-            guest = frame == goes ? nullptr : std::move(guest);
+            streamed_model = frame == goes ? nullptr : std::move(streamed_model);
             if (frame == lost || frame == cut)
             {
                 steady_->link().lose_host();
@@ -250,9 +251,9 @@ public:
                 steady_->link().regain_host();
             }
             expect(steady_->step(), cycle, frame, "steady");
-            if (guest)
+            if (streamed_model)
             {
-                expect(guest->step(), cycle, frame, "guest");
+                expect(streamed_model->step(), cycle, frame, "streamed_model");
             }
         }
         expect(steady_->come_to_rest(), cycle, kCycleFrames, "steady");
@@ -306,18 +307,18 @@ TEST(Soak, in_bad_weather_no_answer_is_wrong_and_nothing_grows)
         ASSERT_LE(last.files, first.files) << "cycle " << cycle;
     }
     const SoakFigures figures = sut.finish();
-    std::printf("seed %llu: %llu frames, %llu answered, %llu in contact; %llu loads, %llu refused, "
-                "%llu unasked, %llu asked again; heap %zu to %zu bytes, space %zu to %zu KiB, %zu "
-                "files\n",
-                static_cast<unsigned long long>(seed),
-                static_cast<unsigned long long>(figures.frames),
-                static_cast<unsigned long long>(figures.answered),
-                static_cast<unsigned long long>(figures.contacts),
-                static_cast<unsigned long long>(figures.loads),
-                static_cast<unsigned long long>(figures.refused),
-                static_cast<unsigned long long>(figures.unasked),
-                static_cast<unsigned long long>(figures.asked_again), first.heap_bytes,
-                last.heap_bytes, first.space_bytes / 1024, last.space_bytes / 1024, last.files);
+    std::printf(
+        "seed %llu: %llu frames, %llu answered, %llu in contact; %llu loads, %llu refused, "
+        "%llu unrequested, %llu asked again; heap %zu to %zu bytes, space %zu to %zu KiB, %zu "
+        "files\n",
+        static_cast<unsigned long long>(seed), static_cast<unsigned long long>(figures.frames),
+        static_cast<unsigned long long>(figures.answered),
+        static_cast<unsigned long long>(figures.contacts),
+        static_cast<unsigned long long>(figures.loads),
+        static_cast<unsigned long long>(figures.refused),
+        static_cast<unsigned long long>(figures.unasked),
+        static_cast<unsigned long long>(figures.asked_again), first.heap_bytes, last.heap_bytes,
+        first.space_bytes / 1024, last.space_bytes / 1024, last.files);
     EXPECT_GT(figures.answered, figures.frames / 4);
     EXPECT_GT(figures.contacts, figures.frames / 20);
     EXPECT_GT(figures.loads, 100 * std::uint64_t{cycles});

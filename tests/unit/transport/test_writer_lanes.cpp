@@ -113,7 +113,7 @@ TEST_F(Lanes, an_older_request_that_comes_late_takes_no_credit_back)
 {
     const ControllerId controller{1, 2, 3};
     auto sut = Subscription::create(*host_, controller, "controller", 0).value();
-    sut.wish({0, {ContentKind::chunk, 0}}, 1);
+    sut.request({0, {ContentKind::chunk, 0}}, 1);
     EXPECT_FALSE(sut.has_work()); // Nothing is granted yet.
 
     sut.set_credit({0, 128, 0});

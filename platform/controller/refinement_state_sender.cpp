@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/controller/refinement_state_sender.hpp"
+
+#include "transport/base/printable.hpp"
+#include "transport/telemetry_from_frame.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace tactus::hrtc
+{
+
+namespace
+{
+
+/// Of the frames that were not in the copy before.
+FrontTimes times_since(const RefinementStateCopy::Times& now,
+                       const RefinementStateCopy::Times& before)
+{
+    const std::uint64_t frames = now.count - before.count;
+    const double sum_ns = now.mean_ns * static_cast<double>(now.count) -
+                          before.mean_ns * static_cast<double>(before.count);
+    const double mean_ns = frames > 0 ? sum_ns / static_cast<double>(frames) : 0.0;
+    return {std::max(mean_ns, 0.0), static_cast<double>(now.max.ns)}; // Rounding may go below 0.
+}
+
+static_assert(SlotQueues::kOpenRequests <= kMaxStateRequests);
+
+/// What is asked for and not here yet, by model.
+std::vector<std::vector<ChunkId>> requested_of(const Controller& controller)
+{
+    std::vector<std::vector<ChunkId>> requested(controller.models().size());
+    for (std::uint32_t model = 0; model < requested.size(); ++model)
+    {
+        controller.chunk_loader().add_requested_chunks(model, requested[model]);
+        std::ranges::sort(requested[model]);
+    }
+    return requested;
+}
+
+/// Places among RefinementState::models by model, for those of which the state tells something.
+std::vector<std::uint32_t> add_models(const RefinementStateCopy& copy, const Controller& controller,
+                                      RefinementState& front)
+{
+    std::vector<std::uint32_t> places(controller.models().size(), 0);
+    for (const ShownPage& slot : copy.slots)
+    {
+        places[slot.owner] |= slot.chunk.is_none() ? 0U : 1U;
+    }
+    for (const RefinementStateCopy::Object& object : copy.objects)
+    {
+        places[object.model] = 1;
+    }
+    for (const RefinementStateRegion& region : copy.regions)
+    {
+        places[region.model] = 1;
+    }
+    std::vector<std::vector<ChunkId>> requested = requested_of(controller);
+    for (std::size_t model = 0; model < places.size(); ++model)
+    {
+        if (places[model] != 0 || !requested[model].empty())
+        {
+            places[model] = static_cast<std::uint32_t>(front.models.size());
+            front.models.push_back(
+                {controller.models()[model].hash, {}, std::move(requested[model])});
+        }
+    }
+    for (const ShownPage& slot : copy.slots)
+    {
+        if (!slot.chunk.is_none())
+        {
+            front.models[places[slot.owner]].pages.push_back({slot.chunk, slot.refined});
+        }
+    }
+    for (RefinementStateModel& model : front.models)
+    {
+        std::ranges::sort(model.pages, {}, &RefinementStatePage::chunk);
+    }
+    return places;
+}
+
+} // namespace
+
+RefinementState refinement_state_of(const RefinementStateCopy& copy,
+                                    const RefinementStateCopy::AllTimes& before,
+                                    const Controller& controller, const SceneKeeper* keeper)
+{
+    RefinementState front;
+    front.frame = copy.frame;
+    front.time_ns = copy.start.ns;
+    front.budgets = copy.budgets;
+    front.sweep_begin = copy.sweep_begin;
+    front.sweep_end = copy.sweep_end;
+    front.slots_left_out = copy.slots_left_out;
+    front.regions_left_out = copy.regions_left_out;
+    std::ranges::transform(copy.times, before, front.times.begin(), times_since);
+    for (std::size_t i = 0; i < copy.tools.size(); ++i)
+    {
+        const ToolSetup& setup = controller.tools()[i];
+        front.tools.push_back({copy.tools[i].state, copy.tools[i].causes,
+                               printable(setup.shape, kMaxShapeBytes), setup.spec.radius_m});
+    }
+    const std::vector<std::uint32_t> places = add_models(copy, controller, front);
+    for (const RefinementStateCopy::Object& object : copy.objects)
+    {
+        const auto shown = keeper != nullptr ? keeper->shown_as(object.number) : std::nullopt;
+        front.objects.push_back({shown ? shown->host_epoch : 0,
+                                 shown ? shown->number : object.number, object.number,
+                                 places[object.model], pose_of(object.pose)});
+    }
+    for (const RefinementStateRegion& region : copy.regions)
+    {
+        front.regions.push_back(region);
+        front.regions.back().model = places[region.model];
+    }
+    return front;
+}
+
+Result<std::unique_ptr<RefinementStateSender>, Refusal>
+RefinementStateSender::create(const dds::DdsClient& client, const Controller& controller)
+{
+    auto writer = dds::RefinementStateWriter::create(client.domain(), client.controller_name());
+    if (!writer)
+    {
+        return writer.error();
+    }
+    std::unique_ptr<RefinementStateSender> sender(new RefinementStateSender(controller));
+    sender->writer_ = std::move(writer).value();
+    return sender;
+}
+
+void RefinementStateSender::step(MonotonicTime now, const SceneKeeper* keeper)
+{
+    if (now - last_sent_ < kPeriod || !writer_->is_watched())
+    {
+        is_old_ = is_old_ || !writer_->is_watched();
+        return;
+    }
+    if (const RefinementStateCopy* copy = tap_->take())
+    {
+        last_sent_ = now;
+        if (!is_old_)
+        {
+            RefinementState front = refinement_state_of(*copy, last_, controller_, keeper);
+            const std::uint32_t inside = begin_inside_.load(std::memory_order_relaxed);
+            for (std::size_t tool = 0; tool < front.tools.size(); ++tool)
+            {
+                front.tools[tool].begins_inside = (inside >> tool & 1U) != 0;
+            }
+            writer_->write(front);
+        }
+        is_old_ = false;
+        last_ = copy->times;
+        tap_->give_back();
+    }
+}
+
+} // namespace tactus::hrtc

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/devices/simulated/contact_slide.hpp"
+#include "platform/devices/simulated/landed_operator.hpp"
+#include "platform/devices/simulated/operator_motion.hpp"
+#include "platform/devices/simulated/scripted_operator.hpp"
+#include "platform/devices/simulated/wrist_swings.hpp"
+
+#include <cstdint>
+#include <memory>
+
+namespace tactus
+{
+
+/// Presses like PressingOperator and rotates the tool about the world's x, y and z, 30 degrees to
+/// and fro, an axis every 2 s.
+class RotatingOperator final : public LandedOperator
+{
+public:
+    explicit RotatingOperator(const OperatorScene& scene);
+    [[nodiscard]] OperatorGrip grip() const noexcept override;
+
+private:
+    [[nodiscard]] Vec3 offset_m(double seconds) noexcept override;
+
+    WristSwings swings_;
+};
+
+/// Follows another hand's path and rotates the tool with the surface: with the direction of the
+/// felt force, at up to 4 rad/s.
+class EdgeOperator final : public OperatorMotion
+{
+public:
+    EdgeOperator(std::unique_ptr<OperatorMotion> way, const OperatorScene& scene);
+    [[nodiscard]] Vec3 start_world_m() const noexcept override { return way_->start_world_m(); }
+    [[nodiscard]] Vec3 next_world_m(const OperatorSense& sense) noexcept override;
+    [[nodiscard]] OperatorGrip grip() const noexcept override;
+
+private:
+    void turn_with(const Vec3& felt) noexcept;
+
+    std::unique_ptr<OperatorMotion> way_;
+    ContactSlide feeling_; ///< Detects touches.
+    double period_s_;
+    bool has_touched_{false};
+    Vec3 normal_{Vec3::UnitZ()}; ///< Normal of the surface; the tool keeps its initial angle to it.
+    Mat3 rotation_{Mat3::Identity()};
+};
+
+/// Descends along the world's z through the middle of the model, like a peg into a hole, until it
+/// is pressed with about 1 N; tilts the tool by 2 degrees about x and y; withdraws it by a sixth of
+/// a diagonal. There, for 0.6 s, it presses button 0, opens the gripper, and moves up and back.
+/// Then it descends again. Without a contact it reverses half a diagonal below the middle.
+class PegOperator final : public OperatorMotion
+{
+public:
+    explicit PegOperator(const OperatorScene& scene);
+    [[nodiscard]] Vec3 start_world_m() const noexcept override { return start_world_m_; }
+    [[nodiscard]] Vec3 next_world_m(const OperatorSense& sense) noexcept override;
+    [[nodiscard]] OperatorGrip grip() const noexcept override;
+
+private:
+    enum class Phase : std::uint8_t
+    {
+        in,
+        tilt,
+        out,
+        change_grip,
+    };
+
+    void enter(Phase phase) noexcept;
+    void go_in(const OperatorSense& sense) noexcept;
+    [[nodiscard]] bool is_over(double seconds) const noexcept;
+
+    double period_s_;
+    double diagonal_m_;
+    double press_n_;
+    double speed_m_per_s_;
+    Vec3 start_world_m_;
+    double way_max_m_;
+    WristSwings swings_;
+    Phase phase_{Phase::in};
+    double in_phase_s_{0.0};
+    double pressed_s_{0.0};
+    double way_m_{0.0};     ///< Distance down from the start.
+    double deepest_m_{0.0}; ///< Largest depth of this descent.
+};
+
+} // namespace tactus

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/loop/cycle_measures.hpp"
+#include "platform/loop/run_statistics.hpp"
+#include "platform/machine/time.hpp"
+#include "rt_core/base/static_vector.hpp"
+#include "rt_core/frame/frame.hpp"
+#include "rt_core/spm/page_pool.hpp"
+#include "transport/front.hpp"
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace tactus::hrtc
+{
+
+/// Copy of one frame's refinement state, in the controller's own numbers.
+struct RefinementStateCopy
+{
+    struct Object
+    {
+        std::uint32_t number{0};
+        std::uint32_t model{0};
+        Similarity pose; ///< Pose of the model's frame.
+    };
+    struct Tool
+    {
+        SafetyState state{SafetyState::reset};
+        ForceOff causes{ForceOff::none};
+    };
+    /// Times of all frames so far.
+    struct Times
+    {
+        std::uint64_t count{0};
+        double mean_ns{0.0};
+        Duration max;
+    };
+
+    using AllTimes = std::array<Times, kFrontTimes>;
+
+    std::uint64_t frame{0};
+    MonotonicTime start;
+    AllTimes times{};
+    Budgets budgets;
+    StaticVector<Tool, kMaxTools> tools;
+    std::uint32_t sweep_begin{0};
+    std::uint32_t sweep_end{0};
+    StaticVector<Object, kMaxStateObjects> objects;
+    StaticVector<RefinementStateRegion, kMaxStateRegions> regions; ///< Regions of highest priority.
+    std::uint32_t regions_left_out{0};                             ///< Number of other regions.
+    std::vector<ShownPage> slots;                                  ///< Page slots of all models.
+    std::uint32_t slots_left_out{0}; ///< Number of slots beyond those.
+};
+
+/// One frame in a hundred, copied to show the refinement state. The copy belongs to either the
+/// haptic thread, which fills it, or the transport thread, which reads it and gives it back;
+/// neither ever waits.
+class RefinementStateTap
+{
+public:
+    /// Least number of frames between copies.
+    static constexpr std::uint64_t kFrames = 100;
+
+    /// Copies the pool's first slots, before the loop. The pool outlives the tap and has no other
+    /// tap. Allocates 16 bytes a slot.
+    explicit RefinementStateTap(PagePool& pages, std::size_t most_slots = kMaxStatePages);
+
+    struct ShownFront
+    {
+        std::uint64_t frame; ///< Number of the frame, from 0.
+        MonotonicTime start;
+        const Frame& made;
+        const FrameOutput& output;
+        std::span<const ToolForce> forces; ///< Forces, one a tool.
+        const Budgets& budgets;
+    };
+
+    /// Haptic thread, after a frame. Costs one comparison in 99 frames of 100 and while the last
+    /// copy is in use. Otherwise copies 16 bytes of each page slot that has changed since and
+    /// visits awake pairs, kMaxStateRegions regions and kFrontSweep objects once, without
+    /// allocating.
+    void show(const ShownFront& shown, const RunStatistics& statistics) noexcept
+    {
+        // Pairs with the release in give_back().
+        if (shown.frame % kFrames == 0 && !is_out_.load(std::memory_order_acquire))
+        {
+            copy(shown, statistics);
+            is_out_.store(true, std::memory_order_release); // Pairs with the acquire in take().
+        }
+    }
+
+    /// Transport thread: the newest copy, until give_back(); null if there is none.
+    [[nodiscard]] const RefinementStateCopy* take() const noexcept
+    {
+        return is_out_.load(std::memory_order_acquire) ? &copy_ : nullptr; // Pairs with show().
+    }
+    void give_back() noexcept
+    {
+        is_out_.store(false, std::memory_order_release); // Pairs with the acquire in show().
+    }
+
+private:
+    void copy(const ShownFront& shown, const RunStatistics& statistics) noexcept;
+    void copy_times(const RunStatistics& statistics) noexcept;
+    void copy_objects(const ShownFront& shown) noexcept;
+    void copy_regions(std::span<const RankedRegion> regions) noexcept;
+    void copy_object(const ObjectTable& objects, std::uint32_t number) noexcept;
+
+    PagePool& pages_;
+    std::atomic<bool> is_out_{false};
+    RefinementStateCopy copy_;
+};
+
+} // namespace tactus::hrtc

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/recording/recording.hpp"
+#include "rt_core/frame/frame.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tactus
+{
+
+/// The transport thread's part in a replay: fills the recorded slots, links and frees in the
+/// recorded order, and puts into the queues the items that the frame took.
+class ReplayQueues
+{
+public:
+    /// Both must outlive this; the frame is of the recording's setup.
+    ReplayQueues(const Recording& recording, Frame& frame);
+
+    /// Prepares the queues for the frame. Returns the mismatch, if any: if an earlier frame
+    /// differed, it has freed other slots or requested other pieces.
+    [[nodiscard]] std::optional<std::string> open(const RecordedFrame& recorded);
+
+private:
+    using Fault = std::optional<std::string>;
+
+    [[nodiscard]] Fault replay(const QueueEvent& event);
+    [[nodiscard]] Fault arrive(const QueueEvent& event);
+    [[nodiscard]] Fault update(const QueueEvent& event);
+    [[nodiscard]] Fault give_back(const QueueEvent& event);
+    [[nodiscard]] bool has_cells_for(const QueueEvent& event) const;
+    [[nodiscard]] Fault take_back_freed(std::uint32_t freed_taken);
+    [[nodiscard]] Fault fill(const QueueEvent& event);
+    [[nodiscard]] Fault bring_base(const QueueEvent& event);
+    [[nodiscard]] Fault grant_requests(std::uint32_t request_room);
+
+    /// Content of a slot; none: the slot is free.
+    template <typename Id>
+    struct Filled
+    {
+        Id id{};
+        std::uint32_t model{0};
+    };
+
+    const Recording& recording_;
+    Frame& frame_;
+    std::vector<Filled<ChunkId>> pages_;
+    std::vector<Filled<IndexPageId>> index_pages_;
+    std::vector<bool>
+        /// True for models whose cells are given back while the frame has not yet acknowledged it.
+        gives_cells_back_;
+    std::set<std::pair<std::uint32_t, std::uint32_t>> loaded_index_; ///< Model and page in a slot.
+    std::uint32_t freed_taken_{0};
+};
+
+} // namespace tactus
