@@ -252,20 +252,15 @@ def line_length(tree):
         yield frame[0], 1, f'{lines} lines with its header; at most 400: other classes do the work'
 
 
-# Folders whose comments are still to be rewritten.
-OLD_COMMENTS = ('platform/choices/', 'platform/controller/', 'platform/diagnose/', 'platform/hrtc/',
-                'platform/options/', 'platform/program/', 'platform/report/', 'rt_core/abtree/',
-                'rt_core/force/', 'rt_core/frame/', 'rt_core/kernels/', 'rt_core/query/')
 BACKWARDS = r'///<? *(Of|By|As|And|Likewise|Else|Than)\b'
 VAGUE = r'(?i)//.*\b(whoever|whatever|nobody|lately|anew|for ever|mend|foretell|seldom|askew)\b'
 
 
 def plain_comments(tree):
     """A comment has a subject and can be read before the declaration."""
-    paths = [path for path in tree.files(*CPP) if not path.startswith(OLD_COMMENTS)]
-    for path, line, match in tree.matches(BACKWARDS, paths):
+    for path, line, match in tree.matches(BACKWARDS, tree.files(*CPP)):
         yield path, line, f'the comment begins with {match[1]}: name its subject first'
-    for path, line, match in tree.matches(VAGUE, paths):
+    for path, line, match in tree.matches(VAGUE, tree.files(*CPP)):
         yield path, line, f'{match[1]} in a comment: name what is meant'
 
 

@@ -39,7 +39,7 @@ constexpr NamedFault kFaults[] = {
     {"time_jump", DeviceFaultKind::time_jump}, {"disconnect", DeviceFaultKind::disconnect},
 };
 
-/// Reads all of `text` as a whole number in the range.
+/// Parses the whole of `text` as an integer in the range.
 std::optional<int> parse_int(std::string_view text, int least, int most)
 {
     int value = 0;
@@ -117,7 +117,7 @@ Result<std::unique_ptr<HapticDevice>, Refusal> open_replay(const std::string& pa
     return as_device(std::move(device));
 }
 
-/// None when the text is no device.
+/// Device of the text; none if the text names no device.
 std::optional<DeviceChoice> device_named(std::string_view text)
 {
     constexpr std::string_view kSimulated = "sim:";
@@ -164,7 +164,8 @@ std::optional<DeviceChoice> device_named(std::string_view text)
     return text.starts_with(kDhd) ? parse_dhd(text.substr(kDhd.size())) : std::nullopt;
 }
 
-/// The refusal of a text that is no device: what its kind takes, or which kinds there are.
+/// Refusal of a text that names no device. It lists the forms of the text's kind, or else all
+/// kinds.
 Refusal no_device(std::string_view text)
 {
     constexpr std::pair<std::string_view, std::string_view> kForms[] = {

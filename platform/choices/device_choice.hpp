@@ -32,51 +32,53 @@ enum class DeviceKind : std::uint8_t
     plugin,
 };
 
-/// What --device, --device-limits and --device-frame say of one tool's device.
+/// Device of one tool, as given by --device, --device-limits and --device-frame.
 struct DeviceChoice
 {
     DeviceKind kind{DeviceKind::simulated};
-    DeviceLimits limits{kDeskClass};                         ///< Limits of simulated and dhd.
-    std::string address{UdpDeviceOptions{}.address};         ///< Address of udp.
-    int port{UdpDeviceOptions::kPortDefault};                ///< Port of udp.
-    std::shared_ptr<const udp::Authenticator> authenticator; ///< Null without --device-key.
-    int index{0};                                            ///< Number of dhd's device.
-    std::string recording;                                   ///< File of replay.
-    std::string library;                                     ///< File of plugin.
+    DeviceLimits limits{kDeskClass};                         ///< Limits of a sim or DHD device.
+    std::string address{UdpDeviceOptions{}.address};         ///< Address of a UDP device.
+    int port{UdpDeviceOptions::kPortDefault};                ///< Port of a UDP device.
+    std::shared_ptr<const udp::Authenticator> authenticator; ///< Authenticator of a UDP device;
+                                                             ///< null without --device-key.
+    int index{0};                                            ///< Index of a DHD device.
+    std::string recording;                                   ///< File of a replayed device.
+    std::string library;                                     ///< Library of a plugin.
     std::string words;                                       ///< Words for the plugin's device.
     Similarity frame;                                        ///< Device coordinates in the world.
 };
 
-/// One of the forms that --help shows.
+/// Parses one of the forms that --help shows.
 [[nodiscard]] Result<DeviceChoice, Refusal> parse_device(std::string_view text);
 
-/// What the texts mean that `parse_device_fault` takes; for messages.
+/// Forms of text that parse_device_fault() takes, for messages.
 inline constexpr std::string_view kDeviceFaultForms =
     "KIND@FRAME+LENGTH with the kind jitter, dropout, stuck, nan, time_jump or disconnect, a frame "
     "of 0 to 1e9 and a length of 1 to 1e9 frames";
 
-/// None when the text is none of kDeviceFaultForms.
+/// Fault of the text; none if the text has none of kDeviceFaultForms.
 [[nodiscard]] std::optional<DeviceFault> parse_device_fault(std::string_view text);
 
-/// For a device that has to come or to be made.
+/// Wait for a device that is still to connect or to be created.
 struct DeviceWait
 {
     Duration most;
-    std::function<bool()> goes_on; ///< Asked meanwhile: false ends the wait. Empty: never.
-    std::int64_t rate_hz{1'000};   ///< Of the loop.
+    std::function<bool()> goes_on; ///< Predicate, called during the wait. False ends the wait.
+                                   ///< Empty: the wait goes on.
+    std::int64_t rate_hz{1'000};   ///< Rate of the loop.
 };
 
-/// Opens a device that isn't simulated, for the tool with that index; waits for one that comes by
-/// udp, reads a recording as a whole. `choice` and `clock` are lent and outlive it.
+/// Opens a device that isn't simulated, for the tool with that index. Waits for a UDP device to
+/// connect, and reads a recording as a whole. `choice` and `clock` must outlive the device.
 [[nodiscard]] Result<std::unique_ptr<HapticDevice>, Refusal> open_device(const DeviceChoice& choice,
                                                                          std::size_t tool,
                                                                          const DeviceWait& wait,
                                                                          const Clock& clock);
 
-/// Whether the device is this machine's, and holds a force that its program has left to it.
+/// True if the device is attached to this machine and may hold a force after its program's end.
 [[nodiscard]] bool wants_guard(const DeviceChoice& choice) noexcept;
 
-/// In the guardian's process: what brakes such a device; none where its library has none.
+/// Guard that brakes such a device, for the guardian's process. Null if the library has no guard.
 [[nodiscard]] Result<std::unique_ptr<DeviceGuard>, Refusal> open_guard(const DeviceChoice& choice,
                                                                        std::int64_t rate_hz);
 

@@ -13,28 +13,28 @@
 namespace tactus::hrtc
 {
 
-/// What a scene file says.
+/// Contents of a scene file.
 struct SceneFile
 {
-    std::vector<std::string> models; ///< Paths; each once.
+    std::vector<std::string> models; ///< Paths of the models; each once.
     std::vector<PlacedObject> objects;
-    std::vector<std::string> notes; ///< What else of the file is not here.
+    std::vector<std::string> notes; ///< Notes on parts of the file that are not read.
 };
 
-/// How a run knows and reads the files of graphics stations. The controller has no such reader:
-/// its program lends these. Without them no file is a mesh's or a scene's. Any thread.
+/// Detection and readers of the files of graphics stations. The controller has none of its own; its
+/// program supplies them. Without them, no file counts as a mesh or a scene. Any thread.
 struct FileReaders
 {
-    /// Whether a file of this name is a mesh's.
+    /// True if a file of this name is a mesh.
     bool (*is_mesh_name)(const std::string& path){[](const std::string&) { return false; }};
-    /// Whether a file of this name is a scene's.
+    /// True if a file of this name is a scene.
     bool (*is_scene_name)(const std::string& path){[](const std::string&) { return false; }};
-    /// The refusal of a mesh in a model's place.
+    /// Refusal of a mesh in the place of a model.
     std::string (*mesh_is_no_model)(const std::string& path){[](const std::string& path)
                                                              { return path; }};
-    /// The corners of a mesh, as they stand in its file.
+    /// Corners of a mesh, as in its file.
     Result<std::vector<Vec3>, Refusal> (*read_corners)(const std::string& path){no_corners};
-    /// A scene whose objects show models that are made already.
+    /// Scene whose objects show models that already exist.
     Result<SceneFile, Refusal> (*read_scene)(const std::string& path){no_scene};
 
 private:

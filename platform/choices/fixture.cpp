@@ -44,7 +44,7 @@ constexpr FixtureForm kFixtureForms[] = {
     {FixtureKind::gripper, {"gripper:X[,K[,F]]", kOfGripper}},
 };
 
-/// So many of its numbers say where.
+/// Count of the leading numbers that give the place and direction of a fixture.
 std::size_t places_of(FixtureKind kind)
 {
     return kind == FixtureKind::gripper ? 1 : kind == FixtureKind::point ? 3 : 6;

@@ -12,39 +12,39 @@
 namespace tactus::hrtc
 {
 
-/// Kind of a virtual fixture (Rosenberg 1993), which guides a hand; the world's frame.
+/// Kind of a virtual fixture (Rosenberg 1993), which guides a hand. Coordinates are the world's.
 enum class FixtureKind : std::uint8_t
 {
-    point,   ///< Pulled to it.
-    line,    ///< Pulled to it, free along it.
-    plane,   ///< Kept on its front side: free there, pushed back from behind it.
-    gripper, ///< The hand is free; its gripper is held so far open.
+    point,   ///< Pulls the tool to the point.
+    line,    ///< Pulls the tool to the line; leaves it free along the line.
+    plane,   ///< Pushes the tool back from behind the plane; leaves it free in front.
+    gripper, ///< Holds the gripper at an opening; leaves the hand free.
 };
 
-/// What --fixture says of one tool.
+/// Virtual fixture of one tool, as given by --fixture.
 struct FixtureChoice
 {
-    std::string words; ///< As they were given.
+    std::string words; ///< Text as given.
     FixtureKind kind{FixtureKind::point};
-    Vec3 at_m{0.0, 0.0, 0.0};      ///< The point, or one of the line or plane; of a gripper x is
-                                   ///< its opening.
-    Vec3 direction{0.0, 0.0, 1.0}; ///< Of the line, or the plane's normal; unit length.
+    Vec3 at_m{0.0, 0.0, 0.0};      ///< Point, or a point on the line or plane. The x of a gripper
+                                   ///< fixture is its opening.
+    Vec3 direction{0.0, 0.0, 1.0}; ///< Direction of the line, or normal of the plane; unit length.
     double stiffness_n_per_m{100.0};
     double force_max_n{1.0};
 };
 
-/// point:X,Y,Z[,K[,F]], line:X,Y,Z,DX,DY,DZ[,K[,F]], plane:X,Y,Z,NX,NY,NZ[,K[,F]] or
-/// gripper:X[,K[,F]], in metres; D and N are a line's direction and a plane's normal, of any
+/// Parses point:X,Y,Z[,K[,F]], line:X,Y,Z,DX,DY,DZ[,K[,F]], plane:X,Y,Z,NX,NY,NZ[,K[,F]] or
+/// gripper:X[,K[,F]], in metres. D is a line's direction and N a plane's normal, both of any
 /// length.
 [[nodiscard]] Result<FixtureChoice, Refusal> parse_fixture(std::string_view text);
 
-/// A spring of limited force that guides a tool. It has no more energy than what stretches it, so
-/// it makes none. It tells its stiffness, so that cap and passivity take it as a wall's.
+/// Spring of limited force that guides a tool. Its energy is only the work that stretched it, so it
+/// is passive. It reports its stiffness, so the stiffness limit and passivity controller treat it
+/// as a wall.
 ///
-/// Where the device says no place or opening, the fixture stays as it was: ForceFader fades the
-/// force then.
+/// If the device reports no position or opening, the last force stays. ForceFader fades it then.
 ///
-/// Haptic thread; create it before the loop. Allocates nothing.
+/// Haptic thread. Create it before the loop. Allocates nothing.
 class VirtualFixture final : public ExternalForceSource
 {
 public:

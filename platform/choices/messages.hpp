@@ -9,13 +9,13 @@
 namespace tactus::hrtc
 {
 
-/// A refusal that happened at run time.
+/// Makes a refusal of an operation that failed at run time.
 [[nodiscard]] Refusal failure(std::string text);
 
-/// Logs what the program couldn't do.
+/// Logs a failed operation of the program as an error.
 void log_error(const std::string& line);
 
-/// Logs a warning, whatever is in it: file names may hold control characters.
+/// Logs a warning. The line may hold control characters, as file names do.
 void log_line(const std::string& line);
 
 } // namespace tactus::hrtc

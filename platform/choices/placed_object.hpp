@@ -11,15 +11,15 @@
 namespace tactus::hrtc
 {
 
-/// An object that is there from the start.
+/// Object that is in the scene from the start.
 struct PlacedObject
 {
-    std::size_t model{0}; ///< The place of its model in Options::models.
+    std::size_t model{0}; ///< Index of its model in Options::models.
     Similarity place;
     Material material;
-    bool has_place{false}; ///< Given by --place or by the host.
+    bool has_place{false}; ///< True if --place or the host has given the place.
     bool has_material{false};
-    std::string name; ///< In its scene; empty: it has none.
+    std::string name; ///< Name in its scene; empty: none.
 };
 
 } // namespace tactus::hrtc

@@ -11,8 +11,9 @@
 namespace tactus::hrtc
 {
 
-/// Where the source frame of an object, or a device, lies in the world: translation in metres, a
-/// rotation vector (axis times angle) in degrees, scale: X,Y,Z[,RX,RY,RZ[,SCALE]].
+/// Parses X,Y,Z[,RX,RY,RZ[,SCALE]]: the pose in the world of an object's or device's source frame.
+/// X,Y,Z is the translation in metres, RX,RY,RZ the rotation vector (axis times angle) in degrees,
+/// and SCALE the scale.
 [[nodiscard]] Result<Similarity, Refusal> parse_placement(std::string_view text);
 
 } // namespace tactus::hrtc

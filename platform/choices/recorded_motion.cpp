@@ -24,7 +24,7 @@ std::optional<std::array<double, 3>> to_array(const std::optional<Vec3>& v)
     return v ? std::optional(tactus::to_array(*v)) : std::nullopt;
 }
 
-/// What the device said. A rotation that was none is none again.
+/// Sample as the device reported it. If the recorded rotation is none, the sample's is none, too.
 DeviceSample reading_of(const ToolState& state, const DeviceRecord& device)
 {
     const DevicePose hand = device.hand.value_or(DevicePose{state.position_m, state.rotation});

@@ -13,10 +13,10 @@
 namespace tactus::hrtc
 {
 
-/// What a device told in a recording of `hrtc --record`, frame by frame: that of its tool `tool`,
-/// or of its first one where it has no such. Force, torque and rate are those of that run. Where a
-/// clutch had parted hand and tool, it is the hand. Logs what of the run is missing. Takes as much
-/// memory as the recording, and 250 bytes a frame.
+/// Samples of a device in a recording of `hrtc --record`, frame by frame. The device is that of
+/// tool `tool`, or of the first tool if there is no such tool. Force, torque and rate are those of
+/// the run. With a clutch, the pose is the device pose, not the tool's. Logs missing parts of the
+/// recording. Takes as much memory as the recording, and 250 bytes a frame.
 [[nodiscard]] Result<ReplayDeviceOptions, Refusal> read_recorded_motion(const std::string& path,
                                                                         std::size_t tool);
 

@@ -31,86 +31,95 @@ enum class TransportKind : std::uint8_t
     file,
 };
 
-/// What a simulated operator does, and on what.
+/// Motion and object of a simulated operator.
 struct OperatorChoice
 {
     MotionKind motion{MotionKind::script};
-    std::string object; ///< Its name, or its model's; empty: each hand has another object.
+    std::string object; ///< Name of an object or of its model; empty: each operator gets another
+                        ///< object.
 };
 
-/// What is asked for of one tool.
+/// Options of one tool.
 struct ToolOptions
 {
-    std::optional<ToolChoice> shape; ///< None: default_tool().
-    ToolLoad load;                   ///< What hangs on the device.
+    std::optional<ToolChoice> shape; ///< Shape; none: default_tool().
+    ToolLoad load;                   ///< Payload of the device.
     std::optional<FixtureChoice> fixture;
     DeviceChoice device;
     OperatorChoice hand; ///< Operator of a simulated device.
 
-    /// ToolChoice's; empty: it is no mesh.
+    /// Mesh model of the tool's shape; empty if the tool is no mesh.
     [[nodiscard]] std::string mesh_model() const
     {
         return shape ? shape->mesh_model : std::string();
     }
 };
 
-/// Everything that a run is asked for; checked, in SI.
+/// All options of a run, checked, in SI units.
 struct Options
 {
-    FileReaders readers; ///< The program's.
-    /// NAME, NAME@HASH or NAME@SERVER, or paths with the file transport; each once.
+    FileReaders readers; ///< File readers of the program.
+    /// Models: NAME, NAME@HASH or NAME@SERVER, or paths with the file transport; each once.
     std::vector<std::string> models;
-    std::vector<PlacedObject> objects; ///< By their numbers; each model is shown by one at least.
-    /// Not empty: models and objects are this file's, or with DDS those of the host whose scene has
-    /// this name, or NAME@SERVER; see scene_choice.hpp.
+    std::vector<PlacedObject> objects; ///< Objects by their numbers; each model is shown by at
+                                       ///< least one.
+    /// Scene, if not empty: a file, or with DDS the name of a host's scene or NAME@SERVER. Models
+    /// and objects are then the scene's; see scene_choice.hpp.
     std::string scene;
-    SceneMaterials scene_materials; ///< Where --material says otherwise than the scene.
-    std::uint32_t objects_max{0};   ///< Room for so many; 0: as many as there are.
+    SceneMaterials scene_materials; ///< Materials of --material, which override the scene's.
+    std::uint32_t objects_max{0};   ///< Largest number of objects; 0: the number given.
     std::vector<ToolOptions> tools{1};
-    std::vector<DeviceFault> device_faults; ///< Of every simulated device.
+    std::vector<DeviceFault> device_faults; ///< Faults of every simulated device.
     TransportKind transport{TransportKind::dds};
     std::uint32_t domain{0};
-    bool is_watched{false};   ///< On that domain viewers see it, with models from files, too.
-    std::string name;         ///< Of the controller, with DDS; empty: hrtc-PID.
-    Failover failover;        ///< With DDS.
-    bool follows_poses{true}; ///< Objects move as the hosts say.
-    bool shows_refinement_state{true}; ///< With DDS: tells which records are split.
-    double wait_s{10.0};               ///< For a model that nobody publishes yet, or a device.
+    bool is_watched{false};   ///< True if viewers of that domain can watch, also with models from
+                              ///< files.
+    std::string name;         ///< Name of the controller, with DDS; empty: hrtc-PID.
+    Failover failover;        ///< Servers that may replace a lost one; DDS only.
+    bool follows_poses{true}; ///< Objects take the poses that the hosts send.
+    bool shows_refinement_state{true}; ///< Sends the refinement state to viewers; DDS only.
+    double wait_s{10.0};               ///< Longest wait for a model that is not published yet, or
+                                       ///< for a device.
     std::int64_t rate_hz{1'000};
     double duration_s{10.0};
     std::vector<std::string> report_paths;
-    std::string record_path;       ///< Empty: no recording.
-    std::string trace_path;        ///< Empty: no trace.
-    std::string histograms_folder; ///< Empty: no histograms.
-    std::string replay_path; ///< Not empty: replay this recording; but for `kernels` and the next
-                             ///< one, nothing else is set then.
-    std::vector<std::string> export_paths; ///< Of a replay, for other tools.
+    std::string record_path;       ///< File of the recording; empty: none.
+    std::string trace_path;        ///< File of the trace; empty: none.
+    std::string histograms_folder; ///< Folder of the histograms; empty: none.
+    std::string replay_path;       ///< Recording to replay, if not empty. Only `kernels` and
+                                   ///< `export_paths` may be set beside it.
+    std::vector<std::string> export_paths; ///< Files of an export of the replay, for other tools.
     double pool_mib{2.0};
-    double cache_mib{0.0};                 ///< 0: the usual share of the pool.
-    std::uint32_t splits{64};              ///< At most, when there is a frame budget.
-    std::optional<double> frame_budget_us; ///< None: half of the period.
+    double cache_mib{0.0};                 ///< Size of the cache; 0: the usual share of the pool.
+    std::uint32_t splits{64};              ///< Most splits, and most merges, in a frame.
+    std::optional<double> frame_budget_us; ///< Budget of a frame; none: half of the period.
     bool static_when_it_fits{true};
     Prediction prediction{Prediction::automatic};
-    const Kernels* kernels{nullptr}; ///< Of the queries; null: the best of the processor.
+    const Kernels* kernels{nullptr}; ///< Kernels of the queries; null: the best of the processor.
     double stiffness_n_per_m{500.0};
-    double angular_stiffness_nm_per_rad{0.0}; ///< 0: as the stiffness and the tool's size make it.
-    double shading_m{0.0};                    ///< 0: facets are felt.
-    double force_tolerance_n{kForceToleranceUsual_n}; ///< FrameSetup's.
-    std::optional<double> speed_limit_m_per_s;        ///< None: the device's own.
-    double object_speed_m_per_s{0.5};                 ///< Speed limit near a tool.
-    std::optional<std::uint32_t> clutch_button;       ///< A button, the same on every device.
-    /// Of a silent loop, until the supervisor brakes. None: as the kernel can promise.
+    double angular_stiffness_nm_per_rad{0.0}; ///< Angular stiffness; 0: derived from the stiffness
+                                              ///< and the tool's size.
+    double shading_m{0.0};                    ///< Width of force shading; 0: facets are felt.
+    double force_tolerance_n{kForceToleranceUsual_n}; ///< Force tolerance of FrameSetup.
+    std::optional<double> speed_limit_m_per_s;        ///< Speed limit of the devices; none: each
+                                                      ///< device's own.
+    double object_speed_m_per_s{0.5};                 ///< Speed limit of objects near a tool.
+    std::optional<std::uint32_t> clutch_button;       ///< Number of the clutch button, the same on
+                                                      ///< every device.
+    /// Silent periods of the loop before the supervisor brakes. None: silent_periods() of the
+    /// machine.
     std::optional<std::uint32_t> supervisor_periods;
-    /// None: one diagonal of the first model a second.
+    /// Speed limit of the proxy. None: one diagonal of the first model per second.
     std::optional<double> proxy_speed_m_per_s;
-    double slew_share_per_ms{kSlewShare_per_ms}; ///< ChangeRule's.
+    double slew_share_per_ms{kSlewShare_per_ms}; ///< Slew rate of ChangeRule.
     bool trap_system_calls{false};
-    bool virtual_time{false}; ///< See LoopTime; with files and hands that the program moves alone.
-    bool strict{false};       ///< What is lost in a run, or comes to nothing, is a failure.
-    std::string as_file;      ///< All options, as a file for --config.
+    bool virtual_time{false}; ///< Virtual time, see LoopTime. Needs models from files, and
+                              ///< simulated or replayed devices.
+    bool strict{false};       ///< A run with losses or without a result counts as a failure.
+    std::string as_file;      ///< All options in the form of a --config file.
     RtThreadOptions thread;
 
-    /// How a refusal names an option of a tool: with the tool's number when there are several.
+    /// Name of a tool's option in a refusal. It includes the tool's number if there are several.
     [[nodiscard]] std::string of_tool(std::string_view option, std::size_t tool) const
     {
         return std::string(option) + (tools.size() > 1 ? " of tool " + std::to_string(tool) : "");
@@ -120,13 +129,13 @@ struct Options
         return static_cast<std::size_t>(pool_mib * 0x1p20);
     }
     [[nodiscard]] Duration period() const noexcept { return nanoseconds(1'000'000'000 / rate_hz); }
-    /// The time that a frame may take.
+    /// Time budget of a frame.
     [[nodiscard]] Duration frame_budget() const noexcept
     {
         return frame_budget_us ? nanoseconds(static_cast<std::int64_t>(*frame_budget_us * 1e3))
                                : nanoseconds(period().ns / 2);
     }
-    /// So many times the usual work a frame may do with the tools that there are.
+    /// Factor of the usual work that a frame may do, which depends on the shapes of the tools.
     [[nodiscard]] std::uint32_t work_times() const noexcept
     {
         const auto any = [this](std::string ToolChoice::*file)
@@ -138,7 +147,7 @@ struct Options
                : any(&ToolChoice::hull_file) ? Budgets::kHullWork
                                              : 1U;
     }
-    /// The work that a frame may do.
+    /// Work budget of a frame.
     [[nodiscard]] std::uint32_t frame_work() const noexcept
     {
         return Budgets::work_of(frame_budget().ns, work_times());

@@ -17,7 +17,7 @@ namespace tactus::hrtc
 namespace
 {
 
-/// So many names are told; a scene may have thousands.
+/// Most names in a message; a scene may have thousands.
 constexpr std::size_t kNamesTold = 8;
 
 } // namespace

@@ -11,22 +11,22 @@
 #include <string_view>
 #include <vector>
 
-// Any thread, but not the haptic one: texts allocate.
+// Any thread except the haptic one, because strings allocate.
 namespace tactus::hrtc
 {
 
-/// What --material says of a scene's objects, which goes before what the scene says.
+/// Materials given by --material, which override those of the scene.
 class SceneMaterials
 {
 public:
-    /// Each is MATERIAL, of all objects, or OBJECT:MATERIAL. Returns what is wrong with them; empty
-    /// when all is well.
+    /// Takes options of the form MATERIAL, for all objects, or OBJECT:MATERIAL. Returns the first
+    /// fault; empty if there is none.
     [[nodiscard]] std::string take(std::span<const std::string> options);
 
-    /// How an object of this name feels, of which the scene says `said`.
+    /// Material of the object of this name, whose material in the scene is `said`.
     [[nodiscard]] const Material& felt(std::string_view name, const Material& said) const;
 
-    /// A line about the first name that none of the objects has; empty when all are there.
+    /// Message on the first name that no object has; empty if all names exist.
     [[nodiscard]] std::string missing(std::span<const std::string> objects) const;
 
 private:
@@ -34,8 +34,8 @@ private:
     std::map<std::string, Material, std::less<>> of_one_;
 };
 
-/// What a user who named an object meant: "no object is called 'cap'; cup?", or with no name near
-/// it some of those that there are.
+/// Message for an unknown object name: "no object is called 'cap'; cup?". If no name is similar,
+/// the message lists some of the existing names.
 [[nodiscard]] std::string no_such_object(std::string_view name,
                                          std::span<const std::string> objects);
 

@@ -44,8 +44,8 @@ constexpr NumberRange kCentreRange{-kLengthMax_m, kLengthMax_m, "m"};
 constexpr NumberRange kOfMass[] = {{0.0, 5.0, "kg"}, kCentreRange, kCentreRange, kCentreRange};
 constexpr NumberForm kMassForm{"KG[,X,Y,Z]", kOfMass};
 
-/// "NAME[,R]" behind the form's word: what stands behind the last comma is part of the name unless
-/// it is a number.
+/// Parses "NAME[,R]" after the form's word. Text after the last comma belongs to the name unless it
+/// is a number.
 std::optional<Refusal> take_name(std::string_view text, std::string_view form, std::string& name,
                                  double& radius_m)
 {
@@ -61,11 +61,11 @@ std::optional<Refusal> take_name(std::string_view text, std::string_view form, s
     return fault.empty() ? std::nullopt : std::optional(not_of_form(text, form, fault));
 }
 
-/// Words that others have for a form.
+/// Synonyms of the forms' words.
 constexpr std::pair<std::string_view, std::string_view> kOtherWords[] = {
     {"ball", "sphere"}, {"cube", "box"}, {"cuboid", "box"}, {"cylinder", "capsule"}};
 
-/// The refusal of a tool whose word is none.
+/// Refusal of a text that begins with no tool's word.
 Refusal no_tool(std::string_view text)
 {
     constexpr std::string_view kWords[] = {"point", "sphere", "capsule", "box", "hull", "mesh"};
@@ -83,7 +83,7 @@ Refusal no_tool(std::string_view text)
                               printable(meant))};
 }
 
-/// `option` names it in a refusal.
+/// `option` is the option's name in a refusal.
 std::optional<Refusal> read_hull(ToolChoice& tool, const FileReaders& readers,
                                  const std::string& option)
 {

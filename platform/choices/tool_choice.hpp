@@ -19,39 +19,40 @@ namespace tactus::hrtc
 
 struct Options;
 
-/// The shape of a tool, as --tool says it.
+/// Shape of a tool, as given by --tool.
 struct ToolChoice
 {
-    std::string words;      ///< As they were given.
-    double radius_m{0.0};   ///< Added all round.
-    ToolCore core{};        ///< Of a hull or mesh after take_tool_files().
-    std::string hull_file;  ///< Not empty: a mesh file, whose vertices' hull it is.
-    std::string mesh_model; ///< Not empty: NAME[@HASH] of the model that it is, or a path.
-    std::shared_ptr<const std::vector<Vec3>> hull_vertices; ///< The core's; in metres.
+    std::string words;      ///< Text as given.
+    double radius_m{0.0};   ///< Radius added around the core.
+    ToolCore core{};        ///< Core; a hull's or mesh's is set by take_tool_files().
+    std::string hull_file;  ///< Mesh file whose vertices span the hull, if not empty.
+    std::string mesh_model; ///< Model of a mesh tool, if not empty: NAME[@HASH] or a path.
+    std::shared_ptr<const std::vector<Vec3>> hull_vertices; ///< Vertices of the hull, in metres.
 };
 
-/// "point", "sphere:R", "capsule:R,L", "box:X,Y,Z[,R]", "hull:FILE[,R]" or "mesh:NAME[@HASH][,R]",
-/// in metres: R is the radius, L the length of the axis, which is the tool's z, without its caps,
-/// X, Y and Z are whole edges before R.
+/// Parses "point", "sphere:R", "capsule:R,L", "box:X,Y,Z[,R]", "hull:FILE[,R]" or
+/// "mesh:NAME[@HASH][,R]", in metres. R is the radius. L is the length without caps of the axis,
+/// the tool's z. X, Y and Z are whole edges without R.
 [[nodiscard]] Result<ToolChoice, Refusal> parse_tool(std::string_view text);
 
-/// KG[,X,Y,Z]: 0 to 5 kg, and its centre in metres, within 1 m; down is -z.
+/// Parses KG[,X,Y,Z]: 0 to 5 kg and a centre in metres, within 1 m of the origin; down is -z.
 [[nodiscard]] Result<ToolLoad, Refusal> parse_tool_mass(std::string_view text);
 
-/// The sphere of tools that nothing is said of: 1 % of a diagonal, within what parse_tool() takes.
+/// Sphere for tools without --tool. Its radius is 1 % of the diagonal, clamped to the range of
+/// parse_tool().
 [[nodiscard]] ToolChoice default_tool(double diagonal_m);
 
-/// Reads the files of hulls, and adds what is a mesh to the options' models. After the models that
-/// objects show are known. Returns why a tool can't be had.
+/// Reads the files of hulls, and adds the models of mesh tools to `options`. Call it once the
+/// objects' models are known. Returns the refusal of a tool that can't be made.
 [[nodiscard]] std::optional<Refusal> take_tool_files(Options& options);
 
-/// A sphere of so many metres round the tool's origin holds the tool. `mesh`: of a tool that is
-/// one.
+/// Radius in metres of a sphere round the tool's origin that holds the tool. `mesh` is the header
+/// of a mesh tool's model, null otherwise.
 [[nodiscard]] double reach_m(const ToolChoice& tool, const ModelHeader* mesh);
 
-/// How far from a surface a simulated operator holds the tool's origin to touch it: a sphere's
-/// radius, half of what others reach, however they are turned, and that of default_tool() for a
-/// point; no more than the diagonal of the model that it touches.
+/// Distance from a surface at which a simulated operator holds the tool's origin to touch. For a
+/// sphere it is the radius, for other shapes half of reach_m(), in any orientation. For a point it
+/// is the radius of default_tool(). It never exceeds the diagonal of the touched model.
 [[nodiscard]] double hand_radius_m(const ToolChoice& tool, const ModelHeader* mesh,
                                    double diagonal_m);
 

@@ -29,18 +29,18 @@ namespace tactus::hrtc
 namespace
 {
 
-/// What a refusal proposes is rounded to three digits, and taken.
+/// Margin of a proposed tolerance. Rounded to three digits, the proposal is still accepted.
 constexpr double kWithinRadius = 0.99;
 
 constexpr double kBytesPerMib = 1024.0 * 1024.0;
-/// Speed of the proxy without --proxy-speed.
+/// Speed limit of the proxy without --proxy-speed, in diagonals per second.
 constexpr double kSpeedMax_diag = 1.0;
-/// The simulated operator flies at two diagonals a second; its device stands twice that.
+/// Speed limit of a simulated device, in diagonals per second. The operator moves at half of it.
 constexpr double kHandSpeed_diag = 4.0;
-/// It touches what is so many times as large as its tool's radius, if there is such a thing.
+/// Least diagonal of an object that a simulated operator prefers, in radii of its tool.
 constexpr double kHandRoom = 10.0;
 
-/// What is told in two decimals is not less.
+/// Rounds up to two decimals, so that the printed value is never less than `value`.
 double up_to_cents(double value)
 {
     return std::ceil(100.0 * value) / 100.0;
@@ -117,7 +117,8 @@ void Controller::make_poses(const Options& options)
     }
 }
 
-/// Those that aren't simulated; before the tools, which need to know what the devices can do.
+/// Opens the devices that aren't simulated. Called before the tools, which need the devices'
+/// limits.
 std::optional<Refusal> Controller::open_devices(const Options& options)
 {
     tools_.resize(options.tools.size());
@@ -176,8 +177,9 @@ void Controller::make_tools(const Options& options)
     }
 }
 
-/// A tool whose surface may be off by more than its radius feels none. For the usual tolerance, and
-/// for tools without a radius, SurfaceTolerance's own bound holds.
+/// Refuses a tolerance at which a surface may be off by more than the tool's radius. The tool would
+/// feel no force there. For the usual tolerance, and for tools without a radius, the bound of
+/// SurfaceTolerance holds.
 std::optional<Refusal> Controller::check_tolerance(const Options& options) const
 {
     const double asked_n = options.force_tolerance_n;
@@ -257,7 +259,7 @@ std::optional<Refusal> Controller::lay_out_pools(const Options& options)
     return std::nullopt;
 }
 
-/// Nothing to do for those that are here.
+/// Fetches the base meshes that are missing.
 std::optional<Refusal> Controller::fetch_bases(std::span<ServedModel> models,
                                                const Options& options) const
 {
@@ -265,7 +267,7 @@ std::optional<Refusal> Controller::fetch_bases(std::span<ServedModel> models,
     return bring_bases(models, wait, goes_on_);
 }
 
-/// A scene of more models than there is room for at once.
+/// Plans a scene of more models than fit into the pools at once.
 bool Controller::try_plan_as_streamed_models(const Options& options, std::size_t bytes,
                                              std::size_t cache)
 {
@@ -327,7 +329,7 @@ std::optional<Refusal> Controller::finish_devices(const Options& options)
     return check_damping(options);
 }
 
-/// A gripper without motors can't be held.
+/// Refuses to hold a gripper without motors.
 std::optional<Refusal> Controller::check_grippers(const Options& options) const
 {
     for (std::size_t i = 0; i < options.tools.size(); ++i)
@@ -344,7 +346,7 @@ std::optional<Refusal> Controller::check_grippers(const Options& options) const
     return std::nullopt;
 }
 
-/// No more than half of what the device can make, so that walls are felt beside it.
+/// Refuses a payload above half of the device's force or torque, so that walls can still be felt.
 std::optional<Refusal> Controller::hang_load(const Options& options, std::size_t tool)
 {
     ToolLoad& load = tools_[tool].load;
@@ -375,8 +377,8 @@ std::optional<Refusal> Controller::hang_load(const Options& options, std::size_t
     return std::nullopt;
 }
 
-/// An object whose damping leaves a tool's device no wall could never be felt. What a server says
-/// is limited in the run.
+/// Refuses an object whose damping leaves a tool's device no stable wall. Materials of a server are
+/// limited during the run instead.
 std::optional<Refusal> Controller::check_damping(const Options& options) const
 {
     const bool is_served = options.transport == TransportKind::dds && !options.scene.empty();
@@ -453,7 +455,7 @@ std::optional<Refusal> Controller::simulate_device(const Options& options, std::
     return std::nullopt;
 }
 
-/// What stands between the tool's force and its device.
+/// Sets the force pipeline between the tool's force and its device.
 void Controller::limit_force(const Options& options, ToolSetup& tool) const
 {
     const DeviceInfo& info = tool.device->info();
@@ -467,8 +469,8 @@ void Controller::limit_force(const Options& options, ToolSetup& tool) const
     tool.clutch_button = options.clutch_button;
 }
 
-/// Where no model is named each touches another object, as far as there are some that are much
-/// larger than its tool.
+/// Object of a simulated operator. Without a name each operator gets another object, if enough
+/// objects are much larger than its tool.
 Result<std::size_t, Refusal> Controller::object_of_hand(const Options& options,
                                                         std::size_t tool) const
 {
@@ -518,8 +520,8 @@ double Controller::diagonal_of(std::size_t object) const noexcept
     return headers_[objects_[object].model.value].diagonal_m() * poses_[object].scale;
 }
 
-/// The base vertices of its model: original vertices, so they lie on its surface. None where the
-/// base mesh is damaged.
+/// Base vertices of the object's model in the world. They are original vertices, so they lie on its
+/// surface. Empty if the base mesh is damaged.
 std::vector<Vec3> Controller::anchors_world_m(std::size_t object) const
 {
     std::vector<Vec3> anchors;

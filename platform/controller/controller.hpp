@@ -25,17 +25,17 @@
 namespace tactus::hrtc
 {
 
-/// Everything between the transport and the devices: the pools, the frame in them, the chunk
-/// loader, the objects' poses and the devices. Assembled before any thread starts.
+/// All parts between the transport and the devices: pools, frame, chunk loader, object poses and
+/// devices. Assembled before any thread starts.
 class Controller
 {
 public:
-    /// Opens the devices, waiting for those that have to come as long as `goes_on`, lays out all
-    /// pools inside options.pool_mib, brings the base meshes that aren't here, makes the frame, and
-    /// a simulated device for each tool without another. Of streamed models it brings the base
-    /// meshes that simulated operators need alone. Refused when a device isn't there or doesn't run
-    /// at that rate, when a base mesh doesn't come in options.wait_s, or when the pools are too
-    /// small, with the size that would do for a start.
+    /// Opens the devices, and waits for missing ones while `goes_on` is true. Lays out all pools
+    /// inside options.pool_mib, fetches missing base meshes, and starts the frame. Creates a
+    /// simulated device for each tool without another one. For streamed models, only the base
+    /// meshes for simulated operators are fetched. Refused if a device is missing or can't run at
+    /// that rate, or if a base mesh takes longer than options.wait_s. Also refused if the pools are
+    /// too small; the refusal gives the size that suffices for a start.
     [[nodiscard]] static Result<std::unique_ptr<Controller>, Refusal>
     create(const Options& options, std::vector<ServedModel> models, const Log& log,
            const std::function<bool()>& goes_on);
@@ -46,21 +46,22 @@ public:
     [[nodiscard]] const ChunkLoader& chunk_loader() const noexcept { return *chunk_loader_; }
     [[nodiscard]] std::vector<ToolSetup>& tools() noexcept { return tools_; }
     [[nodiscard]] const std::vector<ToolSetup>& tools() const noexcept { return tools_; }
-    /// By their numbers, with where they stand at the start.
+    /// Objects by their numbers, with their places at the start.
     [[nodiscard]] const std::vector<ObjectSpec>& objects() const noexcept { return objects_; }
-    /// Of each model the number of the first object that shows it: the one that its host moves
-    /// where no scene is followed. That of no object where none shows it at the start.
+    /// Number of the first object that shows each model, by model. Without a followed scene, the
+    /// model's host moves that object. If no object shows a model at the start, its entry is
+    /// objects().size().
     [[nodiscard]] std::vector<std::uint32_t> first_objects() const;
-    /// Its views are into the controller.
+    /// Parts of the scene; the views in it point into the controller.
     [[nodiscard]] SceneParts scene_parts() const;
     [[nodiscard]] const std::vector<ObjectPose>& poses() const noexcept { return poses_; }
     [[nodiscard]] const std::vector<ServedModel>& models() const noexcept { return models_; }
     [[nodiscard]] const Budgets& budgets() const noexcept { return budgets_; }
-    /// What the frame was made of.
+    /// Setup from which the frame was made.
     [[nodiscard]] const FrameSetup& setup() const noexcept { return setup_; }
-    /// The frame itself, its pools and tables, and the transport's side of them.
+    /// Bytes of the frame, its pools and tables, and the transport's side of them.
     [[nodiscard]] std::size_t pool_bytes() const noexcept { return arena_->used() + sizeof(Frame); }
-    /// Of the first model, placed: widths are reported in it.
+    /// Diagonal of the first object in the world, the unit of reported widths.
     [[nodiscard]] double diagonal_world_m() const noexcept;
 
 private:
@@ -84,7 +85,7 @@ private:
     [[nodiscard]] std::optional<Refusal> hang_load(const Options& options, std::size_t tool);
     [[nodiscard]] Result<std::size_t, Refusal> object_of_hand(const Options& options,
                                                               std::size_t tool) const;
-    /// Whether its host may move it.
+    /// True if the host may move the object.
     [[nodiscard]] bool is_followed(const Options& options, std::size_t object) const;
     [[nodiscard]] double diagonal_of(std::size_t object) const noexcept;
     [[nodiscard]] std::vector<Vec3> anchors_world_m(std::size_t object) const;
@@ -93,19 +94,19 @@ private:
     std::vector<ServedModel> models_;
     std::vector<ModelHeader> headers_; ///< Views into models_.
     std::vector<ObjectPose> poses_;
-    std::vector<ToolSpec> tool_specs_; ///< Those of tools_, in one piece for the frame.
+    std::vector<ToolSpec> tool_specs_; ///< Specs of tools_, contiguous for the frame.
     std::vector<ObjectSpec> objects_;
     std::vector<ModelSource> sources_; ///< Views into models_.
-    FrameSetup setup_;                 ///< Views into the above.
+    FrameSetup setup_;                 ///< Views into the members above.
     Budgets budgets_;
-    std::optional<PoolMemory> memory_; ///< As much as the plan needs.
+    std::optional<PoolMemory> memory_; ///< Memory of the size that the plan needs.
     std::optional<Arena> arena_;
     std::optional<Frame> frame_;
     std::optional<ChunkLoader> chunk_loader_;
     PosixClock clock_; ///< Clock of the devices that aren't simulated.
-    std::vector<std::unique_ptr<VirtualFixture>> fixtures_; ///< Fixtures, lent to the tools.
+    std::vector<std::unique_ptr<VirtualFixture>> fixtures_; ///< Fixtures, which the tools borrow.
     std::vector<ToolSetup> tools_;
-    std::vector<std::size_t> objects_of_hands_; ///< Of the simulated ones, so far.
+    std::vector<std::size_t> objects_of_hands_; ///< Objects of the simulated operators so far.
 };
 
 } // namespace tactus::hrtc

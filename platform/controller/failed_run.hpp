@@ -13,18 +13,18 @@
 namespace tactus::hrtc
 {
 
-/// What is left of a run that failed and was not recorded.
+/// Inputs kept of a run that failed and was not recorded.
 struct KeptInputs
 {
     std::string path;
     std::uint64_t frames{0};
 };
 
-/// Writes what the last frames were given, the one that failed at the end, as a recording that
-/// moves the hand again: hrtc-failed-PID.rec in the working directory or, where that can't be
-/// written, in the one for temporary files. A frame's state rests on all frames before it, so only
-/// a recording of the whole run replays it. Once no frame runs any more; not the haptic thread.
-/// `failed`: none where it failed between frames.
+/// Writes the inputs of the last frames, with the failed one at the end, as a recording that
+/// repeats the device motion. The file is hrtc-failed-PID.rec in the working directory, or in the
+/// folder for temporary files if that fails. A frame's state depends on all frames before, so only
+/// a recording of the whole run replays it. `failed` is none if the failure was between frames. Not
+/// the haptic thread; call it when no frame runs any more.
 [[nodiscard]] Result<KeptInputs, Refusal> write_last_inputs(const LastInputs& inputs,
                                                             const std::optional<GivenFrame>& failed,
                                                             const FrameSetup& setup);

@@ -25,32 +25,34 @@
 namespace tactus::hrtc
 {
 
-/// What is known of a run that has ended.
+/// Results of a run that has ended.
 struct FinishedRun
 {
     RunStatistics statistics;
     RtThreadReport thread{};
-    bool supervisor_fifo{false};         ///< The supervisor had SCHED_FIFO.
-    std::uint32_t supervisor_periods{0}; ///< Of silence, after which it brakes.
+    bool supervisor_fifo{false};         ///< True if the supervisor had SCHED_FIFO.
+    std::uint32_t supervisor_periods{0}; ///< Silent periods before the supervisor brakes.
     TimerCounts timer{};
     Duration period;
-    std::time_t started{0}; ///< Calendar time.
+    std::time_t started{0}; ///< Calendar time of the start.
     SafetyRecord safety;
-    bool host_was_lost{false}; ///< Some model's host went away during the run.
-    /// One a tool: the object inside which it began, by its model's name; empty: none.
+    bool host_was_lost{false}; ///< True if a model's host was lost during the run.
+    /// Model name of the object inside which each tool began; empty: none.
     std::vector<std::string> begins_inside{};
-    bool has_other_device{false};     ///< It ended: another one came in a tool's device's place.
-    std::vector<PoseUse> pose_uses{}; ///< One an object; none from files.
-    std::vector<dds::PoseCounts> pose_counts{};    ///< One a model; none with --ignore-poses.
-    SceneNewsCounts scene_news{};                  ///< Of a host's scene.
-    std::vector<dds::PeerRefusals> refused{};      ///< Of others on the domain.
-    std::vector<dds::ServerEvent> server_events{}; ///< None from files.
+    bool has_other_device{false};     ///< True if the run ended because another device took the
+                                      ///< place of a tool's device.
+    std::vector<PoseUse> pose_uses{}; ///< Use of poses, one entry an object; none without DDS.
+    std::vector<dds::PoseCounts> pose_counts{};    ///< Counts of poses, one entry a model; none if
+                                                   ///< poses aren't followed.
+    SceneNewsCounts scene_news{};                  ///< Counts of the news of a host's scene.
+    std::vector<dds::PeerRefusals> refused{};      ///< Refused messages of other participants.
+    std::vector<dds::ServerEvent> server_events{}; ///< Events of the servers; none from files.
     std::uint64_t telemetry_sent{0};
     std::uint64_t states_sent{0};
     std::optional<RecordingResult> recording{};
-    std::optional<std::string> recording_error{}; ///< Why a wanted recording is not there.
+    std::optional<std::string> recording_error{}; ///< Reason why a requested recording is missing.
     std::optional<TraceResult> trace{};
-    std::optional<std::string> trace_error{}; ///< Likewise.
+    std::optional<std::string> trace_error{}; ///< Reason why a requested trace is missing.
 };
 
 } // namespace tactus::hrtc

@@ -42,7 +42,7 @@ void FollowingOperator::look() noexcept
     way_.rotation = object.pose.rotation * start_.rotation.transpose();
     way_.translation_m =
         object.pose.translation_m - way_.scale * (way_.rotation * start_.translation_m);
-    // What lies round the object's place goes with it, but for what is too much for one step.
+    // The surroundings move with the object, unless the step is too large.
     const Vec3 here_m = start_.translation_m;
     const Vec3 step_m = way_.local_to_world(here_m) - before.local_to_world(here_m);
     late_m_ -= step_m.norm() > step_max_m_ ? step_m : Vec3(Vec3::Zero());

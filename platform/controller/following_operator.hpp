@@ -12,14 +12,15 @@
 namespace tactus::hrtc
 {
 
-/// A hand that goes where an object goes: another hand's motion round the object as it stood at the
-/// start, taken to where it is now. While the object stays, that motion bit for bit; after a jump
-/// the hand comes after at `speed_max_m_per_s`. Haptic thread, between frames; allocates nothing.
+/// Simulated operator that follows an object. It transforms the motion of another operator from the
+/// object's pose at the start to its present pose. While the object rests, the motion is the same
+/// bit for bit. After a jump the operator catches up by at most `step_max_m` a frame. Haptic
+/// thread, between frames; allocates nothing.
 class FollowingOperator final : public OperatorMotion
 {
 public:
-    /// `objects` are the frame's, and outlive the hand; `start` is where the object's model stood
-    /// when `hand` was made.
+    /// `objects` belong to the frame and must outlive the operator. `start` is the pose of the
+    /// object's model when `hand` was made.
     FollowingOperator(std::unique_ptr<OperatorMotion> hand, const ObjectTable& objects,
                       std::uint32_t object, const Similarity& start, double step_max_m);
 
@@ -28,7 +29,7 @@ public:
     [[nodiscard]] OperatorGrip grip() const noexcept override;
 
 private:
-    /// How far the object has gone since the start; as before where it isn't there.
+    /// Updates the object's displacement since the start. If the object isn't resident, it stays.
     void look() noexcept;
 
     std::unique_ptr<OperatorMotion> hand_;
@@ -36,9 +37,9 @@ private:
     std::uint32_t object_;
     Similarity start_;
     double step_max_m_;
-    Similarity way_; ///< From what stood round the object at the start to the same round it now.
+    Similarity way_; ///< Transform from the object's surroundings at the start to those now.
     bool has_moved_{false};
-    Vec3 late_m_{Vec3::Zero()}; ///< By which the hand is behind.
+    Vec3 late_m_{Vec3::Zero()}; ///< Distance by which the operator lags.
 };
 
 } // namespace tactus::hrtc

@@ -27,12 +27,13 @@ namespace tactus::hrtc
 namespace
 {
 
-constexpr char kEnds = 'e';    ///< The devices are closed: nothing is to be braked.
-constexpr char kCrashes = 'c'; ///< The process is about to die.
-constexpr char kReady = 'r';   ///< The guardian's first word; any other begins a refusal.
+constexpr char kEnds = 'e';    ///< Message that the devices are closed and need no brake.
+constexpr char kCrashes = 'c'; ///< Message that the process is about to die.
+constexpr char kReady = 'r';   ///< Answer that the guardian is ready. Others are kNoGuards or a
+                               ///< refusal.
 constexpr char kNoGuards = 'n';
 
-/// Where a crash is told; -1: nowhere. A signal handler reads it.
+/// Pipe for the report of a crash; -1: none. A signal handler reads it.
 std::atomic<int> crash_pipe{-1};
 static_assert(std::atomic<int>::is_always_lock_free);
 
@@ -90,7 +91,7 @@ void write_all(int descriptor, std::string_view text) noexcept
     }
 }
 
-/// None at the end.
+/// Reads one byte; none at the end or after an error.
 std::optional<char> read_one(int descriptor) noexcept
 {
     char byte = 0;
@@ -104,7 +105,7 @@ std::optional<char> read_one(int descriptor) noexcept
 
 constexpr std::array kCrashSignals{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 
-/// What the signals did before.
+/// Actions of the signals before watch_for_crashes().
 std::array<struct sigaction, kCrashSignals.size()>& former_actions()
 {
     static std::array<struct sigaction, kCrashSignals.size()> actions{};
@@ -119,7 +120,7 @@ void restore_crash_signals() noexcept
     }
 }
 
-/// The signal comes again when this returns, and does then what it did before.
+/// Signal handler. The signal is raised again when it returns, and takes its former action then.
 void tell_of_crash(int signal)
 {
     const int error = errno;
@@ -140,10 +141,10 @@ void watch_for_crashes(int pipe) noexcept
     }
 }
 
-// --- In the guardian's process.
+// --- The guardian's process.
 
-/// A terminal's signals, those of a service manager that ends all of a service, and those for all
-/// processes of hrtc's name are for the other one.
+/// Detaches the guardian from the terminal and ignores its signals. Signals to all processes of a
+/// service or of hrtc's name are ignored as well; they are meant for the other process.
 void leave_company()
 {
     ::setsid();
@@ -164,7 +165,7 @@ void leave_company()
     }
 }
 
-/// Empty, or why not.
+/// Locks the memory and sets SCHED_FIFO. Returns the reason if that fails, else an empty text.
 std::string become_realtime(int priority)
 {
     if (auto refused = posix::lock_all_memory())
@@ -204,7 +205,8 @@ void watch_over(const Guardian::Guards& guards, int life)
     }
 }
 
-/// Nothing may leave it: it stands on the other process's stack.
+/// Body of the guardian. No exception may leave it, because its stack is a copy of the other
+/// process's.
 void guard(const Guardian::MakeGuards& make, int priority, bool allow_no_rt, int life,
            int answer) noexcept
 {

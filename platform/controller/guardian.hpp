@@ -14,37 +14,38 @@
 namespace tactus::hrtc
 {
 
-/// A process of its own that brakes devices when this one dies, by SIGKILL for instance: then
-/// nothing here can. It holds the devices' guards and nothing else, its memory is locked, and it
-/// runs with SCHED_FIFO where that is granted. It sleeps on a pipe whose other end is this process
-/// alone: the end of the process closes it, at once and without a word. A crash writes to it
-/// before the system writes a core, which takes its time while the motors hold the last force.
+/// Process that brakes devices when this one dies, for instance by SIGKILL, when no code here can
+/// run. It holds only the devices' guards, in locked memory, and runs with SCHED_FIFO where that is
+/// granted. It sleeps on a pipe whose other end belongs to this process alone. The end of this
+/// process closes the pipe without a message. A crash is reported through the pipe before the
+/// system writes a core file. Meanwhile the motors would hold the last force.
 class Guardian
 {
 public:
     using Guards = std::vector<std::unique_ptr<DeviceGuard>>;
     using MakeGuards = std::function<Result<Guards, Refusal>()>;
 
-    /// Forks, so there is no other thread yet. `make` runs in the new process; waits until it has
-    /// its guards. Refused, in one line, when it can't be had or when `make` refuses; without
-    /// memory or priority only where `allow_no_rt`. None, and no process, when no guard was made.
+    /// Forks, so no other thread may run yet. `make` runs in the new process, and start() waits
+    /// until it has its guards. Refused, in one line, if the process can't start or `make` refuses.
+    /// Without locked memory or priority it starts only if `allow_no_rt` is set. Null, without a
+    /// process, if no guard was made.
     [[nodiscard]] static Result<std::unique_ptr<Guardian>, Refusal>
     start(const MakeGuards& make, int priority, bool allow_no_rt);
 
     Guardian(const Guardian&) = delete;
     Guardian& operator=(const Guardian&) = delete;
-    /// The devices are closed: it ends, and brakes nothing.
+    /// Ends the guardian without a brake, as the devices are closed.
     ~Guardian();
 
     [[nodiscard]] pid_t process() const noexcept { return process_; }
-    /// Whether it has ended by itself, or was killed.
+    /// True if the guardian has ended by itself or was killed.
     [[nodiscard]] bool has_died() noexcept;
 
 private:
     Guardian(pid_t process, int life) : process_(process), life_(life) {}
 
     pid_t process_;
-    int life_; ///< This end of the pipe.
+    int life_; ///< Writing end of the pipe.
     bool has_died_{false};
 };
 

@@ -10,10 +10,11 @@
 namespace tactus::hrtc
 {
 
-/// The file of one of a run's times in its folder of histograms.
+/// Path of the file for the times `name` of a run in its folder of histograms.
 [[nodiscard]] std::string histogram_path(const std::string& folder, const char* name);
 
-/// Why the folder can't take the files; before a long run. Leaves nothing behind.
+/// Reason why the folder can't take the files, for a check before a long run. Leaves no file
+/// behind.
 [[nodiscard]] std::optional<Refusal> probe_histograms(const std::string& folder);
 
 } // namespace tactus::hrtc

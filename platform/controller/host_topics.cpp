@@ -128,7 +128,7 @@ void HostTopics::send_telemetry(MonotonicTime now)
     Telemetry telemetry;
     if (!tap_->try_read(telemetry))
     {
-        return; // No frame yet.
+        return; // No frame has run yet.
     }
     for (std::size_t i = 0; i < telemetry.model_count; ++i)
     {
@@ -160,7 +160,7 @@ void HostTopics::add_transport_side(std::size_t model, ModelTelemetry& telemetry
     }
 }
 
-/// By its host and its number there, where a host shows it.
+/// Sets the host's epoch and number of the object, if a host shows it.
 void HostTopics::name_object(PairTelemetry& pair) const
 {
     const auto shown = keeper_ != nullptr ? keeper_->shown_as(pair.object) : std::nullopt;

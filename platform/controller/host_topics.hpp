@@ -21,44 +21,45 @@
 namespace tactus::hrtc
 {
 
-/// What a controller and its hosts tell each other besides the models: the hosts move objects, the
-/// controller shows what it does. Runs on the transport thread; nothing of it can hold up the loop.
+/// Topics between a controller and its hosts and viewers, except for the models. Hosts move
+/// objects; the controller publishes its state. Runs on the transport thread and can't delay the
+/// loop.
 class HostTopics
 {
 public:
-    /// How often the controller's state is sent.
+    /// Period in which the controller's state is sent.
     static constexpr Duration kTelemetryPeriod = milliseconds(10);
 
-    /// `client`, `controller` and `authorities`, those of the keeper, must outlive it. What hosts
-    /// show is passed over without `keeper`, what is refined is told unless
-    /// `shows_refinement_state` is false.
+    /// `client`, `controller` and `authorities`, which the keeper uses too, must outlive the
+    /// topics. Without `keeper`, the poses and scenes of hosts are ignored. The refinement state is
+    /// sent if `shows_refinement_state` is set.
     [[nodiscard]] static Result<std::unique_ptr<HostTopics>, Refusal>
     create(dds::DdsClient& client, const Controller& controller,
            std::span<dds::Authority> authorities, std::unique_ptr<SceneKeeper> keeper,
            bool shows_refinement_state);
 
-    /// Between these and the haptic thread; all live as long as the run. `front` may be null where
-    /// shows_refinement_state() is false; `names` is the keeper's.
+    /// Connects the topics to the mailbox and taps of the haptic thread, which live as long as the
+    /// run. `front` may be null if shows_refinement_state() is false. The keeper takes `names`.
     void connect(SceneMailbox& queues, const TelemetryTap& tap, RefinementStateTap* front,
                  MonotonicTime now, SceneKeeper::NameSink names = {});
-    /// Any thread: viewers are told that the tool began inside a closed object.
+    /// Reports to viewers that the tool began inside a closed object. Any thread.
     void tell_begins_inside(std::size_t tool) noexcept;
     [[nodiscard]] bool shows_refinement_state() const noexcept { return front_ != nullptr; }
 
-    /// The transport thread, after the chunk loaders' round: poses to the mailbox, telemetry
-    /// and refinement state when they are due.
+    /// Sends poses to the mailbox, and publishes telemetry and refinement state when they are due.
+    /// Transport thread, after the chunk loader's round.
     void step(MonotonicTime now);
 
-    /// One a model; none when what hosts show is passed over. While no step is under way.
+    /// Counts of poses by model; empty if poses aren't followed. Not during a step.
     [[nodiscard]] std::vector<dds::PoseCounts> pose_counts() const;
-    /// Of a scene that is followed.
+    /// Counts of the news of a followed scene.
     [[nodiscard]] SceneNewsCounts scene_news() const;
-    /// What others on the domain said in vain.
+    /// Refused messages of other participants of the domain.
     [[nodiscard]] std::vector<dds::PeerRefusals> refused() const
     {
         return client_.domain().participants().refusals().list();
     }
-    /// What became of the servers whose word counts, in order.
+    /// Events of the servers with authority, in order of time.
     [[nodiscard]] std::vector<dds::ServerEvent> server_events() const;
     [[nodiscard]] std::uint64_t telemetry_sent() const noexcept { return telemetry_->sent(); }
     [[nodiscard]] std::uint64_t states_sent() const noexcept
@@ -67,7 +68,7 @@ public:
     }
 
 private:
-    /// What of one model's pieces was known when telemetry was last sent.
+    /// Pieces of one model and their waiting time when telemetry was last sent.
     struct Seen
     {
         std::uint64_t pieces{0};
@@ -84,9 +85,9 @@ private:
     const dds::DdsClient& client_;
     const Controller& controller_;
     std::span<dds::Authority> authorities_;
-    std::unique_ptr<SceneKeeper> keeper_; ///< May be none.
+    std::unique_ptr<SceneKeeper> keeper_; ///< May be null.
     std::unique_ptr<dds::TelemetryWriter> telemetry_;
-    std::unique_ptr<RefinementStateSender> front_; ///< Likewise.
+    std::unique_ptr<RefinementStateSender> front_; ///< May be null.
     const TelemetryTap* tap_{nullptr};
     MonotonicTime last_sent_{};
     std::vector<Seen> seen_;

@@ -72,7 +72,7 @@ void Recorder::step()
     store();
 }
 
-/// A piece is copied before it goes through the queues, so those of a frame that has run are here.
+/// A piece is copied before it enters the queues, so the pieces of a finished frame are available.
 void Recorder::take_frames()
 {
     std::vector<std::byte> coded;
@@ -102,7 +102,7 @@ void Recorder::take_pieces()
     }
 }
 
-/// After an error the rest is dropped, so that it needs no memory.
+/// After an error the remaining bytes are dropped, so they take no memory.
 void Recorder::store()
 {
     const std::vector<std::byte> bytes = writer_.take_bytes();

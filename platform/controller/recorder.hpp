@@ -20,46 +20,47 @@
 namespace tactus::hrtc
 {
 
-/// What became of a recording, for the report.
+/// Result of a recording, for the report.
 struct RecordingResult
 {
     std::uint64_t frames{0};
     std::uint64_t bytes{0};
-    std::uint64_t lost_from{kNoFrame}; ///< First frame that is missing; kNoFrame: none is.
+    std::uint64_t lost_from{kNoFrame}; ///< First missing frame; kNoFrame: none.
 };
 
-/// Writes a run's recording, on a thread of its own, of ordinary priority, or where somebody calls
-/// step(). Frames come from the haptic thread through a FrameTap, which never waits; pieces from
+/// Writes a run's recording, on its own thread of ordinary priority or in the caller's step().
+/// Frames arrive from the haptic thread through a FrameTap, which never waits. Pieces arrive from
 /// the transport thread.
 class Recorder
 {
 public:
     enum class Worker : std::uint8_t
     {
-        own_thread, ///< Starts here, so before the haptic thread: it inherits policy and processor.
-        caller,     ///< Of step(), at least twice in the time that the tap holds.
+        own_thread, ///< Own thread. Start it before the haptic thread, whose policy and processor
+                    ///< it would inherit.
+        caller,     ///< Caller of step(), at least twice in the time that the tap can hold.
     };
-    /// The chunk loader must outlive the recorder, and nobody may run it while this is made or
+    /// The chunk loader must outlive the recorder. It must not run while the recorder is made or
     /// destroyed.
     Recorder(AtomicFile file, const RecordedSetup& setup, ChunkLoader& chunk_loader, Worker worker);
     Recorder(const Recorder&) = delete;
     Recorder& operator=(const Recorder&) = delete;
     ~Recorder();
 
-    /// What the haptic thread records through.
+    /// Tap for the haptic thread.
     [[nodiscard]] FrameTap& tap() noexcept { return tap_; }
 
-    /// Keeps the name of an object that comes, for the file. Transport thread.
+    /// Keeps the name of an added object for the file. Transport thread.
     void name_object(std::uint32_t number, std::uint32_t generation, const std::string& name);
 
-    /// Writes what waits. The caller's thread, if that is the worker.
+    /// Writes the waiting frames and pieces. The caller's thread, if that is the worker.
     void step();
 
-    /// Adds the frame that failed; no frame runs any more.
+    /// Adds the failed frame. Call it when no frame runs any more.
     void add_failed(const GivenFrame& frame);
 
-    /// Writes what waits, ends the recording and gives the file its name. Once, when no frame runs
-    /// any more.
+    /// Writes the remaining frames, ends the recording and commits the file. Once, when no frame
+    /// runs any more.
     [[nodiscard]] Result<RecordingResult, Refusal> finish();
 
 private:
@@ -69,7 +70,7 @@ private:
         ContentKey key;
         std::vector<std::byte> bytes;
     };
-    /// One model's pieces, on the transport thread.
+    /// Sink for the pieces of one model, on the transport thread.
     class Sink final : public PieceSink
     {
     public:
@@ -92,10 +93,11 @@ private:
     FrameTap tap_;
     RecordingWriter writer_;
     std::mutex mutex_;
-    std::vector<Piece> pieces_; ///< Not yet in the writer; under the mutex, as the names are.
+    std::vector<Piece> pieces_; ///< Pieces that the writer hasn't got yet. The mutex guards them
+                                ///< and the names.
     std::map<RecordedName, std::string> names_;
     Result<Done, Refusal> stored_{Done{}};
-    std::optional<WriterThread> thread_; ///< Last: it uses the others.
+    std::optional<WriterThread> thread_; ///< Last member, because it uses the others.
 };
 
 } // namespace tactus::hrtc

@@ -16,7 +16,7 @@ namespace tactus::hrtc
 namespace
 {
 
-/// Of the frames that were not in the copy before.
+/// Mean and maximum of the frames since the copy before.
 FrontTimes times_since(const RefinementStateCopy::Times& now,
                        const RefinementStateCopy::Times& before)
 {
@@ -29,7 +29,7 @@ FrontTimes times_since(const RefinementStateCopy::Times& now,
 
 static_assert(SlotQueues::kOpenRequests <= kMaxStateRequests);
 
-/// What is asked for and not here yet, by model.
+/// Requested chunks that are still missing, by model.
 std::vector<std::vector<ChunkId>> requested_of(const Controller& controller)
 {
     std::vector<std::vector<ChunkId>> requested(controller.models().size());
@@ -41,7 +41,8 @@ std::vector<std::vector<ChunkId>> requested_of(const Controller& controller)
     return requested;
 }
 
-/// Places among RefinementState::models by model, for those of which the state tells something.
+/// Adds the models on which the state has data. Returns their indices in RefinementState::models,
+/// by model.
 std::vector<std::uint32_t> add_models(const RefinementStateCopy& copy, const Controller& controller,
                                       RefinementState& front)
 {

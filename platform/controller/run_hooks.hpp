@@ -9,15 +9,14 @@
 namespace tactus::hrtc
 {
 
-/// Gets how many of how many frames are done.
+/// Receives the number of finished frames and the number of all frames.
 using FramesDone = std::function<void(std::uint64_t done, std::uint64_t all)>;
 
-/// What a session asks of its program and tells it, on the thread that calls the session. Each may
-/// be empty.
+/// Callbacks of the program, called on the thread that calls the session. Each may be empty.
 struct RunHooks
 {
-    std::function<bool()> is_stopped; ///< Asked for an end.
-    /// What gets the progress of a run of this name; it is gone when the loop has ended.
+    std::function<bool()> is_stopped; ///< Returns true if the run should end.
+    /// Begins the progress display of the run `what`. The result is destroyed after the loop's end.
     std::function<FramesDone(const std::string& what)> begin_progress;
 
     [[nodiscard]] bool goes_on() const { return !is_stopped || !is_stopped(); }

@@ -48,8 +48,8 @@ Result<std::vector<ServedModel>, Refusal> find_in_files(const Options& options)
     return models;
 }
 
-/// The client must live as long as the models' links. Their base meshes are the controller's to
-/// bring, which knows whether it needs them all.
+/// Finds the models of hosts. The client must live as long as the models' links. The controller
+/// fetches the base meshes, because it knows which ones it needs.
 Result<std::vector<ServedModel>, Refusal>
 find_published(const Options& options, dds::DdsClient& client, const std::function<bool()>& goes_on)
 {
@@ -67,7 +67,7 @@ find_published(const Options& options, dds::DdsClient& client, const std::functi
     return models;
 }
 
-/// With the names of what is there at the start.
+/// Setup of the recording, with the names of models and objects at the start.
 RecordedSetup recorded_setup(const Options& options, const Controller& controller)
 {
     RecordedSetup setup = to_recorded(controller.setup());
@@ -85,7 +85,7 @@ RecordedSetup recorded_setup(const Options& options, const Controller& controlle
     return setup;
 }
 
-/// No recorder when none is wanted; returns why it can't be had.
+/// Starts the recorder if one is requested. Returns the reason if that fails.
 std::optional<std::string> start_recorder(const Options& options, Controller& controller,
                                           std::optional<Recorder>& recorder)
 {
@@ -104,7 +104,7 @@ std::optional<std::string> start_recorder(const Options& options, Controller& co
     return std::nullopt;
 }
 
-/// Likewise.
+/// Starts the trace if one is requested. Returns the reason if that fails.
 std::optional<std::string> start_trace(const Options& options, std::optional<TraceFile>& trace)
 {
     if (options.trace_path.empty())
@@ -120,13 +120,13 @@ std::optional<std::string> start_trace(const Options& options, std::optional<Tra
     return std::nullopt;
 }
 
-/// None when all that the options ask of the machine can be had or done without.
+/// Refusal if the machine lacks a required property; none if all required ones are available.
 std::optional<Refusal> check_machine(const Options& options)
 {
     const auto refused = probe_realtime(options.thread);
     if (!refused)
     {
-        // The processor is the one option that only the system can judge.
+        // Only the system can judge the option --cpu.
         const bool is_usage = refused.error().is_usage;
         return Refusal{(is_usage ? "--cpu: " : "") + refused.error().text, is_usage};
     }
@@ -141,7 +141,7 @@ std::optional<Refusal> check_machine(const Options& options)
     return std::nullopt;
 }
 
-/// None when the files that the options name can be written.
+/// Refusal of the first output that can't be written; none if all can.
 std::optional<Refusal> check_outputs(const Options& options)
 {
     for (const std::string& path : options.report_paths)
@@ -168,7 +168,7 @@ std::optional<Refusal> check_outputs(const Options& options)
     return std::nullopt;
 }
 
-/// What brakes each device that would hold its force.
+/// Guards of the devices that would hold their force.
 Result<Guardian::Guards, Refusal> make_guards(const Options& options)
 {
     Guardian::Guards guards;
@@ -205,7 +205,7 @@ void tell_of_unguarded(const Options& options)
     }
 }
 
-/// None where no device needs one.
+/// Guardian; null if no device needs one.
 Result<std::unique_ptr<Guardian>, Refusal> start_guardian(const Options& options)
 {
     if (std::ranges::none_of(options.tools, wants_guard, &ToolOptions::device))
@@ -233,7 +233,7 @@ Result<std::unique_ptr<Session>, Refusal> Session::open(const Options& options, 
     {
         return *error;
     }
-    if (options.thread.cpu) // All other threads, those of DDS too, are started from this one.
+    if (options.thread.cpu) // This thread starts all others, including those of DDS.
     {
         linux_extras::keep_calling_thread_off(*options.thread.cpu);
     }
@@ -264,7 +264,7 @@ Result<std::unique_ptr<Session>, Refusal> Session::open(const Options& options, 
     return session;
 }
 
-/// To the hosts and viewers; nothing to do for files that no viewer is to see.
+/// Connects to hosts and viewers. Does nothing for files without viewers.
 std::optional<Refusal> Session::connect()
 {
     if (options_.is_watched)
@@ -286,7 +286,7 @@ std::optional<Refusal> Session::connect()
     return std::nullopt;
 }
 
-/// Of a file or of a host; nothing to do without --scene.
+/// Loads the scene of a file or a host. Does nothing without --scene.
 std::optional<Refusal> Session::take_scene()
 {
     const bool has_hosts = options_.transport == TransportKind::dds;
@@ -313,14 +313,14 @@ std::optional<Refusal> Session::take_scene()
     return std::nullopt;
 }
 
-/// From now on this host's word counts for the name.
+/// Gives this host the authority for the name.
 void Session::pin(const ModelSelector& name, bool is_scene, std::uint64_t host_epoch)
 {
     authorities_.emplace_back(client_->catalogue(), name, is_scene, options_.failover, log_line)
         .pin(host_epoch);
 }
 
-/// The controller from the models, and the topics beside it.
+/// Makes the controller from the models, and the topics.
 std::optional<Refusal> Session::assemble()
 {
     const bool has_hosts = options_.transport == TransportKind::dds;

@@ -25,24 +25,24 @@
 namespace tactus::hrtc
 {
 
-/// The models that the options name and a controller that touches them, for one run.
+/// Session of one run: the models of the options, and a controller for them.
 class Session
 {
 public:
-    /// Tries what the options ask of the machine (probe_realtime()), finds the models, waiting for
-    /// those that nobody publishes yet, and assembles the controller.
+    /// Checks the machine (probe_realtime()), finds the models and assembles the controller. Waits
+    /// for models that aren't published yet.
     [[nodiscard]] static Result<std::unique_ptr<Session>, Refusal> open(const Options& options,
                                                                         RunHooks hooks = {});
 
-    /// With the objects and models of the scene, and their places.
+    /// Options, completed by the scene's objects, models and places.
     [[nodiscard]] const Options& options() const noexcept { return options_; }
     [[nodiscard]] Controller& controller() noexcept { return *controller_; }
     [[nodiscard]] const Controller& controller() const noexcept { return *controller_; }
 
-    /// Runs the loop on its real-time thread with the supervisor, the transport and the recorder
-    /// beside it, and waits for its end; the hooks may end it early, forces fading. Once.
-    /// `what` names it for them. When an assertion fails in the run, the devices are
-    /// braked and the process ends here with exit code 2 (assertion_brake.hpp).
+    /// Runs the loop on its real-time thread beside the supervisor, the transport and the recorder,
+    /// and waits for its end. The hooks may end it early; forces fade then. `what` is the run's
+    /// name for the hooks. If an assertion fails, the devices are braked and the process ends with
+    /// exit code 2 (assertion_brake.hpp). Once.
     [[nodiscard]] Result<FinishedRun, Refusal> run(const std::string& what);
 
 private:
@@ -55,15 +55,16 @@ private:
     void pin(const ModelSelector& name, bool is_scene, std::uint64_t host_epoch);
     [[nodiscard]] std::optional<Refusal> assemble();
 
-    std::unique_ptr<Guardian> guardian_; ///< Outlives the devices; none where none needs it.
+    std::unique_ptr<Guardian> guardian_; ///< Outlives the devices; null if none needs a guardian.
     Options options_;
     RunHooks hooks_;
     std::unique_ptr<dds::DdsClient> client_;   ///< Lives as long as the links of its models.
-    std::unique_ptr<dds::SceneReader> reader_; ///< Until the topics have it; none unless needed.
-    ShownScene scene_;                         ///< Of a host; empty otherwise.
-    std::vector<dds::Authority> authorities_;  ///< Of the scene, or one a model; none from files.
+    std::unique_ptr<dds::SceneReader> reader_; ///< Null unless needed; given to the scene keeper.
+    ShownScene scene_;                         ///< Scene of a host; empty otherwise.
+    std::vector<dds::Authority> authorities_;  ///< Authority of the scene, or one a model; none
+                                               ///< from files.
     std::unique_ptr<Controller> controller_;
-    std::unique_ptr<HostTopics> topics_; ///< None from files.
+    std::unique_ptr<HostTopics> topics_; ///< Null without a client.
 };
 
 } // namespace tactus::hrtc

@@ -31,13 +31,13 @@ namespace tactus::hrtc
 namespace
 {
 
-/// How long before the deadline the loop wakes to warm its caches.
+/// Longest time before the deadline at which the loop wakes to warm its caches.
 constexpr Duration kMarginMost = microseconds(100);
-/// Between two looks at the loop.
+/// Pause between two checks of the loop.
 constexpr std::chrono::milliseconds kLook{20};
-/// A device so many times its workspace's radius away from its middle is in another unit.
+/// Distance from the workspace's centre, in its radii, that suggests another unit of length.
 constexpr double kFarOutside = 5.0;
-/// Descriptions of another device in a row: half a second of a driver that waits.
+/// Most descriptions of another device in a row, half a second of a waiting driver.
 constexpr std::uint64_t kOthersMax = 5;
 
 FinishedRun empty_run(const Controller& controller, const Options& options)
@@ -53,7 +53,7 @@ FinishedRun empty_run(const Controller& controller, const Options& options)
             .safety = SafetyRecord(tools)};
 }
 
-/// No governor in virtual time, where work takes no time.
+/// Budget governor; none in virtual time, where work takes no time.
 std::optional<BudgetGovernor> make_governor(const Options& options)
 {
     if (options.virtual_time)
@@ -64,7 +64,7 @@ std::optional<BudgetGovernor> make_governor(const Options& options)
                           options.frame_work());
 }
 
-/// Whether a place in the model's frame is in the model's box.
+/// True if a point of the model's frame is in the model's box.
 bool is_in_box(const ModelHeader& header, const Vec3& place_m)
 {
     const auto& extent = header.fields().extent_quanta;
@@ -73,7 +73,7 @@ bool is_in_box(const ModelHeader& header, const Vec3& place_m)
     return place_m.minCoeff() >= 0.0 && (high_m - place_m).minCoeff() >= 0.0;
 }
 
-/// On the haptic thread; returns why the option can't be had.
+/// Sets the trap for system calls on the haptic thread. Returns the reason if that fails.
 std::optional<std::string> trap_calls(const Options& options)
 {
     if (!options.trap_system_calls)
@@ -118,7 +118,7 @@ SessionRun::SessionRun(const RunParts& parts)
     }
 }
 
-/// Of a run that was left before its end: the supervisor watches until the loop has ended.
+/// If the run was left early, the supervisor watches until the loop has ended.
 SessionRun::~SessionRun()
 {
     loop_.stop();
@@ -143,7 +143,7 @@ HostTopics* SessionRun::connected_topics()
     return parts_.topics;
 }
 
-/// Null where nobody is to see it.
+/// Tap of the refinement state; null if no viewer gets it.
 RefinementStateTap* SessionRun::make_front()
 {
     if (parts_.topics->shows_refinement_state())
@@ -210,7 +210,8 @@ std::optional<Refusal> SessionRun::start_supervisor()
     return std::nullopt;
 }
 
-/// In virtual time: what other threads do in a period, as often as they would, on the haptic one.
+/// Does one period's work of the other threads in virtual time, as often as they would. Haptic
+/// thread.
 void SessionRun::work_between_frames()
 {
     allocation_counter::mark_this_thread(false);
@@ -227,7 +228,7 @@ void SessionRun::work_between_frames()
     allocation_counter::mark_this_thread(true);
 }
 
-/// The haptic thread's body.
+/// Body of the haptic thread.
 void SessionRun::run_loop()
 {
     if (const auto error = trap_calls(parts_.options))
@@ -286,7 +287,7 @@ void SessionRun::watch(const std::string& what)
     manager.stopping();
 }
 
-/// What loop and supervisor have noted since the last time.
+/// Takes the new events of the loop and the supervisor.
 void SessionRun::take_events()
 {
     std::vector<SafetyEvent> events;
@@ -300,7 +301,7 @@ void SessionRun::take_events()
     tell_of_first_places();
 }
 
-/// A line for each tool that begins where it most likely shouldn't.
+/// Logs each tool whose first position is probably wrong.
 void SessionRun::tell_of_first_places()
 {
     const std::span<const Vec3> places_m = loop_.first_places_m();
@@ -324,7 +325,7 @@ void SessionRun::tell_of_first_places()
     tell_of_insides(places_m);
 }
 
-/// Of closed objects, where they stood at the start.
+/// Logs tools that begin inside closed objects, at the objects' first poses.
 void SessionRun::tell_of_insides(std::span<const Vec3> places_m)
 {
     const Controller& controller = parts_.controller;
@@ -357,7 +358,7 @@ void SessionRun::tell_of_insides(std::span<const Vec3> places_m)
     }
 }
 
-/// A line when a tool's device goes, and when it is back.
+/// Logs the loss and the return of a tool's device.
 void SessionRun::tell_of_device(const SafetyEvent& event)
 {
     const bool is_gone = has_cause(event.causes, ForceOff::disconnect);
@@ -374,7 +375,8 @@ void SessionRun::tell_of_device(const SafetyEvent& event)
                           : fmt::format("tool {}: its device, {}, is back", event.tool, name));
 }
 
-/// A line when the first datagram to a device's port was refused, at ten, at a hundred, and so on.
+/// Logs refused datagrams to a device's port at the first one, at ten, at a hundred, and so on.
+/// Ends the run if another device describes itself at the port.
 void SessionRun::tell_of_strangers()
 {
     for (std::size_t tool = 0; tool < strangers_.size(); ++tool)
@@ -411,7 +413,7 @@ void SessionRun::tell_of_strangers()
     }
 }
 
-/// A line when it is gone: the run goes on, and fades as long as this process lives.
+/// Logs the guardian's death. The run goes on; forces still fade while this process lives.
 void SessionRun::tell_of_guardian()
 {
     if (parts_.guardian != nullptr && parts_.guardian->has_died())
@@ -421,7 +423,7 @@ void SessionRun::tell_of_guardian()
     }
 }
 
-/// No effect when nothing has failed.
+/// Ends the process after a failure; else does nothing.
 void SessionRun::end_after_failure()
 {
     if (loop_.has_failed() || AssertionBrake::has_failed())
@@ -433,8 +435,8 @@ void SessionRun::end_after_failure()
     }
 }
 
-/// Of a recording all up to the frame that failed, and that one where it is the haptic thread's.
-/// Returns how it fails again; empty where frames have nothing to do with it.
+/// Keeps the recording up to the failed frame, or else the last inputs. The failed frame is added
+/// if the haptic thread failed. Returns advice on how to repeat the failure, which may be empty.
 std::string SessionRun::keep_failed_frame()
 {
     const bool is_frames = loop_.has_failed() && loop_.has_failed_itself();
@@ -493,7 +495,7 @@ FinishedRun SessionRun::finish()
     return std::move(done_);
 }
 
-/// After a run that ended well or not; a refusal is logged.
+/// Finishes the recording after a complete or failed run. Logs a refusal.
 void SessionRun::finish_recording()
 {
     if (parts_.recorder == nullptr)
@@ -510,7 +512,7 @@ void SessionRun::finish_recording()
     done_.recording = recording.value();
 }
 
-/// Likewise.
+/// Finishes the trace after a complete or failed run. Logs a refusal.
 void SessionRun::finish_trace()
 {
     if (parts_.trace == nullptr)
@@ -527,7 +529,7 @@ void SessionRun::finish_trace()
     done_.trace = trace.value();
 }
 
-/// What hosts and controller told each other; the threads between which it went have ended.
+/// Copies the results of the topics, whose threads have ended.
 void SessionRun::note_topics()
 {
     if (parts_.topics != nullptr)

@@ -32,20 +32,20 @@
 namespace tactus::hrtc
 {
 
-/// What one run works with. All of it outlives the run.
+/// Parts of one run. All of them outlive the run.
 struct RunParts
 {
     const Options& options;
     Controller& controller;
-    HostTopics* topics{nullptr}; ///< None from files.
-    Recorder* recorder{nullptr}; ///< None unless --record.
-    TraceFile* trace{nullptr};   ///< None unless --trace.
-    Guardian* guardian{nullptr}; ///< None unless a device needs one.
+    HostTopics* topics{nullptr}; ///< Null without DDS.
+    Recorder* recorder{nullptr}; ///< Null without --record.
+    TraceFile* trace{nullptr};   ///< Null without --trace.
+    Guardian* guardian{nullptr}; ///< Null if no device needs a guardian.
     RunHooks hooks{};
 };
 
-/// One run of the loop on its real-time thread, the supervisor and the transport beside it; in
-/// virtual time nobody has to be supervised, and the loop's thread does all of it in turn. The main
+/// One run of the loop on its real-time thread, with supervisor and transport on their own. In
+/// virtual time there is no supervision, and the loop's thread does all the work in turn. The main
 /// thread calls start(), wait() and finish() in this order, each once. The transport thread runs
 /// from construction on.
 class SessionRun
@@ -56,11 +56,12 @@ public:
     SessionRun& operator=(const SessionRun&) = delete;
     ~SessionRun();
 
-    /// Starts supervisor and loop. Returns why that was refused; nothing runs then.
+    /// Starts supervisor and loop. If that is refused, returns the reason, and the loop doesn't
+    /// run.
     [[nodiscard]] std::optional<Refusal> start();
 
-    /// Waits for the loop's end and tells how far it is; `what` names the run in these lines. When
-    /// the hooks say so the loop ends early. After a failed assertion this does not return.
+    /// Waits for the loop's end and reports its progress; `what` is the run's name there. The hooks
+    /// may end the loop early. After a failed assertion this does not return.
     void wait(const std::string& what);
 
     /// Ends all threads.
@@ -90,7 +91,7 @@ private:
     Duration period_;
     FinishedRun done_;
     LoopTime time_;
-    PosixPeriodicTimer alarm_; ///< The supervisor's.
+    PosixPeriodicTimer alarm_; ///< Timer of the supervisor.
     std::optional<BudgetGovernor> governor_;
     SceneMailbox queues_;
     TelemetryTap telemetry_;
@@ -99,8 +100,8 @@ private:
     TransportRounds transport_;
     std::optional<TransportThread> transport_thread_;
     HapticLoop loop_;
-    std::vector<bool> devices_gone_;       ///< One a tool, as was told.
-    std::vector<std::uint64_t> strangers_; ///< Likewise: datagrams refused at its device's port.
+    std::vector<bool> devices_gone_;       ///< Last logged state, one a tool.
+    std::vector<std::uint64_t> strangers_; ///< Refused datagrams at the last log line, one a tool.
     RateLimitedLog device_log_{log_line};
     Supervisor supervisor_;
     std::optional<AssertionBrake> brake_;

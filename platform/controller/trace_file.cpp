@@ -15,7 +15,7 @@ namespace tactus::hrtc
 namespace
 {
 
-/// The rows of the picture, in the order in which they are shown.
+/// Rows of the trace, in the order of display.
 enum Row : int
 {
     kLoop = 1,
@@ -23,7 +23,7 @@ enum Row : int
     kChunkLoader = 3,
 };
 
-/// In microseconds, which the format's times are in, to the nanosecond.
+/// Time in microseconds, the unit of the format, to the nanosecond.
 std::string microseconds_text(std::int64_t ns)
 {
     const std::int64_t amount = std::abs(ns);
@@ -102,7 +102,7 @@ void TraceFile::step()
     flush();
 }
 
-/// After an error the rest is dropped, so that it needs no memory.
+/// After an error the remaining text is dropped, so it takes no memory.
 void TraceFile::flush()
 {
     if (stored_)
@@ -112,7 +112,8 @@ void TraceFile::flush()
     text_.clear();
 }
 
-/// From the first thing that is told; what another thread began before has a negative one.
+/// Time since the first event that is written. Earlier starts on another thread have negative
+/// times.
 std::string TraceFile::time_text(MonotonicTime at)
 {
     origin_ = origin_.value_or(at);

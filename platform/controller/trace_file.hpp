@@ -15,30 +15,30 @@
 namespace tactus::hrtc
 {
 
-/// What became of a trace, for the report.
+/// Result of a trace, for the report.
 struct TraceResult
 {
     std::uint64_t frames{0};
-    std::uint64_t rounds{0}; ///< Rounds of the chunk loader that did something.
+    std::uint64_t rounds{0}; ///< Rounds of the chunk loader with requests or pieces.
     std::uint64_t bytes{0};
-    std::uint64_t lost{0}; ///< Frames and rounds that found no room.
+    std::uint64_t lost{0}; ///< Frames and rounds dropped for lack of room.
 };
 
-/// Writes when each frame, its stages, the queues and the chunk loader did what, in Chrome's trace
-/// format (docs/report.md), on a thread of its own, of ordinary priority.
+/// Writes the times of frames, stages, queues and chunk loader in Chrome's trace format
+/// (docs/report.md). Uses its own thread of ordinary priority.
 class TraceFile
 {
 public:
-    /// Starts the thread, so before the haptic one.
+    /// Starts the thread. Call it before the haptic thread starts.
     TraceFile(AtomicFile file, Duration period);
     TraceFile(const TraceFile&) = delete;
     TraceFile& operator=(const TraceFile&) = delete;
     ~TraceFile();
 
-    /// What the threads that work tell through.
+    /// Tap for the haptic and the transport thread.
     [[nodiscard]] TraceTap& tap() noexcept { return tap_; }
 
-    /// Writes what waits and gives the file its name. Once, when nobody tells any more.
+    /// Writes the waiting events and commits the file. Once, when no thread uses the tap any more.
     [[nodiscard]] Result<TraceResult, Refusal> finish();
 
 private:
@@ -54,11 +54,11 @@ private:
     AtomicFile file_;
     Duration period_;
     TraceTap tap_;
-    std::string text_;                    ///< Not yet in the file.
-    std::optional<MonotonicTime> origin_; ///< The file's zero.
+    std::string text_;                    ///< Text that is not in the file yet.
+    std::optional<MonotonicTime> origin_; ///< Zero of the file's times.
     TraceResult result_;
     Result<Done, Refusal> stored_{Done{}};
-    std::optional<WriterThread> thread_; ///< Last: it uses the others.
+    std::optional<WriterThread> thread_; ///< Last member, because it uses the others.
 };
 
 } // namespace tactus::hrtc

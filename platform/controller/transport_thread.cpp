@@ -62,7 +62,7 @@ TransportThread::TransportThread(TransportRounds& rounds)
 {
 }
 
-/// Waits for the present round to end.
+/// Waits for the end of the present round.
 TransportThread::~TransportThread()
 {
     stopped_.store(true);

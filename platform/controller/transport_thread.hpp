@@ -16,29 +16,29 @@
 namespace tactus::hrtc
 {
 
-/// What the transport does again and again: the chunk loader's round, a look at the hosts, and what
-/// the topics have to say. When a host goes away or comes back, the model's link says so; the loop
-/// goes on with what is resident.
+/// Repeated work of the transport: the chunk loader's round, a check of the hosts, and the topics'
+/// step. The model's link reports the loss and return of its host. The loop continues with the
+/// resident data.
 class TransportRounds
 {
 public:
-    /// Chunk loader and models outlive this; nobody else touches them or the models' links while
-    /// rounds are run. `topics` has its turn after each round of the chunk loader; `trace` takes
-    /// the times of those rounds of the chunk loader that do something. Either may be none.
+    /// Chunk loader and models must outlive the rounds. No other thread may touch them or the
+    /// models' links meanwhile. `topics` steps after each round of the chunk loader. `trace` takes
+    /// the times of the rounds with requests or pieces. Both may be null.
     TransportRounds(ChunkLoader& chunk_loader, const std::vector<ServedModel>& models,
                     HostTopics* topics, TraceTap* trace = nullptr) noexcept
         : chunk_loader_(chunk_loader), models_(models), topics_(topics), trace_(trace)
     {
     }
 
-    /// One thread at a time.
+    /// Runs one round. One thread at a time.
     void run(MonotonicTime now);
 
-    /// Any thread: whether some model's host went away since the start.
+    /// True if a model's host was lost since the start. Any thread.
     [[nodiscard]] bool host_was_lost() const noexcept { return host_was_lost_.load(); }
-    /// Models whose host is gone now.
+    /// Models whose host is lost at present.
     [[nodiscard]] const ModelMarks& hosts_gone() const noexcept { return hosts_gone_; }
-    /// Models of which something that is requested doesn't come (ChunkLoader::is_starved).
+    /// Models whose requested pieces are overdue (ChunkLoader::is_starved).
     [[nodiscard]] const ModelMarks& starved() const noexcept { return starved_; }
 
 private:
@@ -49,17 +49,17 @@ private:
     const std::vector<ServedModel>& models_;
     HostTopics* topics_;
     TraceTap* trace_;
-    TracedRound told_; ///< Sums since the start, as of the last round that was traced.
+    TracedRound told_; ///< Sums from the start to the last traced round.
     std::atomic<bool> host_was_lost_{false};
     ModelMarks hosts_gone_;
     ModelMarks starved_;
 };
 
-/// Pause between two rounds: a request waits this long at most before it leaves.
+/// Pause between two rounds, the longest delay of a request.
 inline constexpr Duration kRoundPause = microseconds(300);
 
 /// Runs rounds on one thread of ordinary priority, a few thousand a second. Start it before the
-/// haptic thread: threads inherit policy and processor.
+/// haptic thread, because threads inherit policy and processor.
 class TransportThread
 {
 public:

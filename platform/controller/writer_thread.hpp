@@ -11,22 +11,22 @@
 namespace tactus::hrtc
 {
 
-/// Writes what waits in a queue, again and again, on a thread of ordinary priority. Start it before
-/// the haptic thread: threads inherit policy and processor.
+/// Writes the contents of a queue periodically on a thread of ordinary priority. Start it before
+/// the haptic thread, because threads inherit policy and processor.
 class WriterThread
 {
 public:
-    /// Between two rounds; the queues hold some 300 ms at the highest rate.
+    /// Pause between two rounds. The queues hold about 300 ms at the highest rate.
     static constexpr std::chrono::milliseconds kPause{5};
 
-    /// `step` does a round; what it uses must outlive the thread.
+    /// `step` does a round. The objects that it uses must outlive the thread.
     explicit WriterThread(std::function<void()> step)
         : step_(std::move(step)), thread_([this] { run(); })
     {
     }
     WriterThread(const WriterThread&) = delete;
     WriterThread& operator=(const WriterThread&) = delete;
-    /// Waits for the present round to end.
+    /// Waits for the end of the present round.
     ~WriterThread()
     {
         stopped_.store(true);

@@ -19,7 +19,7 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-/// What is told of each phase.
+/// Quantity reported for each phase.
 struct Quantity
 {
     const char* key;
@@ -33,7 +33,7 @@ constexpr std::array kQuantities{
              &DeadlinePhase::response},
 };
 
-/// Pairs of an upper edge in us and a count; empty bins are left out.
+/// Pairs of an upper edge in us and a count; empty bins are omitted.
 Json bins_of(const LatencyHistogram& histogram)
 {
     const std::vector<double> edges = edges_us(50);
@@ -71,7 +71,7 @@ std::uint64_t cycles_of(const DeadlinePhase& phase)
     return phase.report["frames"].get<std::uint64_t>();
 }
 
-/// What a run's report says of its deadlines.
+/// Count in the deadline section of a run's report.
 std::uint64_t count_of(const DeadlinePhase& phase, const char* key)
 {
     return phase.report["deadline"][key].get<std::uint64_t>();
@@ -99,7 +99,7 @@ std::string table_of(std::span<const DeadlinePhase> phases)
     return text;
 }
 
-/// The same for a page.
+/// Table of the same figures for a page.
 plot::Table figures_of(std::span<const DeadlinePhase> phases)
 {
     plot::Table table{{{"", false},
@@ -140,7 +140,7 @@ std::string machine_line(const DeadlinePhase& phase)
         machine["processors"].get<unsigned>(), machine["date_utc"].get<std::string>());
 }
 
-/// As `cyclictest` prints a thread: priority, interval, cycles, latencies, all in us.
+/// Line in the form of `cyclictest`: priority, interval, cycles and latencies, times in us.
 std::string cyclictest_of(const DeadlinePhase& phase, const DeadlineSetting& setting)
 {
     return fmt::format("{:<12}P:{:2} I:{} C:{:7} Min:{:7.0f} Avg:{:5.0f} Max:{:8.0f}\n", phase.name,
@@ -169,7 +169,7 @@ std::string verdict_of(const SelfCheck& check, std::span<const DeadlinePhase> ph
                        counted(cycles, "cycle"));
 }
 
-/// '#' for each factor of 10^(1/5), at least one for any count.
+/// Bar with one '#' for each factor of 10^(1/5), at least one for any count.
 std::string bar_of(double count)
 {
     const auto length =

@@ -15,44 +15,44 @@
 namespace tactus::hrtc
 {
 
-/// One run of a deadline test, settled.
+/// Settled run of a deadline test.
 struct DeadlinePhase
 {
-    std::string name;               ///< "alone", "beside load".
-    std::vector<std::string> loads; ///< What ran beside it.
-    nlohmann::ordered_json report;  ///< make_report().
+    std::string name;               ///< Name: "alone" or "beside load".
+    std::vector<std::string> loads; ///< Names of the loads beside the run.
+    nlohmann::ordered_json report;  ///< Report of the run, from make_report().
     LatencyHistogram wake;
     LatencyHistogram cpu;
     LatencyHistogram response;
 };
 
-/// The SCHED_FIFO priority and the period that a test ran with.
+/// SCHED_FIFO priority and period of a test.
 struct DeadlineSetting
 {
     int priority{0};
     Duration period;
 };
 
-/// Keys of a run's report, those of the last phase, and besides: `load`, `histograms_us`,
-/// `self_check`, `passed`, and under `alone` the first phase's when there are two.
+/// Report of the last phase, with the keys of a run's report. Further keys are `load`,
+/// `histograms_us`, `self_check` and `passed`. If there are two phases, `alone` holds the first.
 [[nodiscard]] nlohmann::ordered_json make_deadline_report(const SelfCheck& check,
                                                           std::span<const DeadlinePhase> phases);
 
-/// A table for a person, and the verdict.
+/// Table and verdict for the terminal.
 [[nodiscard]] std::string make_deadline_summary(const SelfCheck& check,
                                                 std::span<const DeadlinePhase> phases,
                                                 const DeadlineSetting& setting);
 
-/// The histograms as text, all phases side by side.
+/// Histograms as text, all phases side by side.
 [[nodiscard]] std::string make_histogram_text(std::span<const DeadlinePhase> phases);
 
-/// Verdict, figures and the histograms as an HTML page.
+/// HTML page with verdict, figures and histograms.
 [[nodiscard]] std::string make_histogram_page(const SelfCheck& check,
                                               std::span<const DeadlinePhase> phases,
                                               const DeadlineSetting& setting,
                                               plot::ChartLibrary library);
 
-/// No overrun, and a self-check that saw all.
+/// True if no overrun occurred and the self-check passed.
 [[nodiscard]] bool is_passed(const SelfCheck& check, std::span<const DeadlinePhase> phases);
 
 } // namespace tactus::hrtc

@@ -38,7 +38,7 @@ namespace
 
 constexpr double kDuration_s = 60.0;
 
-/// A file for a run's recording, gone at the end.
+/// Path of a temporary recording, which the destructor removes.
 class TemporaryRecording
 {
 public:
@@ -62,7 +62,7 @@ private:
     std::string path_;
 };
 
-/// Repeats the frames that are under suspicion; returns why that can't be done.
+/// Repeats the suspected frames. Returns the reason if that isn't possible.
 std::optional<std::string> settle(FinishedRun& run, const std::string& recording_path)
 {
     DeadlineAccount& deadlines = run.statistics.deadlines;
@@ -85,7 +85,7 @@ std::optional<std::string> settle(FinishedRun& run, const std::string& recording
     return std::nullopt;
 }
 
-/// Runs beside the load, which is gone when this returns.
+/// Runs the session beside the load, which ends before the return.
 Result<FinishedRun, Refusal> run_beside(Session& session, const std::string& name,
                                         const std::vector<LoadKind>& loads)
 {
@@ -95,7 +95,7 @@ Result<FinishedRun, Refusal> run_beside(Session& session, const std::string& nam
         return failure("--load: " + load.error());
     }
     auto run = session.run(name);
-    if (is_stop_requested()) // The load may have ended by the same signal.
+    if (is_stop_requested()) // The same signal may have ended the load.
     {
         return interruption();
     }
@@ -144,7 +144,7 @@ Result<DeadlinePhase, Refusal> run_phase(Options options, const std::vector<Load
     return phase;
 }
 
-/// The JSON file, and beside it the same name with .txt and .html.
+/// Paths of the JSON file and of the .txt and .html files beside it.
 struct ReportFiles
 {
     std::string json;
@@ -175,7 +175,7 @@ std::optional<Refusal> write_files(const ReportFiles& files, const SelfCheck& ch
                       files.page);
 }
 
-/// Empty when all is well.
+/// Parses the names of --load. Returns the fault; empty if there is none.
 std::string check_load(const std::vector<std::string>& names, std::vector<LoadKind>& loads)
 {
     for (const std::string& name : names)
@@ -204,7 +204,7 @@ std::optional<Refusal> probe(const ReportFiles& files)
     return std::nullopt;
 }
 
-/// Empty when all is well.
+/// Fault of --report; empty if there is none.
 std::string check_report(const std::vector<std::string>& paths)
 {
     if (paths.size() > 1)

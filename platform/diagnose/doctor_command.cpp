@@ -24,7 +24,7 @@ namespace tactus::hrtc
 namespace
 {
 
-/// Why the loop could not be pinned there, as hrtc itself would say; empty when it could.
+/// Reason why the loop can't be pinned to a processor, in the words of hrtc; empty if it can.
 std::string why_not_on(int cpu)
 {
     RtThreadOptions options;

@@ -5,9 +5,9 @@
 namespace tactus::hrtc
 {
 
-/// `hrtc doctor [--cpu N] [--domain N] [--json]`, argv[0] being "doctor": says what of this machine
-/// is in the loop's way and how to mend it. Returns the exit code: 1 when something critical is
-/// missing.
+/// Runs `hrtc doctor [--cpu N] [--domain N] [--json]`; argv[0] is "doctor". Reports properties of
+/// this machine that disturb the loop, with their remedies. Returns the exit code: 1 if a finding
+/// is critical.
 [[nodiscard]] int run_doctor(int argc, char** argv);
 
 } // namespace tactus::hrtc

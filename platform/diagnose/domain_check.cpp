@@ -32,7 +32,7 @@ doctor::Finding not_joined(const Refusal& refusal)
             {}};
 }
 
-/// A long list is cut.
+/// Joins the names with commas, and shortens a long list.
 std::string joined_names(const std::set<std::string>& names)
 {
     std::string text;
@@ -57,7 +57,7 @@ doctor::Finding check_domain(std::uint32_t domain, std::chrono::milliseconds wai
     {
         return not_joined(joined.error());
     }
-    std::string refused; // The last of what the catalogue had to say.
+    std::string refused; // Last message of the catalogue.
     auto catalogue = dds::Catalogue::create(joined.value(), [&refused](const std::string& line)
                                             { refused = line; });
     if (!catalogue)

@@ -10,9 +10,9 @@
 namespace tactus::hrtc
 {
 
-/// Joins a DDS domain, 0 to 232, as a controller, listens for so long, and says who is heard there
-/// and which models are published: good when there are some, critical when the domain can't be
-/// joined. From an ordinary thread; waits.
+/// Joins a DDS domain, 0 to 232, as a controller and listens for `wait`. Reports the participants
+/// and published models. Good if there are models, critical if the domain can't be joined, else
+/// advice. Ordinary thread; waits.
 [[nodiscard]] doctor::Finding check_domain(std::uint32_t domain, std::chrono::milliseconds wait);
 
 } // namespace tactus::hrtc

@@ -14,13 +14,13 @@
 namespace tactus::hrtc
 {
 
-/// How often a frame under suspicion is repeated at most. Work that takes too long does so every
-/// time; what a machine adds it does not add always, and it takes nothing away.
+/// Most repetitions of a suspected frame. Work that takes too long does so each time. A delay by
+/// the machine does not occur each time, and never shortens the work.
 inline constexpr int kRepetitions = 5;
 
-/// Replays a run and returns which of the frames `suspects` (ascending) took more than `limit` of
-/// processor time in each of kRepetitions. Refused when the recording can't be replayed or
-/// comes out otherwise, and when a suspect is not in it.
+/// Replays a run. Returns those of the frames `suspects` (ascending) that took more than `limit` of
+/// processor time in each of kRepetitions. Refused if the recording can't be replayed, if a replay
+/// differs, or if a suspect is missing in the recording.
 [[nodiscard]] Result<std::vector<std::uint64_t>, std::string>
 frames_over_again(const Recording& recording, std::span<const std::uint64_t> suspects,
                   Duration limit);

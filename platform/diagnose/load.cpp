@@ -38,7 +38,7 @@ std::string error_text(int error)
     return std::generic_category().message(error);
 }
 
-/// Marsaglia's xorshift64.
+/// Next number of Marsaglia's xorshift64.
 std::uint64_t next(std::uint64_t x) noexcept
 {
     x ^= x << 13U;
@@ -49,7 +49,7 @@ std::uint64_t next(std::uint64_t x) noexcept
 void calculate(bool (*goes_on)())
 {
     std::uint64_t x = 1;
-    volatile std::uint64_t seen = 0; // Or nothing need be calculated.
+    volatile std::uint64_t seen = 0; // Keeps the compiler from dropping the calculation.
     while (goes_on())
     {
         for (int i = 0; i < 2'000'000; ++i)
@@ -93,7 +93,7 @@ std::optional<std::string> use_memory(bool (*goes_on)())
     return std::nullopt;
 }
 
-/// Writes or reads all of the file once; returns whether that went well.
+/// Writes or reads the whole file once. Returns true on success.
 template <typename Transfer>
 bool transfer_all(int file, std::vector<char>& block, Transfer transfer)
 {
@@ -114,7 +114,7 @@ std::optional<std::string> use_disk(bool (*goes_on)())
     {
         return path + ": can't be made: " + error_text(errno);
     }
-    unlink(path.c_str()); // It goes when it is closed.
+    unlink(path.c_str()); // The file is removed when it is closed.
     std::vector<char> block(kBlockBytes, 'x');
     bool went_well = true;
     while (went_well && goes_on())
@@ -128,7 +128,7 @@ std::optional<std::string> use_disk(bool (*goes_on)())
                      : std::optional(path + ": can't be written and read: " + reason);
 }
 
-/// Whether the other end of standard input is still open; what comes through it is thrown away.
+/// True if the other end of standard input is still open. Drops the bytes that arrive.
 bool stdin_is_open()
 {
     pollfd input{STDIN_FILENO, POLLIN, 0};
@@ -175,7 +175,7 @@ Result<Load, std::string> Load::start(std::span<const LoadKind> kinds, const std
     }
     load.their_end_ = ends[0];
     load.lifeline_ = ends[1];
-    fcntl(load.lifeline_, F_SETFD, FD_CLOEXEC); // Or they would keep it open themselves.
+    fcntl(load.lifeline_, F_SETFD, FD_CLOEXEC); // Else the workers would keep the pipe open.
     fcntl(load.their_end_, F_SETFD, FD_CLOEXEC);
     const auto processors = std::max(sysconf(_SC_NPROCESSORS_ONLN), 1L);
     for (const LoadKind kind : kinds)
@@ -258,7 +258,7 @@ int run_load(int argc, char** argv)
     {
         return *code;
     }
-    linux_extras::let_calling_thread_use_all(); // Also the one that hrtc itself keeps off.
+    linux_extras::let_calling_thread_use_all(); // Includes the processor that hrtc itself avoids.
     if (const auto fault = work(parse_load(name).value(), stdin_is_open))
     {
         return line.fail(*fault);

@@ -15,30 +15,30 @@
 namespace tactus::hrtc
 {
 
-/// Work that keeps a machine busy beside the loop.
+/// Kind of work that keeps a machine busy beside the loop.
 enum class LoadKind : std::uint8_t
 {
-    cpu,    ///< Arithmetic, on every processor.
-    memory, ///< Writes all over 64 MiB and maps memory anew, on every processor.
+    cpu,    ///< Arithmetic on every processor.
+    memory, ///< Writes across 64 MiB and maps new memory, on every processor.
     disk,   ///< Writes, syncs and reads back a file of 16 MiB in the folder for temporary files.
 };
-/// In the order of LoadKind.
+/// Names in the order of LoadKind.
 inline constexpr std::array<const char*, 3> kLoadNames{"cpu", "memory", "disk"};
 
 [[nodiscard]] std::optional<LoadKind> parse_load(std::string_view name) noexcept;
 
-/// Does this work on the calling thread until `goes_on`, asked every few milliseconds, says no.
-/// Returns why it had to stop before, if it had to.
+/// Does this work on the calling thread until `goes_on`, called every few milliseconds, returns
+/// false. Returns the reason if the work had to stop earlier.
 [[nodiscard]] std::optional<std::string> work(LoadKind kind, bool (*goes_on)());
 
-/// Other processes of ordinary priority that do such work as long as this lives. Processes and not
-/// threads, so that what they do to their memory does nothing to the loop's; they end by themselves
-/// when this process does.
+/// Processes of ordinary priority that do such work during this object's life. Threads would share
+/// the loop's memory, and their mappings would disturb it. The processes end by themselves when
+/// this process does.
 class Load
 {
 public:
-    /// Starts them: `program` with the arguments `load` and the kind's name. Returns which one
-    /// could not be started.
+    /// Starts `program` with the arguments `load` and the kind's name. Returns the error of the
+    /// first process that can't be started.
     [[nodiscard]] static Result<Load, std::string> start(std::span<const LoadKind> kinds,
                                                          const std::string& program);
 
@@ -48,7 +48,7 @@ public:
     Load& operator=(const Load&) = delete;
     ~Load();
 
-    /// The first kind of work that has ended by itself, if one has.
+    /// Kind of the first work that has ended by itself, if any.
     [[nodiscard]] std::optional<LoadKind> ended();
 
 private:
@@ -62,11 +62,12 @@ private:
     [[nodiscard]] std::optional<std::string> start_one(LoadKind kind, const std::string& program);
 
     std::vector<Worker> workers_;
-    int lifeline_{-1}; ///< They live as long as its other end is open.
+    int lifeline_{-1}; ///< Writing end of the workers' standard input. They live until it is
+                       ///< closed.
     int their_end_{-1};
 };
 
-/// `hrtc load KIND...`: does the work on this machine until its standard input ends.
+/// Runs `hrtc load KIND`, which works on this machine until its standard input ends.
 int run_load(int argc, char** argv);
 
 } // namespace tactus::hrtc

@@ -32,7 +32,7 @@ constexpr long kSleep_ns = 20'000;
 void touch_new_page() noexcept
 {
     void* page = mmap(nullptr, kPageBytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1,
-                      0); // Where memory is locked the fault is here, else in the next line.
+                      0); // With locked memory the page fault is here, else at the first write.
     if (page != MAP_FAILED)
     {
         *static_cast<volatile char*>(page) = 1;
@@ -40,8 +40,8 @@ void touch_new_page() noexcept
     }
 }
 
-/// A sleep whose time is over before it could begin, as on a virtual machine that waits for its own
-/// turn, gives nothing away.
+/// Sleeps until the processor was really yielded. On a waiting virtual machine, a sleep may end
+/// before it begins and yield nothing.
 void give_way() noexcept
 {
     constexpr int kTriesMax = 100;
@@ -53,7 +53,7 @@ void give_way() noexcept
     }
 }
 
-/// A chain of multiplications that no compiler leaves out.
+/// Chain of multiplications that no compiler omits.
 void work(std::uint64_t steps) noexcept
 {
     volatile std::uint64_t result = 1;
@@ -65,8 +65,8 @@ void work(std::uint64_t steps) noexcept
     result = value;
 }
 
-/// What fills two periods at the best pace that was seen: with a machine that is slow now and then,
-/// more, and beyond the limit also on one that is almost twice as fast later.
+/// Steps that fill two periods at the best measured pace. They take longer on a machine that is
+/// slow at times. They exceed the limit even if the machine becomes almost twice as fast.
 std::uint64_t steps_of_overwork(Duration period)
 {
     constexpr std::uint64_t kSteps = 20'000;
@@ -82,7 +82,7 @@ std::uint64_t steps_of_overwork(Duration period)
            static_cast<std::uint64_t>(std::max<std::int64_t>(least.ns, 1));
 }
 
-/// The device as it is, but its readings spoil the frames of the plan.
+/// Device whose readings inject the faults of the plan; otherwise unchanged.
 class SpoilingDevice final : public WrappedDevice
 {
 public:
@@ -104,7 +104,7 @@ private:
     std::uint64_t frame_{0};
 };
 
-/// What an injected fault has to be flagged as.
+/// Flag that an injected fault must cause.
 CycleFlag flag_of(InjectedFault fault) noexcept
 {
     switch (fault)
@@ -121,7 +121,7 @@ CycleFlag flag_of(InjectedFault fault) noexcept
     return CycleFlag::none;
 }
 
-/// Whether what the plan does to this frame takes more than `limit` each time.
+/// True if the plan's fault in this frame takes more than `limit` each time.
 bool is_over_again(std::uint64_t frame, Duration limit, const FaultInjector& injector)
 {
     const auto fault = InjectionPlan::at(frame);
@@ -164,7 +164,8 @@ void FaultInjector::inject(InjectedFault fault) const noexcept
         return;
     case InjectedFault::allocation:
     {
-        void* volatile memory = std::malloc(1); // Or it is left out: nobody uses it.
+        void* volatile memory = std::malloc(1); // Volatile, else the compiler omits the unused
+                                                // block.
         std::free(memory);
         return;
     }
@@ -209,7 +210,7 @@ Result<SelfCheck, Refusal> run_self_check(Options options)
 {
     for (ToolOptions& tool : options.tools)
     {
-        tool.device = {}; // Simulated.
+        tool.device = {}; // Simulated device.
     }
     options.report_paths.clear();
     options.duration_s = static_cast<double>(InjectionPlan::kFrames + InjectionPlan::kSpacing) /

@@ -15,32 +15,33 @@
 namespace tactus::hrtc
 {
 
-/// What the loop must not do, done to it on purpose.
+/// Fault that the loop must not have, injected on purpose.
 enum class InjectedFault : std::uint8_t
 {
-    overwork,   ///< More arithmetic than a period has room for.
-    page_fault, ///< A page that isn't there is touched.
-    allocation, ///< A call on the heap.
-    sleep,      ///< The processor is given away.
+    overwork,   ///< More arithmetic than fits into a period.
+    page_fault, ///< Access to a page that isn't mapped yet.
+    allocation, ///< Allocation on the heap.
+    sleep,      ///< Sleep, which yields the processor.
 };
 inline constexpr std::size_t kInjectedFaults = 4;
-/// In the order of InjectedFault.
+/// Names in the order of InjectedFault.
 inline constexpr std::array<const char*, kInjectedFaults> kInjectedFaultNames{
     "overwork", "page fault", "allocation", "sleep"};
 
-/// Which frames of a self-check are spoilt, and how.
+/// Plan of the faults in the frames of a self-check.
 struct InjectionPlan
 {
     static constexpr std::uint64_t kFirst = 100;
-    static constexpr std::uint64_t kSpacing = 23; ///< Frames; what one costs is over by the next.
+    static constexpr std::uint64_t kSpacing = 23; ///< Frames between two faults, enough for the
+                                                  ///< effects of one to end.
     static constexpr std::uint64_t kOfEachKind = 5;
     static constexpr std::uint64_t kFrames = kFirst + kInjectedFaults * kOfEachKind * kSpacing;
 
     [[nodiscard]] static std::optional<InjectedFault> at(std::uint64_t frame) noexcept;
 };
 
-/// Does it on the calling thread. What is too much work is measured when this is made, and is the
-/// same each time.
+/// Injects faults on the calling thread. The amount of overwork is measured in the constructor and
+/// is the same each time.
 class FaultInjector
 {
 public:
@@ -51,14 +52,15 @@ private:
     std::uint64_t overwork_steps_;
 };
 
-/// What a self-check came to.
+/// Result of a self-check.
 struct SelfCheck
 {
     std::uint64_t injected{0};
-    std::uint64_t flagged{0};              ///< Of these, as what they were.
-    std::uint64_t false_flags{0};          ///< Overruns in frames that were not spoilt.
-    bool allocations_counted{true};        ///< False: this build can't, and none was injected.
-    std::optional<std::uint64_t> unseen{}; ///< The first spoilt frame that was not flagged so.
+    std::uint64_t flagged{0};              ///< Faults flagged as their own kind.
+    std::uint64_t false_flags{0};          ///< Overruns in frames without a fault.
+    bool allocations_counted{true};        ///< False if this build can't count them, so that none
+                                           ///< was injected.
+    std::optional<std::uint64_t> unseen{}; ///< First frame whose fault was not flagged as its kind.
 
     [[nodiscard]] bool is_passed() const noexcept
     {
@@ -66,12 +68,12 @@ struct SelfCheck
     }
 };
 
-/// Compares what the account of a run that was spoilt by the plan has flagged with the plan, after
-/// settling its suspects by doing to them again what the plan did.
+/// Compares the flags of a run with injected faults to the plan. Before that, the suspects are
+/// settled by a repeated injection of the planned faults.
 [[nodiscard]] SelfCheck judge_injections(DeadlineAccount& deadlines, const FaultInjector& injector);
 
-/// Proof that the accounting sees what it has to see: a short run as the options have it, with
-/// simulated devices, in which each fault is injected InjectionPlan::kOfEachKind times.
+/// Proves that the account of deadlines detects faults. A short run with the options and simulated
+/// devices injects each fault InjectionPlan::kOfEachKind times.
 [[nodiscard]] Result<SelfCheck, Refusal> run_self_check(Options options);
 
 [[nodiscard]] std::string self_check_line(const SelfCheck& check);

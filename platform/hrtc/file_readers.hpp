@@ -7,7 +7,7 @@
 namespace tactus::hrtc
 {
 
-/// What reads the meshes and scenes that hrtc's command line names.
+/// Readers of the meshes and scenes on hrtc's command line.
 [[nodiscard]] FileReaders file_readers();
 
 } // namespace tactus::hrtc

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// hrtc, the haptic real-time controller: finds models, lays out the pools, runs the loop on its
-/// real-time thread, and reports.
+/// Program hrtc, the haptic real-time controller. It finds models, lays out the pools, runs the
+/// loop on its real-time thread, and reports.
 
 #include "platform/choices/messages.hpp"
 #include "platform/controller/session.hpp"

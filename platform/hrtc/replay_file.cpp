@@ -20,11 +20,11 @@ namespace tactus::hrtc
 namespace
 {
 
-/// The files that a replay is exported to.
+/// Export files of a replay.
 class Exports
 {
 public:
-    /// Opens all. Returns why one can't be written.
+    /// Opens all files. Returns the refusal of the first that can't be written.
     [[nodiscard]] std::optional<Refusal> open(const std::vector<std::string>& paths,
                                               const RecordedSetup& setup)
     {
@@ -49,7 +49,7 @@ public:
         }
     }
 
-    /// Gives all their names. Returns why one can't be written.
+    /// Commits all files. Returns the refusal of the first that can't be written.
     [[nodiscard]] std::optional<Refusal> commit()
     {
         for (const auto& [path, file] : files_)

@@ -11,11 +11,11 @@
 namespace tactus::hrtc
 {
 
-/// hrtc --replay: runs a recording's frames again without device, network or timer and says in one
-/// line whether every one agrees: on stdout when all do, else through `log`. `kernels` run the
-/// queries, null the best of this processor. Where all agree, `exports` are written: paths that are
-/// is_export_name(). Returns the exit code: done, criterion not met when a frame differs, failed
-/// when the recording is refused or an export can't be written.
+/// Runs hrtc --replay: repeats a recording's frames without device, network or timer. One line
+/// tells if all frames agree; it goes to stdout if they do, else to `log`. `kernels` run the
+/// queries; null: the best of this processor. If all frames agree, the files `exports` are written,
+/// whose paths satisfy is_export_name(). Returns the exit code: done; criterion not met if a frame
+/// differs; failed if the recording is refused or an export can't be written.
 [[nodiscard]] int replay_file(const std::string& path, const Kernels* kernels,
                               const std::vector<std::string>& exports, const Log& log);
 

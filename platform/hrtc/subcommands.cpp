@@ -37,7 +37,7 @@ std::span<const Subcommand> subcommands() noexcept
 const Subcommand* find_subcommand(int argc, char** argv) noexcept
 {
     std::string_view word = argc > 1 ? argv[1] : "";
-    word.remove_prefix(word.starts_with("--") ? 2 : 0); // Some write --doctor.
+    word.remove_prefix(word.starts_with("--") ? 2 : 0); // Also accepts --doctor.
     const auto* const found = std::ranges::find(
         kSubcommands, word, [](const Subcommand& each) { return std::string_view(each.name); });
     return found == kSubcommands.end() ? nullptr : found;

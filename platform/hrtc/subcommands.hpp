@@ -10,26 +10,26 @@
 namespace tactus::hrtc
 {
 
-/// What hrtc does when its first argument is this word. The rest of the line is the subcommand's.
+/// Subcommand of hrtc, chosen by its first argument. It parses the other arguments.
 struct Subcommand
 {
     const char* name;
     const char* summary;     ///< One line for --help.
-    int (*run)(int, char**); ///< argv[0] is the name; returns the exit code.
+    int (*run)(int, char**); ///< Runs it; argv[0] is the name. Returns the exit code.
 };
 
 [[nodiscard]] std::span<const Subcommand> subcommands() noexcept;
 
-/// The one that the first argument names, with or without two dashes; null when it names none.
+/// Subcommand of the first argument, with or without two dashes. Null if it names none.
 [[nodiscard]] const Subcommand* find_subcommand(int argc, char** argv) noexcept;
 
-/// With commas between.
+/// Names of the subcommands, separated by commas.
 [[nodiscard]] std::string subcommand_names();
 
-/// A paragraph for the end of --help.
+/// Paragraph on the subcommands for the end of --help.
 [[nodiscard]] std::string describe_subcommands();
 
-/// The form of hrtc's own command line.
+/// Form of hrtc's own command line.
 [[nodiscard]] CommandForm program_form();
 
 } // namespace tactus::hrtc

@@ -53,7 +53,7 @@ std::string_view trimmed(std::string_view text)
     return text.substr(0, text.find_last_not_of(kSpace) + 1);
 }
 
-/// Whether others than owner and group may read it.
+/// True if others than owner and group may read the file.
 bool is_open_to_all(const std::string& path)
 {
     std::error_code error;

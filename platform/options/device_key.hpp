@@ -9,13 +9,13 @@
 #include <memory>
 #include <string>
 
-// An ordinary thread: it reads a file.
+// Ordinary thread, because it reads a file.
 namespace tactus::hrtc
 {
 
-/// An authenticator with the key in this file: 64 hexadecimal digits, and white space round them.
-/// Its tags are keyed BLAKE2b (RFC 7693) of 16 bytes. Refused: a file that can't be read or holds
-/// anything else, and one that others than its owner and group may read.
+/// Authenticator with the key of this file: 64 hexadecimal digits, with white space around them.
+/// Its tags are keyed BLAKE2b (RFC 7693) of 16 bytes. Refused if the file can't be read, has other
+/// contents, or is readable by others than its owner and group.
 [[nodiscard]] Result<std::shared_ptr<const udp::Authenticator>, Refusal>
 read_device_key(const std::string& path);
 

@@ -21,7 +21,7 @@ namespace tactus::hrtc
 namespace
 {
 
-/// One of both.
+/// Name of a limit and one of the two members, either `value` or `turn`.
 struct NamedLimit
 {
     std::string_view name;
@@ -61,7 +61,7 @@ std::string limit_names()
     return names;
 }
 
-/// As of a device that tells them itself.
+/// Fault of the limits, by the rules for a device that reports them itself.
 std::string fault_in_limits(const DeviceLimits& limits)
 {
     DeviceInfo info = DhdDeviceOptions::default_info();

@@ -10,9 +10,9 @@
 namespace tactus::hrtc
 {
 
-/// Sets what the text says of a device, `KEY=VALUE` with commas between: the keys are the names of
-/// DeviceLimits' numbers, those of its turning with `turn.` before them, in SI. Returns what is
-/// wrong with it, and then changes nothing; empty when all is well.
+/// Sets device limits from `KEY=VALUE` pairs, separated by commas. The keys are the names of the
+/// numbers of DeviceLimits, in SI; those of RotationLimits begin with `rotation.`. Returns the
+/// fault and then changes nothing; empty if there is none.
 [[nodiscard]] std::string set_device_limits(std::string_view text, DeviceLimits& limits);
 
 } // namespace tactus::hrtc

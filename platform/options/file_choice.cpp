@@ -19,7 +19,7 @@ namespace tactus::hrtc
 namespace
 {
 
-/// A name, and the option that has it.
+/// Name and the option that gives it.
 struct Named
 {
     std::string option;

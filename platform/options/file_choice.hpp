@@ -10,13 +10,13 @@
 namespace tactus::hrtc
 {
 
-/// Whether the text names a file: a path, or the name of a model's or a scene's file.
+/// True if the text is a path, or the name of a model or scene file.
 [[nodiscard]] bool is_file_name(const std::string& text, const FileReaders& readers);
 
-/// Puts the files that stand on the command line without an option where --model or --scene would,
-/// and chooses the transport where --transport doesn't: files when all names are of files, DDS when
-/// none is. Empty when all is well, otherwise the line for wrong usage, with the names of the
-/// program's other commands where a word is no file.
+/// Treats files without an option on the command line as values of --model or --scene. Without
+/// --transport, chooses it: files if all names are files, DDS if none is. Returns the line for
+/// wrong usage, empty if there is none. If a word is no file, the line lists the program's other
+/// `commands`.
 [[nodiscard]] std::string take_files(Options& options, RawOptions& raw,
                                      const std::string& commands);
 

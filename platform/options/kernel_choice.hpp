@@ -12,8 +12,8 @@
 namespace tactus::hrtc
 {
 
-/// The set of this name among those that the processor runs (available_kernels()); any other name
-/// is refused with theirs.
+/// Kernels of this name among those that the processor supports (available_kernels()). The refusal
+/// of another name lists the available ones.
 [[nodiscard]] Result<const Kernels*, Refusal>
 choose_kernels(std::string_view name, std::span<const Kernels* const> available);
 

@@ -18,7 +18,7 @@ constexpr double kLargestPool_mib = 4'096.0;
 constexpr double kFrameBudgetMin_us = 1e-3 * WorkBudget::kLeast;
 constexpr double kFrameBudgetMax_us = 10'000.0;
 
-/// The objects.
+/// Declares the options of the objects.
 void declare_scene(CommandLine& line, Options& options, RawOptions& raw)
 {
     line.begin_task("What is touched", "hrtc ball.spm --place 0,0,0.1 --material 800,0.6,0.4");
@@ -57,7 +57,7 @@ void declare_scene(CommandLine& line, Options& options, RawOptions& raw)
         .repeatable();
 }
 
-/// The tools, and their devices.
+/// Declares the options of tools and their devices.
 void declare_tools(CommandLine& line, RawOptions& raw)
 {
     line.begin_task("Hands, tools and devices",
@@ -115,7 +115,7 @@ void declare_run(CommandLine& line, Options& options, const CommandForm& form)
         "Chrome's trace format (.json), which Perfetto opens; some 0.7 MB a second");
 }
 
-/// Memory, and the work of a frame.
+/// Declares the options of memory and of a frame's work.
 void declare_budgets(CommandLine& line, Options& options, RawOptions& raw)
 {
     line.begin_task("Memory and work", "hrtc large.spm --pool-mib 16 --frame-budget-us 500");
@@ -244,7 +244,7 @@ void declare_thread(CommandLine& line, Options& options, RawOptions& raw)
                   "call of the haptic thread costs some 3 us more");
 }
 
-/// The file's keys are the options' names without the dashes.
+/// Declares the option file, whose keys are the options' names without the dashes.
 void declare_config(CommandLine& line, RawOptions& raw)
 {
     line.begin_task("Options from a file",

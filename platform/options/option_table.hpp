@@ -15,19 +15,21 @@
 namespace tactus::hrtc
 {
 
-/// So many options have a value for each tool.
+/// Number of options with one value for each tool.
 inline constexpr std::size_t kToolOptions = 7;
 
-/// Texts of the command line that options.cpp reads once the line is parsed.
+/// Texts of the command line that options.cpp parses after the line itself.
 struct RawOptions
 {
-    std::vector<std::string> files; ///< Without an option.
+    std::vector<std::string> files; ///< Files without an option.
     std::vector<std::string> models;
     std::vector<std::string> places;
     std::vector<std::string> materials;
     std::optional<std::uint32_t> tool_count;
-    std::array<std::vector<std::string>, kToolOptions> of_tools; ///< For each of tool_options().
-    std::vector<OptionTable> tool_tables;                        ///< [[tool]] in the option file.
+    std::array<std::vector<std::string>, kToolOptions> of_tools; ///< Values for each of
+                                                                 ///< tool_options().
+    std::vector<OptionTable> tool_tables;                        ///< Tables [[tool]] of the option
+                                                                 ///< file.
     std::optional<std::string> device_key;
     std::vector<std::string> device_faults;
     std::optional<std::string> transport;
@@ -41,8 +43,8 @@ struct RawOptions
     bool refines_always{false};
 };
 
-/// Declares all options of the command. Parsing fills `options` and `raw`, so both outlive `line`.
-/// --help lists them in the order of their declaration.
+/// Declares all options of the command. Parsing fills `options` and `raw`, so both must outlive
+/// `line`. --help lists the options in the order of declaration.
 void declare_options(CommandLine& line, Options& options, RawOptions& raw, const CommandForm& form);
 
 } // namespace tactus::hrtc

@@ -27,10 +27,11 @@ namespace tactus::hrtc
 namespace
 {
 
-constexpr std::size_t kDeviceFaultsMax = 64; ///< Each reading looks at all of them.
+constexpr std::size_t kDeviceFaultsMax = 64; ///< Each reading checks all of them.
 
-/// As an option file. Options without a value are shown as comments: no file could set them to
-/// nothing. Files that stand alone on the command line are what they came to; tools are tables.
+/// Text of an option file for these options. Options without a value become comments, because a
+/// file can't unset an option. Files given without an option appear as --model or --scene, and
+/// tools as tables.
 std::string option_file(const CommandLine& line, const Options& options, const RawOptions& raw)
 {
     std::istringstream lines(line.option_file_text());
@@ -55,7 +56,8 @@ std::string option_file(const CommandLine& line, const Options& options, const R
     return text + tool_tables(raw);
 }
 
-/// Everything that a run could be told is in the recording. Empty when all is well.
+/// Fault of options beside --replay, which takes all other settings from the recording; empty if
+/// none.
 std::string check_replay(const CommandLine& line)
 {
     for (const std::string& name : line.given())
@@ -142,8 +144,8 @@ std::string check_files(const CommandLine& line, const Options& options)
     return "";
 }
 
-/// Each --model is an object; what is placed beyond them shows the last one again. A model that is
-/// named twice is one model of two objects. Empty when all is well.
+/// Adds an object for each --model, and one of the last model for each further --place. If a model
+/// is named twice, two objects share it. Returns the fault; empty if none.
 std::string check_models(Options& options, const RawOptions& raw)
 {
     if (!options.scene.empty())
@@ -204,7 +206,7 @@ std::string check_models(Options& options, const RawOptions& raw)
     return {};
 }
 
-/// Where the objects stand. Empty when all is well.
+/// Sets the places of the objects. Returns the fault; empty if none.
 std::string check_places(Options& options, const RawOptions& raw)
 {
     for (std::size_t i = 0; i < raw.places.size(); ++i)
@@ -220,7 +222,7 @@ std::string check_places(Options& options, const RawOptions& raw)
     return {};
 }
 
-/// How they feel. Empty when all is well.
+/// Sets the materials of the objects. Returns the fault; empty if none.
 std::string check_materials(Options& options, const RawOptions& raw)
 {
     for (std::size_t i = 0; i < raw.materials.size() && options.scene.empty(); ++i)
@@ -252,7 +254,7 @@ std::string check_materials(Options& options, const RawOptions& raw)
     return {};
 }
 
-/// After the tools. Empty when all is well.
+/// Fault of --force-shading; empty if none. Called after take_tools().
 std::string check_smooth(Options& options, const RawOptions& /*raw*/)
 {
     const auto is_sphere = [](const ToolOptions& tool)
@@ -271,7 +273,7 @@ bool has_device(const Options& options, DeviceKind kind)
                                { return tool.device.kind == kind; });
 }
 
-/// Empty when all is well.
+/// Fault of --device-key; empty if none.
 std::string check_device_key(Options& options, const RawOptions& raw)
 {
     return !raw.device_key || has_device(options, DeviceKind::udp)
@@ -279,8 +281,8 @@ std::string check_device_key(Options& options, const RawOptions& raw)
                : "--device-key: there is no udp device";
 }
 
-/// For all devices that are driven over datagrams. Once the options are right: a file that isn't is
-/// no wrong usage. Empty when all is well.
+/// Gives all UDP devices the key of the file. Called once the options are valid, because a bad file
+/// is no wrong usage. Returns the fault; empty if none.
 std::string take_device_key(Options& options, const RawOptions& raw)
 {
     if (!raw.device_key)
@@ -300,7 +302,7 @@ std::string take_device_key(Options& options, const RawOptions& raw)
     return {};
 }
 
-/// After the tools. Empty when all is well.
+/// Sets the device faults. Called after take_tools(). Returns the fault; empty if none.
 std::string check_faults(Options& options, const RawOptions& raw)
 {
     if (raw.device_faults.size() > kDeviceFaultsMax)
@@ -322,8 +324,7 @@ std::string check_faults(Options& options, const RawOptions& raw)
                : "--device-fault: there is no simulated device";
 }
 
-/// Whether our name can be that of a controller, and the models' those of published ones. Empty
-/// when all is well.
+/// Checks the names of the controller and of published models. Returns the fault; empty if none.
 std::string check_names(const CommandLine& line, const Options& options)
 {
     if (line.is_given("--name") && !is_valid_name(options.name))
@@ -352,7 +353,7 @@ std::string check_names(const CommandLine& line, const Options& options)
     return {};
 }
 
-/// Empty when all is well.
+/// Sets the failover servers. Returns the fault; empty if none.
 std::string take_failover(Options& options, const RawOptions& raw)
 {
     if (!raw.failover.empty() && options.transport == TransportKind::file)
@@ -379,7 +380,7 @@ std::string take_failover(Options& options, const RawOptions& raw)
     return {};
 }
 
-/// Memory and work of a frame. Empty when all is well.
+/// Checks memory and work of a frame. Returns the fault; empty if none.
 std::string check_budgets(const CommandLine& line, Options& options)
 {
     if (line.is_given("--cache-mib") && options.cache_mib >= options.pool_mib)
@@ -405,7 +406,8 @@ std::string check_budgets(const CommandLine& line, Options& options)
     return {};
 }
 
-/// Only what the program itself moves and reads can wait for it. Empty when all is well.
+/// Checks --virtual-time, which needs models from files and simulated or recorded devices. Returns
+/// the fault; empty if none.
 std::string check_virtual_time(Options& options, const RawOptions& raw)
 {
     if (!options.virtual_time)
@@ -427,7 +429,7 @@ std::string check_virtual_time(Options& options, const RawOptions& raw)
         return fmt::format("--virtual-time: takes no time that {} could tell of",
                            options.trace_path.empty() ? "--histograms" : "--trace");
     }
-    // The --priority that --print-config shows was not asked for.
+    // The default of --priority is accepted, because --print-config prints it.
     const char* of_real_time = raw.cpu                      ? "--cpu"
                                : options.supervisor_periods ? "--supervisor-periods"
                                : options.thread.priority != RtThreadOptions{}.priority
@@ -444,7 +446,7 @@ std::string check_virtual_time(Options& options, const RawOptions& raw)
     return {};
 }
 
-/// Empty when all is well.
+/// Chooses the kernels. Returns the fault; empty if none.
 std::string check_kernels(Options& options, const RawOptions& raw)
 {
     if (!raw.kernels)
@@ -460,7 +462,7 @@ std::string check_kernels(Options& options, const RawOptions& raw)
     return {};
 }
 
-/// What one option alone can't tell. Empty when all is well.
+/// Checks combinations of options. Returns the fault; empty if none.
 std::string check_together(const CommandLine& line, Options& options, RawOptions& raw,
                            const std::string& commands)
 {

@@ -16,25 +16,27 @@ class CommandLine;
 namespace tactus::hrtc
 {
 
-/// A command that runs the loop, and how its line differs from that of hrtc itself.
+/// Command that runs the loop, with the differences of its command line from that of hrtc.
 struct CommandForm
 {
     std::string name{"hrtc"};
     std::string description{"Haptic real-time controller: touches models that a host publishes, "
                             "every period, exactly or with a proven bound."};
-    bool records{true}; ///< Takes --record, --replay, --trace and --histograms, too.
+    bool records{true}; ///< Also takes --record, --replay, --trace and --histograms.
     double duration_s{10.0};
-    std::function<void(CommandLine&)> declare; ///< Its own options; none when empty.
-    std::string footer;                        ///< The end of --help.
-    std::string commands;                      ///< The program's other commands, for messages.
-    FileReaders readers;                       ///< Lent to the options.
+    std::function<void(CommandLine&)> declare; ///< Declares the command's own options; may be
+                                               ///< empty.
+    std::string footer;                        ///< End of --help.
+    std::string commands;                      ///< Names of the program's other commands, for
+                                               ///< messages.
+    FileReaders readers;                       ///< Readers for the options.
 };
 
-/// Whether a report that is to have this name is a page: it ends in .html.
+/// True if a report of this name is a page: the name ends in .html.
 [[nodiscard]] bool is_page_name(const std::string& path);
 
-/// Reads the command line. Returns the exit code instead when the program should leave: after
-/// --help, --version, or wrong usage, which gets one line on stderr.
+/// Parses the command line. Returns the exit code instead if the program should end: after --help,
+/// --version or wrong usage. Wrong usage gets one line on stderr.
 [[nodiscard]] std::variant<Options, int> parse_options(int argc, char** argv,
                                                        const CommandForm& form);
 

@@ -7,7 +7,7 @@
 namespace tactus::hrtc
 {
 
-/// The hooks of hrtc: a signal ends a session, and its progress is told on stderr.
+/// Hooks of hrtc: a signal ends a session, and the progress appears on stderr.
 [[nodiscard]] RunHooks program_hooks();
 
 } // namespace tactus::hrtc

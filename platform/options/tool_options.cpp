@@ -19,7 +19,7 @@ namespace tactus::hrtc
 namespace
 {
 
-/// Sets `value` to what `parsed` holds; returns its refusal otherwise.
+/// Sets `value` to the result of `parsed`, or else returns the refusal.
 template <typename Value, typename Parsed>
 std::string set_to(Value& value, Parsed parsed)
 {
@@ -122,14 +122,14 @@ constexpr ToolOption kOptions[kToolOptions] = {
      set_motion},
 };
 
-/// What is said of an option of one tool, and where it is said.
+/// Text of an option of one tool, and its source.
 struct Said
 {
     std::string text;
-    std::string place; ///< FILE:LINE; empty: on the command line.
+    std::string place; ///< FILE:LINE; empty: the command line.
 };
 
-/// None when the tool has the default.
+/// Given text of an option; none if the tool has the default.
 std::optional<Said> said_of(const RawOptions& raw, std::size_t tool, std::size_t option)
 {
     std::optional<Said> said;
@@ -147,7 +147,7 @@ std::optional<Said> said_of(const RawOptions& raw, std::size_t tool, std::size_t
     return said && said->text == "none" ? std::nullopt : said;
 }
 
-/// Something is said of so many tools. `most`: returns as `fault` when it is more.
+/// Number of tools with a given option. If it exceeds `most`, sets `fault`.
 std::size_t count_tools(const RawOptions& raw, std::size_t most, std::string& fault)
 {
     std::size_t count = 0;
@@ -167,7 +167,7 @@ std::size_t count_tools(const RawOptions& raw, std::size_t most, std::string& fa
     return count;
 }
 
-/// A text as TOML has it.
+/// Text quoted for TOML.
 std::string quoted(const std::string& text)
 {
     const char quote = text.find('"') == std::string::npos ? '"' : '\'';

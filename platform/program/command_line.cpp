@@ -26,7 +26,8 @@ namespace tactus
 namespace
 {
 
-/// The library ends some messages with a line end and uses several lines for lists.
+/// Text on one line. Some messages of the library end with a line end or hold lists of several
+/// lines.
 std::string on_one_line(std::string text)
 {
     while (!text.empty() && text.back() == '\n')
@@ -45,10 +46,11 @@ std::string trimmed(const std::string& text)
                : text.substr(first, text.find_last_not_of(" \t\r") + 1 - first);
 }
 
-/// A file of options has no more bytes.
+/// Largest size of an option file in bytes.
 constexpr std::uintmax_t kOptionFileMost = 1ULL << 20;
 
-/// Before the library opens it: a pipe or a device may never end. Throws the reason.
+/// Checks the file before the library opens it, because a pipe or a device may never end. Throws
+/// the reason.
 std::string check_option_file(const std::string& path)
 {
     if (const auto bytes = read_file(path, kOptionFileMost); !bytes)
@@ -60,12 +62,12 @@ std::string check_option_file(const std::string& path)
 
 struct FilePlace
 {
-    std::string text;    ///< FILE:LINE, or FILE where no line was found.
+    std::string text;    ///< FILE:LINE, or FILE if no line was found.
     bool is_pair{false}; ///< The line is KEY = VALUE.
 };
 
-/// The first line that has this key, or all of whose text ends in it, behind the first `tables`
-/// lines that begin a table of this name.
+/// First line with this key, or whose text before any '=' ends in it. The search begins after the
+/// line that begins the `tables`-th table of this name.
 FilePlace place_of(const std::string& key, const std::string& path, const std::string& table = "",
                    std::size_t tables = 0)
 {
@@ -89,7 +91,7 @@ FilePlace place_of(const std::string& key, const std::string& path, const std::s
     return {path};
 }
 
-/// A key that is shown: another file's line, a password's for instance, is none.
+/// True if a key may be shown. The line of a wrong file, such as a password, must not be.
 bool is_like_a_name(const std::string& key)
 {
     constexpr std::size_t kLongest = 32;
@@ -98,7 +100,7 @@ bool is_like_a_name(const std::string& key)
     return key.size() <= kLongest && std::ranges::all_of(key, is_part);
 }
 
-/// The text without the value that it quotes, which a file may hold by mistake.
+/// Text without the value that it quotes, which may be a secret by mistake.
 std::string without_value(const std::string& text)
 {
     const std::size_t first = text.find('\'');
@@ -106,7 +108,7 @@ std::string without_value(const std::string& text)
     return first == last ? text : text.substr(0, first + 1) + "..." + text.substr(last);
 }
 
-/// The option's name, without its dashes, that is most like the key; empty when none is.
+/// Name of the option most similar to the key, without dashes; empty if none is similar.
 std::string nearest_name(const CLI::App& app, const std::string& key, bool is_in_file)
 {
     std::vector<std::string_view> names;
@@ -120,8 +122,8 @@ std::string nearest_name(const CLI::App& app, const std::string& key, bool is_in
     return nearest_word(key, names);
 }
 
-/// The library's own words for a key that no option has end in the key, and in "++" behind the name
-/// of a section.
+/// Message for an unknown key. The library's own message ends in the key, or in the name of a
+/// section and "++".
 std::string unknown_key(const CLI::App& app, const CLI::ConfigError& error,
                         const std::string& table)
 {
@@ -145,7 +147,7 @@ std::string unknown_key(const CLI::App& app, const CLI::ConfigError& error,
                        nearest.empty() ? "see --help" : "'" + nearest + "'?");
 }
 
-/// The first word that no option took, an option's before others.
+/// Message for the first unknown word, with options before other words.
 std::string unknown_word(const CLI::App& app)
 {
     const std::vector<std::string> words = app.remaining();
@@ -162,7 +164,8 @@ std::string unknown_word(const CLI::App& app)
                        nearest.empty() ? "see --help" : "--" + nearest + "?");
 }
 
-/// The library's own words begin with the option's name, and go on with how many values it had.
+/// Message for a wrong number of values. The library's own message begins with the option's name
+/// and states the number.
 std::string wrong_count(const CLI::ArgumentMismatch& error)
 {
     const std::string_view text = error.what();
@@ -172,7 +175,8 @@ std::string wrong_count(const CLI::ArgumentMismatch& error)
                                                                       : "is given twice");
 }
 
-/// The library's own words have the name behind a colon, and the value behind a '='.
+/// Message for a malformed value. The library's own message has the name after a colon and the
+/// value after a '='.
 std::string wrong_form(const CLI::ConversionError& error)
 {
     const std::string_view text = error.what();
@@ -181,7 +185,7 @@ std::string wrong_form(const CLI::ConversionError& error)
                        text.substr(std::min(name, text.size()), text.find(' ', name) - name));
 }
 
-/// Reads an option file, and keeps its tables of one name apart.
+/// Reader of option files that keeps tables of one name apart.
 class TableReader : public CLI::ConfigTOML
 {
 public:
@@ -198,7 +202,7 @@ public:
     }
 
 private:
-    /// The library marks where a table begins and ends.
+    /// Takes the item if it belongs to a table. The library marks the begin and end of tables.
     [[nodiscard]] bool try_take(const CLI::ConfigItem& item) const
     {
         const bool begins = item.name == "++";
@@ -221,7 +225,7 @@ private:
     std::vector<OptionTable>* tables_;
 };
 
-/// "a, b or c".
+/// Text of the form "a, b or c".
 std::string either(const std::vector<std::string>& names)
 {
     std::string text;
@@ -232,7 +236,7 @@ std::string either(const std::vector<std::string>& names)
     return text;
 }
 
-/// Breaks lines between words, where they would be longer.
+/// Breaks the text between words into lines of at most `longest` characters.
 std::string wrapped(const std::string& text, std::size_t longest)
 {
     std::istringstream words(text);
@@ -247,11 +251,11 @@ std::string wrapped(const std::string& text, std::size_t longest)
     return lines;
 }
 
-/// --help in lines of a terminal's width, each task with its example.
+/// Formatter of --help for a terminal's width, with an example for each task.
 class TaskFormatter : public CLI::Formatter
 {
 public:
-    std::map<std::string, std::string> examples; ///< By the tasks' names.
+    std::map<std::string, std::string> examples; ///< Examples by the names of the tasks.
 
     [[nodiscard]] std::string make_option_desc(const CLI::Option* option) const override
     {
@@ -269,7 +273,7 @@ public:
         task += ", as in  " + example->second;
         const std::string text =
             CLI::Formatter::make_group(std::move(task), is_positional, std::move(options));
-        return text.substr(1); // The library has put a blank line before it already.
+        return text.substr(1); // The library has already put a blank line before it.
     }
 
     [[nodiscard]] std::string make_footer(const CLI::App* app) const override
@@ -483,7 +487,7 @@ void CommandLine::choose_log_style()
 std::optional<int> CommandLine::parse(int argc, char** argv)
 {
     words_.assign(argv + std::min(argc, 1), argv + argc);
-    // Already for what is wrong with the others.
+    // Log style for faults of the other options.
     set_log_style({LogLevel::info, app_->get_option_no_throw("--json-log") != nullptr &&
                                        std::ranges::count(words_, "--json-log") > 0});
     if (const std::string name = option_without_value(); !name.empty())
@@ -529,7 +533,8 @@ std::optional<int> CommandLine::parse(int argc, char** argv)
     }
 }
 
-/// The library would take the option that follows for the value, behind '--option=', too.
+/// Name of an option without a value; empty if there is none. The library would take the next
+/// option for the value, also after '--option='.
 std::string CommandLine::option_without_value() const
 {
     const auto named = [this](const std::string& word)
@@ -595,10 +600,10 @@ std::string CommandLine::place_in_file(const std::string& text) const
     }
     const auto path = file->as<std::string>();
     const std::string place = place_of(name.substr(2), path).text;
-    return place == path ? "" : place + ": "; // Else it is no line of the file.
+    return place == path ? "" : place + ": "; // Else the option has no line in the file.
 }
 
-/// Says of each key of a table where it stands. Returns what is wrong with the first wrong one.
+/// Sets the place of each key of the tables. Returns the first fault; empty if there is none.
 std::string CommandLine::place_tables()
 {
     const auto path = app_->get_config_ptr()->as<std::string>();

@@ -19,17 +19,17 @@ class Option;
 namespace tactus
 {
 
-/// A key of a table in an option file.
+/// Entry of a table in an option file.
 struct TableEntry
 {
     std::string key;
-    std::string value; ///< A list is one text with commas.
+    std::string value; ///< Value; a list is one text with commas.
     std::string place; ///< FILE:LINE.
 };
 using OptionTable = std::vector<TableEntry>;
 
-/// A declared option, to say more about it: each function returns the option again. It lives as
-/// long as its command line.
+/// Declared option, for further settings. Each function returns the option itself. The command line
+/// must outlive it.
 class CommandOption
 {
 public:
@@ -38,34 +38,34 @@ public:
     CommandOption required() const;
     CommandOption needs(CommandOption other) const;
     CommandOption excludes(CommandOption other) const;
-    /// --help shows the value that the variable has now.
+    /// Shows the present value of the variable in --help.
     CommandOption show_default() const;
 
     /// Accepts numbers from `least` to `most`, both included, and no NaN.
     CommandOption number_between(double least, double most) const;
-    /// The same for int, std::uint32_t and std::int64_t; --help names the type.
+    /// Accepts integers of the type int, std::uint32_t or std::int64_t; --help names the type.
     template <typename T>
     CommandOption integer_between(T least, T most) const;
     CommandOption one_of(std::vector<std::string> names) const;
     CommandOption existing_directory() const;
-    /// `fault_in` tells what is wrong with a value, empty when nothing is. --help shows `form`.
+    /// Refuses a value if `fault_in` returns its fault, not an empty text. --help shows `form`.
     CommandOption check(std::function<std::string(const std::string&)> fault_in,
                         const std::string& form = "") const;
 
-    /// A list with one value each time that the option is given.
+    /// Makes a list with one value for each use of the option.
     CommandOption repeatable() const;
-    /// The same, but values that follow at once belong to the list, too.
+    /// Makes a list of all values, also of several after one use of the option.
     CommandOption repeatable_with_more() const;
     CommandOption separated_by(char delimiter) const;
-    /// The option file neither sets nor shows it.
+    /// Excludes the option from the option file, for reading and for printing.
     CommandOption not_in_file() const;
 
 private:
     CLI::Option* option_;
 };
 
-/// The options of a program. The only place that includes CLI11, whose headers take long to
-/// compile: docs/internals/decisions/0003-command-line-room.md.
+/// Options of a program. Only the source includes CLI11, whose headers take long to compile:
+/// docs/internals/decisions/0003-command-line-room.md.
 class CommandLine
 {
 public:
@@ -74,45 +74,43 @@ public:
     CommandLine(const CommandLine&) = delete;
     CommandLine& operator=(const CommandLine&) = delete;
 
-    /// --version, which prints `version`.
+    /// Adds --version, which prints `version`.
     void add_version(const std::string& version);
-    /// Parsing writes to `value`, which must live as long; without the option it stays as it is.
-    /// `names` are "-o,--output" or, for a value without a name, "FILE". The types of values are
-    /// listed in the source; any other does not link.
+    /// Adds an option. Parsing writes to `value`, which must outlive it; without the option the
+    /// value is unchanged. `names` are "-o,--output" or, for a value without a name, "FILE". The
+    /// source lists the types of values; others do not link.
     template <typename T>
     CommandOption add_option(const std::string& names, T& value, const std::string& description);
     CommandOption add_flag(const std::string& name, bool& value, const std::string& description);
-    /// An option that names a TOML file of options: keys are their names without the dashes. The
-    /// command line goes first; a key that no option has is wrong usage, a file that can't be read
-    /// is not.
+    /// Adds an option for a TOML file of options, whose keys are the options' names without the
+    /// dashes. The command line overrides the file. An unknown key is wrong usage; an unreadable
+    /// file is not.
     void add_option_file(const std::string& name, const std::string& description);
-    /// The option file may have tables `[[name]]`, each with some of these keys. Parsing appends
-    /// them to `tables`, which must live as long. Any other key is wrong usage.
+    /// Allows tables `[[name]]` with some of these keys in the option file. Parsing appends them to
+    /// `tables`, which must live as long. Any other key is wrong usage.
     void add_option_tables(const std::string& name, const std::vector<std::string>& keys,
                            std::vector<OptionTable>& tables);
-    /// --log-level and --json-log: how much is told on stderr, and how. parse() puts them into
-    /// effect.
+    /// Adds --log-level and --json-log for the lines on stderr. parse() applies them.
     void add_log_options();
-    /// What is declared from here on is for this task; --help shows it by tasks, each with its
-    /// example.
+    /// Begins a task: --help shows the options declared after this call under it, with the example.
     void begin_task(const std::string& task, const std::string& example);
-    /// Text below the options of --help; lines that begin with a blank stay as they are.
+    /// Sets the text below the options of --help. Lines that begin with a blank are not wrapped.
     void set_footer(const std::string& text);
 
-    /// Returns the code to leave with after --help or --version, and after wrong usage or an option
-    /// file that can't be read, which gets one line on stderr; nothing when the program should go
-    /// on.
+    /// Parses the line. Returns the exit code after --help, --version, wrong usage or an unreadable
+    /// option file. Both faults get one line on stderr. Returns nothing if the program should
+    /// continue.
     [[nodiscard]] std::optional<int> parse(int argc, char** argv);
 
-    /// The names of the options that the user gave, in the order of their declaration.
+    /// Names of the given options, in the order of declaration.
     [[nodiscard]] std::vector<std::string> given() const;
     [[nodiscard]] bool is_given(const std::string& name) const;
-    /// What the options come to, as an option file.
+    /// Options with their present values, as an option file.
     [[nodiscard]] std::string option_file_text() const;
 
-    /// Says in one line on stderr, behind the program's name, why it fails; returns `code`. Control
-    /// characters of file names and the like are shown as '?'. Where the text of wrong usage begins
-    /// with an option that stands in the option file, its place there goes before.
+    /// Writes one line on stderr, with the program's name and the reason of a failure. Returns
+    /// `code`. Control characters, for instance of file names, are shown as '?'. If a usage error
+    /// begins with an option of the option file, its place there is put first.
     int fail(const std::string& text, int code = kExitFailed) const;
 
 private:

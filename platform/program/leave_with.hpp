@@ -7,10 +7,10 @@
 namespace tactus::hrtc
 {
 
-/// Why a run that a signal ended can't be judged.
+/// Refusal to judge a run that a signal has ended.
 [[nodiscard]] Refusal interruption();
 
-/// Logs it as an error of hrtc; returns the code to leave with.
+/// Logs `error` as an error of hrtc. Returns the exit code.
 int leave_with(const Refusal& error);
 
 } // namespace tactus::hrtc

@@ -7,8 +7,8 @@
 namespace tactus
 {
 
-/// Writes the text to stdout, and out of its buffer. The text that stdout doesn't take, because its
-/// reader is gone or its disk is full, is lost: a program that serves or touches goes on.
+/// Writes the text to stdout and flushes it. If the reader is gone or the disk is full, the text is
+/// lost and the program goes on.
 void print_out(std::string_view text) noexcept;
 
 } // namespace tactus

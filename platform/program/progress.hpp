@@ -9,20 +9,21 @@
 namespace tactus
 {
 
-/// Tells on stderr how far a long piece of work has come: percent, items a second, time left. Says
-/// nothing in the first two seconds; then on a terminal one line that is written over, elsewhere,
-/// and in JSON, a line every ten seconds. Its level is info.
+/// Shows the progress of long work on stderr: percent, items per second, time left. Prints nothing
+/// in the first two seconds. Then a terminal gets one line that is overwritten; otherwise, and in
+/// JSON, a line appears every ten seconds. The level is info.
 class Progress
 {
 public:
-    /// `what` is done to `items`, e.g. "simplify" and "faces", by the program of that name.
+    /// `what` is the work and `items` its unit, e.g. "simplify" and "faces"; `program` is the
+    /// program's name.
     Progress(std::string program, std::string what, std::string items);
     /// Clears the line on a terminal.
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    /// `total` may be zero; nothing is said then.
+    /// Updates the counts. If `done` or `total` is zero, nothing is printed.
     void update(std::size_t done, std::size_t total);
 
 private:

@@ -8,10 +8,10 @@
 namespace tactus
 {
 
-/// The main() of every program: returns the exit code that `body` returns. An exception that leaves
-/// `body` becomes one line on stderr, behind the program's name, and kExitFailed.
-/// `memory_hint`, when it isn't empty, tells how much memory the program needs: it takes the place
-/// of the exception's own words when memory runs out.
+/// Runs `body` as main() of a program and returns its exit code. An exception from `body` becomes
+/// one line on stderr, after the program's name, and kExitFailed. If memory runs out, `memory_hint`
+/// replaces the exception's own text. It states how much memory the program needs, and may be
+/// empty.
 [[nodiscard]] int run_program(std::string_view name, std::string_view memory_hint,
                               const std::function<int()>& body);
 

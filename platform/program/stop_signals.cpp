@@ -12,7 +12,7 @@ namespace
 {
 
 std::atomic<bool> stop_requested{false};
-static_assert(std::atomic<bool>::is_always_lock_free); // Set in a signal handler.
+static_assert(std::atomic<bool>::is_always_lock_free); // A signal handler sets it.
 
 void handle(int signal, void (*handler)(int)) noexcept
 {

@@ -20,22 +20,22 @@ namespace tactus::hrtc
 namespace
 {
 
-/// A surface is looked at so far beyond the tool's radius: by this share of the radius, and by the
-/// way of a hand of 0.1 m/s in a millisecond.
+/// Reach of a search beyond the tool's radius: this share of the radius, and the way of a hand of
+/// 0.1 m/s in a millisecond.
 constexpr double kReachShare = 0.05;
 constexpr double kWay_m = 1e-4;
-/// Measured: for each face that is looked at, 5 to 18 are refined (boxes, capsules and spheres of 2
-/// to 16 mm on 1.3 M faces).
+/// Measured ratio: 5 to 18 faces are refined for each searched face (boxes, capsules and spheres of
+/// 2 to 16 mm on 1.3 M faces).
 constexpr double kKeptPerFace = 8.0;
 
-/// The outline of a core that lies flat: its area, and the length of its rim.
+/// Outline of a core that lies flat: its area, and the length of its rim.
 struct Outline
 {
     double area_m2;
     double rim_m;
 };
 
-/// The largest side of a box.
+/// Outline of the largest side of a box.
 Outline outline_of(const Vec3& edges_m)
 {
     std::array<double, 3> edges{edges_m.x(), edges_m.y(), edges_m.z()};

@@ -8,27 +8,27 @@
 namespace tactus::hrtc
 {
 
-/// How densely the faces of a model's source lie, at a scale of 1, on average.
+/// Mean density of the faces of a model's source, at a scale of 1.
 struct FaceDensity
 {
-    double faces{0.0};  ///< In all,
-    double per_m2{0.0}; ///< and by the area of its base mesh; 0 where that isn't here.
+    double faces{0.0};  ///< Number of all faces.
+    double per_m2{0.0}; ///< Faces by the area of the base mesh; 0 if that isn't resident.
 };
-/// Reads the base mesh. Any thread, as are the others.
+/// Density of a model, from its base mesh. Any thread; the functions below, too.
 [[nodiscard]] FaceDensity face_density(const ServedModel& model);
 
-/// About how many faces a frame looks at when the tool lies flat on a surface of that density:
-/// those below its core and in reach around it. 0 for tools that are meshes.
+/// Approximate number of faces that a frame searches if the tool lies flat on a surface of that
+/// density. These are the faces below its core and within reach around it. 0 for mesh tools.
 [[nodiscard]] double faces_under(const ToolSpec& tool, double faces_per_m2);
 
-/// What a tool that lies on a model asks for, in faces, about.
+/// Approximate demand of a tool that lies on a model, in faces.
 struct Footprint
 {
-    double faces{0.0}; ///< A frame looks at.
-    double kept{0.0};  ///< The pools need room for, beside the base mesh, where those are exact.
+    double faces{0.0}; ///< Faces that a frame searches.
+    double kept{0.0};  ///< Faces in the pools beside the base mesh, if the searched ones are exact.
 };
 
-/// Both are 0 for tools that are meshes and for a density of 0. `scale` is the object's.
+/// Demand of the tool; 0 for mesh tools and for a density of 0. `scale` is the object's.
 [[nodiscard]] Footprint footprint_of(const ToolSpec& tool, const FaceDensity& density,
                                      double scale);
 

@@ -17,12 +17,12 @@ namespace
 {
 
 constexpr int kTicksPerHalf = 5;
-/// Of a LatencyHistogram: its first 2,047 ns, and doubled until they are beyond kLongest.
+/// Octaves of a LatencyHistogram: its first 2,047 ns, doubled until beyond kLongest.
 constexpr int kOctaves = 27;
 static_assert((LatencyHistogram::kLongest.ns >> (kOctaves - 1)) < LatencyHistogram::kSubBuckets &&
               (LatencyHistogram::kLongest.ns >> (kOctaves - 2)) >= LatencyHistogram::kSubBuckets);
 
-/// The next share of all values to tell of: the nearer to 1, the closer they are.
+/// Next percentile to print, as a share. Closer to 1, the steps are smaller.
 double next_share(double share)
 {
     const double halves = std::floor(std::log2(1.0 / (1.0 - share))) + 1.0;

@@ -12,12 +12,12 @@
 namespace tactus::hrtc
 {
 
-/// The percentiles as HdrHistogram prints them, in microseconds (.hgrm): its plotter and others
-/// read them. Five lines for each half of what is left to 100 %.
+/// Percentiles in the text format of HdrHistogram (.hgrm), in microseconds, for its plotter and
+/// other readers. Each half of the remaining share has five lines.
 [[nodiscard]] std::string hdr_text(const LatencyHistogram& histogram);
 
-/// Writes one file for each of the report's times, named after it: frame.hgrm and so on. Returns
-/// why one can't be written.
+/// Writes one file for each of the report's times, named after it, such as frame.hgrm. Returns the
+/// refusal of the first that can't be written.
 [[nodiscard]] std::optional<Refusal> write_histograms(const RunStatistics& statistics,
                                                       const std::string& folder);
 

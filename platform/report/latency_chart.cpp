@@ -47,12 +47,12 @@ plot::Chart latency_chart(const std::string& title, const std::string& what,
                       .x = {},
                       .lines = {},
                       .marks = {{to_us(period), "period", plot::MarkKind::plain}}};
-    std::size_t first = 0; // The bin that holds the period, or an earlier one.
+    std::size_t first = 0; // First bin of the chart, at most that of the period.
     while (first + 2 < edges.size() && edges[first + 1] < to_us(period))
     {
         ++first;
     }
-    std::size_t last = first; // Or a later one.
+    std::size_t last = first; // Last bin of the chart, at least that of the period.
     for (const auto& [name, histogram] : histograms)
     {
         std::vector<double> counts = counts_between(*histogram, edges);
@@ -65,7 +65,7 @@ plot::Chart latency_chart(const std::string& title, const std::string& what,
             }
             else
             {
-                counts[bin] = std::numeric_limits<double>::quiet_NaN(); // Which has no logarithm.
+                counts[bin] = std::numeric_limits<double>::quiet_NaN(); // Zero has no logarithm.
             }
         }
         chart.lines.push_back({name, std::move(counts)});
@@ -76,7 +76,7 @@ plot::Chart latency_chart(const std::string& title, const std::string& what,
     for (plot::Line& line : chart.lines)
     {
         line.y = {line.y.begin() + from, line.y.begin() + end};
-        line.y.push_back(std::numeric_limits<double>::quiet_NaN()); // The last bin ends here.
+        line.y.push_back(std::numeric_limits<double>::quiet_NaN()); // End of the last bin.
     }
     return chart;
 }

@@ -12,18 +12,18 @@
 namespace tactus::hrtc
 {
 
-/// 0.1 us to 100 s, `per_decade` of them.
+/// Edges from 0.1 us to 100 s, `per_decade` in each decade.
 [[nodiscard]] std::vector<double> edges_us(int per_decade);
 
-/// Counts between neighbouring edges; what is below the first counts in the first bin.
+/// Counts between neighbouring edges. Values below the first edge count in the first bin.
 [[nodiscard]] std::vector<double> counts_between(const LatencyHistogram& histogram,
                                                  const std::vector<double>& edges);
 
 /// Histograms of one chart, with the names of their lines.
 using NamedHistograms = std::vector<std::pair<std::string, const LatencyHistogram*>>;
 
-/// Counts of what `what` names over microseconds, as far as there are any, and with the period,
-/// which is marked.
+/// Chart of the counts of `what` over microseconds, from the first to the last count. It includes
+/// the period, which is marked.
 [[nodiscard]] plot::Chart latency_chart(const std::string& title, const std::string& what,
                                         const NamedHistograms& histograms, Duration period);
 

@@ -21,25 +21,25 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-/// What helps where a limit is met.
+/// Remedy for a limit.
 enum class Remedy : std::uint8_t
 {
     pool,    ///< More --pool-mib.
     splits,  ///< More --splits, or more work a frame.
-    work,    ///< More of it, or a tool that needs less.
-    tool,    ///< No memory does.
+    work,    ///< More work a frame, or a tool that needs less.
+    tool,    ///< A smaller tool; memory does not help.
     host,    ///< A faster network.
-    objects, ///< Fewer of them.
+    objects, ///< Fewer objects.
 };
 
-/// A limit by the flag that frames have which meet it.
+/// Limit, with the flag of the frames that reached it.
 struct Limit
 {
     const char* flag;
     const char* words;
     Remedy remedy;
 };
-/// Of two that as many frames met, the one above counts.
+/// Limits in the order of precedence, if two were reached by the same number of frames.
 constexpr Limit kLimits[] = {
     {"surface_truncated", "more triangles are in reach of the tool than a frame looks at",
      Remedy::tool},
@@ -58,7 +58,7 @@ constexpr Limit kLimits[] = {
     {"chunk_late", "pieces came too late", Remedy::host},
 };
 
-/// More time for a frame; empty where its work has no limit.
+/// Remedy of a longer frame; empty if its work has no limit.
 std::string more_time(const Json& report)
 {
     const Json& frame_us = report["budgets"]["frame_us"];

@@ -9,8 +9,9 @@
 namespace tactus::hrtc
 {
 
-/// The pool or budget that most frames of the run came to the end of, with the figure and what
-/// helps: "no room for faces (pool of 2 MiB): --pool-mib 8". Empty when there was none.
+/// Limit that most frames of the run reached, with their number and the remedy, such as "no room
+/// for faces (forest_full in 12 frames): --pool-mib 8, 4 times as much". Empty if no limit was
+/// reached.
 [[nodiscard]] std::string limit_text(const nlohmann::ordered_json& report);
 
 } // namespace tactus::hrtc

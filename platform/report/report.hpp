@@ -18,18 +18,18 @@ class Controller;
 struct FinishedRun;
 struct Options;
 
-/// The report, schema 1 (docs/report.md). Later versions add keys and never rename any.
+/// Report of a run, schema 3 (docs/report.md). Later versions add keys and never rename any.
 [[nodiscard]] nlohmann::ordered_json
 make_report(const Options& options, const Controller& controller, const FinishedRun& run);
 
-/// What a person wants to know of a report: names, perhaps the same one twice, and words.
+/// Summary of a report for a reader: pairs of a name, which may occur twice, and a text.
 using SummaryFacts = std::vector<std::pair<std::string, std::string>>;
 [[nodiscard]] SummaryFacts summary_facts(const nlohmann::ordered_json& report);
 
-/// The same with the times as a few lines.
+/// Summary in a few lines, with verdict and times.
 [[nodiscard]] std::string make_summary(const nlohmann::ordered_json& report);
 
-/// Writes the report whole or not at all; returns why not.
+/// Writes the report as a whole or not at all. Returns the reason if that fails.
 [[nodiscard]] std::optional<Refusal> write_report(const nlohmann::ordered_json& report,
                                                   const std::string& path);
 

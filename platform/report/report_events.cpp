@@ -20,7 +20,7 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-/// The names of the bits that are set.
+/// Names of the bits that are set.
 template <std::size_t Count>
 Json names_of(unsigned bits, const std::array<const char*, Count>& names)
 {
@@ -52,7 +52,7 @@ Json event_of(const SafetyEvent& event, MonotonicTime start)
               {"tool", event.tool},
               {"state", kSafetyStateNames[static_cast<std::size_t>(event.state)]},
               {"causes", names_of(static_cast<unsigned>(event.causes), kForceOffNames)}};
-    if (event.by_supervisor) // It counts no frames.
+    if (event.by_supervisor) // The supervisor counts no frames.
     {
         json["frame"] = nullptr;
     }

@@ -9,14 +9,14 @@ namespace tactus::hrtc
 
 struct FinishedRun;
 
-/// What the report says of a run's deadlines, and of single cycles of it.
+/// Deadlines of a run in the report, with single cycles.
 [[nodiscard]] nlohmann::ordered_json deadlines_of(const FinishedRun& run);
 
-/// What it says of the force that was off, when and why.
+/// Times and causes without force in the report.
 [[nodiscard]] nlohmann::ordered_json safety_of(const FinishedRun& run);
 
-/// What it says of the servers whose word counts: what became of them, and when; before the loop
-/// below 0 s.
+/// Servers with authority in the report, with their events. Times count from the first safety
+/// event; earlier ones are negative.
 [[nodiscard]] nlohmann::ordered_json servers_of(const FinishedRun& run);
 
 } // namespace tactus::hrtc

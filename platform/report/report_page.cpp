@@ -22,7 +22,7 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-/// With more models their number is the title.
+/// Most names in the title; with more models it gives their number.
 constexpr std::size_t kNamesInTitle = 4;
 
 std::string text_of(const Json& value)
@@ -58,7 +58,7 @@ struct Figure
     bool is_number;
 };
 
-/// Everything below an object, named "outer.inner"; lists of objects have tables.
+/// Adds all figures below an object, named "outer.inner". Lists of objects are left to tables.
 void flatten(const Json& object, const std::string& before, std::vector<Figure>& figures)
 {
     for (const auto& [key, value] : object.items())
@@ -92,7 +92,7 @@ plot::Table facts_of(const Json& object)
     return plot::facts(facts);
 }
 
-/// A line for each entry of a list whose entries are alike.
+/// Table with a line for each entry of a list of similar entries.
 plot::Table table_of(const Json& list)
 {
     plot::Table table;
@@ -111,7 +111,7 @@ plot::Table table_of(const Json& list)
     return table;
 }
 
-/// The same with a column for each entry, for entries of many figures.
+/// Table with a column for each entry, for entries of many figures.
 plot::Table columns_of(const Json& list)
 {
     plot::Table table{{{"", false}}, {}};
@@ -168,7 +168,7 @@ void add_verdict(const Json& report, plot::Page& page)
                  true);
 }
 
-/// Vertical lines where a deadline was missed or a force withheld.
+/// Vertical lines at missed deadlines and withheld forces.
 std::vector<plot::Mark> marks_of(const Json& report, const RunStatistics& statistics)
 {
     const double period_s = report["period_ns"].get<double>() * 1e-9;
@@ -190,7 +190,7 @@ std::vector<plot::Mark> marks_of(const Json& report, const RunStatistics& statis
     }
     for (const Json& event : report["safety"]["events"])
     {
-        const Json& frame = event["frame"]; // None of the supervisor's.
+        const Json& frame = event["frame"]; // Null for events of the supervisor.
         const bool is_end = event["causes"] == Json{"software"};
         if (frame.is_number() && !event["causes"].empty() && !is_end)
         {
@@ -202,7 +202,7 @@ std::vector<plot::Mark> marks_of(const Json& report, const RunStatistics& statis
     return marks;
 }
 
-/// Force, bounds and, where there are some, stage times over the run.
+/// Charts of force, bounds and, if `has_times`, stage times over the run.
 std::vector<plot::Chart> series_of(const Json& report, const RunStatistics& statistics,
                                    bool has_times)
 {
@@ -264,7 +264,7 @@ void add_times(const Json& report, const RunStatistics& statistics, plot::Page& 
     page.charts(series_of(report, statistics, has_times));
     if (!has_times)
     {
-        return; // Nothing took any.
+        return; // Virtual time has no stage times.
     }
     page.heading("Times");
     page.table(times_of(report["times_us"]));
@@ -285,7 +285,7 @@ void add_times(const Json& report, const RunStatistics& statistics, plot::Page& 
                                period)});
 }
 
-/// A list in a section of its own, unless it is empty.
+/// Adds a list in a section of its own, unless it is empty.
 void add_list(const char* heading, const Json& list, plot::Table (*to_table)(const Json& list),
               plot::Page& page)
 {

@@ -13,10 +13,9 @@
 namespace tactus::hrtc
 {
 
-/// A run's report as an HTML page: what it comes to, every figure of the report, and charts of
-/// `statistics`, those that the report is made from: force, bounds and stage times over the run,
-/// and histograms of the times.
-/// `relief` shows where the tools were; without it the page has no picture.
+/// HTML page of a run's report, with the verdict, all figures and charts. `statistics` must be
+/// those of the report. The charts show force, bounds and stage times over the run, and histograms
+/// of the times. `relief` shows the paths of the tools; without it the page has no picture.
 [[nodiscard]] std::string make_page(const nlohmann::ordered_json& report,
                                     const RunStatistics& statistics, plot::ChartLibrary library,
                                     const plot::Relief& relief = {});

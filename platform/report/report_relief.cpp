@@ -20,7 +20,7 @@ namespace tactus::hrtc
 namespace
 {
 
-/// More make the page large and no picture better.
+/// Most faces; more enlarge the page without a better picture.
 constexpr std::size_t kFacesMax = 8'000;
 
 plot::Place to_place(const Vec3& place_m)
@@ -29,7 +29,7 @@ plot::Place to_place(const Vec3& place_m)
             static_cast<float>(place_m.z())};
 }
 
-/// In the world; none of a model whose base mesh isn't here.
+/// Base faces of an object in the world; empty if the base mesh isn't resident.
 std::vector<std::array<plot::Place, 3>> faces_of(const Controller& controller, std::size_t object)
 {
     const ServedModel& model = controller.models()[controller.objects()[object].model.value];
@@ -53,7 +53,7 @@ std::vector<std::array<plot::Place, 3>> faces_of(const Controller& controller, s
     return faces;
 }
 
-/// Numbers of the objects, those first whose origin is nearest to the middle of the ways.
+/// Numbers of the objects, in the order of their origins' distance to the middle of the paths.
 std::vector<std::size_t> nearest_first(const Controller& controller,
                                        const std::vector<std::vector<plot::WayPoint>>& ways)
 {

@@ -9,8 +9,8 @@
 namespace tactus::hrtc
 {
 
-/// Where the tools were and with what force, and the base meshes of the objects that are nearest to
-/// their ways, as they stood at the start. For once the loop has ended.
+/// Paths of the tools with their forces, and the base meshes of the nearest objects at their first
+/// poses. Call it once the loop has ended.
 [[nodiscard]] plot::Relief relief_of(const Controller& controller, const RunStatistics& statistics);
 
 } // namespace tactus::hrtc

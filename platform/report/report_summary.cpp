@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// The report for a person: a few lines.
+/// Summary of the report in a few lines for a reader.
 
 #include "platform/report/report.hpp"
 #include "platform/report/verdict.hpp"
@@ -33,10 +33,10 @@ std::string work_text(const Json& budgets)
         budgets["work_done"]["max"].get<std::uint32_t>(), budgets["at_floor"].get<std::uint64_t>());
 }
 
-/// With more of them one line tells of all.
+/// Most models with a line each; more are summed up in one line.
 constexpr std::size_t kModelsInLines = 4;
 
-/// Of the objects that hosts move: the first of each model.
+/// Adds the moved objects: of each model the first that shows it.
 void add_poses(const Json& models, SummaryFacts& facts)
 {
     SummaryFacts lines;
@@ -45,7 +45,8 @@ void add_poses(const Json& models, SummaryFacts& facts)
     for (const Json& model : models)
     {
         const Json& pose = model["pose"];
-        if (pose.is_null() || !pose["followed"].get<bool>()) // Null: a tool.
+        if (pose.is_null() || !pose["followed"].get<bool>()) // Null if no object shows the model at
+                                                             // the start.
         {
             continue;
         }
@@ -67,7 +68,7 @@ void add_poses(const Json& models, SummaryFacts& facts)
     facts.insert(facts.end(), lines.begin(), lines.end());
 }
 
-/// At the end; nothing where all models are here.
+/// Stages of the models at the end; empty if all models are resident.
 std::string stages_text(const Json& models)
 {
     std::string text;
@@ -81,7 +82,7 @@ std::string stages_text(const Json& models)
     return are_all_here ? "" : "; models at the end:" + text;
 }
 
-/// Of more than one object.
+/// Adds the scene if it has more than one object.
 void add_scene(const Json& scene, SummaryFacts& facts)
 {
     if (scene["objects_max"].get<std::uint64_t>() > 1)
@@ -97,7 +98,7 @@ void add_scene(const Json& scene, SummaryFacts& facts)
     }
 }
 
-/// None when no force was another than the frame's.
+/// Adds the changes of forces by the passivity controller and stiffness limit, if there were any.
 void add_stability(const Json& tools, SummaryFacts& facts)
 {
     std::uint64_t capped = 0;
@@ -125,7 +126,7 @@ void add_stability(const Json& tools, SummaryFacts& facts)
     }
 }
 
-/// None when the force went off for the end of the run alone.
+/// Adds the causes of fades, except for the end of the run.
 void add_safety(const Json& safety, SummaryFacts& facts)
 {
     std::string causes;
@@ -188,7 +189,7 @@ std::string deadlines_text(const Json& report)
         counted(report["realtime"]["page_faults"].get<std::uint64_t>(), "page fault"));
 }
 
-/// Models that are here as a whole.
+/// Adds the models in static mode.
 void add_static(const Json& models, SummaryFacts& facts)
 {
     SummaryFacts lines;
@@ -211,7 +212,7 @@ void add_static(const Json& models, SummaryFacts& facts)
     facts.insert(facts.end(), lines.begin(), lines.end());
 }
 
-/// A line when others on the domain said what was refused.
+/// Adds a line if messages of other participants were refused.
 void add_refused(const Json& peers, SummaryFacts& facts)
 {
     std::uint64_t refused = 0;
@@ -230,7 +231,7 @@ void add_refused(const Json& peers, SummaryFacts& facts)
     }
 }
 
-/// A line when a server went, was replaced, or there was a second one of its name.
+/// Adds a line if a server was lost or replaced, or another one offered the same name.
 void add_servers(const Json& servers, SummaryFacts& facts)
 {
     const auto count = [&](const char* key) { return servers[key].get<std::uint64_t>(); };
@@ -244,7 +245,7 @@ void add_servers(const Json& servers, SummaryFacts& facts)
     }
 }
 
-/// How the models came, and what of them is here.
+/// Adds memory, streaming and arrival times of the models.
 void add_models(const Json& report, SummaryFacts& facts)
 {
     const Json& pools = report["pools"];
@@ -275,7 +276,7 @@ void add_models(const Json& report, SummaryFacts& facts)
     add_refused(report["refused"], facts);
 }
 
-/// Of tools that turn.
+/// Largest torque; empty without torques.
 std::string torque_text(const Json& tools)
 {
     double most_nm = 0.0;
@@ -286,7 +287,7 @@ std::string torque_text(const Json& tools)
     return most_nm > 0.0 ? fmt::format("; torque at most {:.4f} N m", most_nm) : "";
 }
 
-/// Frames and their shares; the data-limited share, where less was felt, only if there is one.
+/// Number of frames and their shares. The data-limited share appears only if it isn't zero.
 std::string frames_text(const Json& report)
 {
     const auto percent = [&report](const char* share)

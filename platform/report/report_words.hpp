@@ -8,10 +8,10 @@
 namespace tactus::hrtc
 {
 
-/// A word of the summary and the verdict, and what it means.
+/// Word of the summary or the verdict, and its meaning.
 using ReportWord = std::pair<const char*, const char*>;
 
-/// All that a reader of the page may not know: answers, times, causes of a force that went off.
+/// Words of the page that a reader may not know: answers, times, causes of a fade.
 [[nodiscard]] std::span<const ReportWord> report_words() noexcept;
 
 } // namespace tactus::hrtc

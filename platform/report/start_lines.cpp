@@ -25,21 +25,21 @@ namespace tactus::hrtc
 namespace
 {
 
-/// With more objects one line tells of all.
+/// Most objects with a line each; more are summed up in one line.
 constexpr std::size_t kObjectsInLines = 4;
-/// A tool so many times as large as what it touches is most likely in another unit.
+/// Size of a tool, in sizes of the largest object, that suggests another unit of length.
 constexpr double kMuchLarger = 3.0;
 
-/// Where an object's box is in the world, and how large.
+/// Box of an object in the world.
 struct Surroundings
 {
     Vec3 center_m;
-    Vec3 edges_m; ///< Along the model's axes, scaled.
+    Vec3 edges_m; ///< Edges along the model's axes, scaled.
 
     [[nodiscard]] double radius_m() const { return 0.5 * edges_m.norm(); }
 };
 
-/// To a tenth of a millimetre.
+/// Coordinates, rounded to a tenth of a millimetre.
 std::string text_of(const Vec3& place_m)
 {
     const auto rounded = [](double value) { return std::round(1e4 * value) / 1e4 + 0.0; };
@@ -63,7 +63,7 @@ std::vector<Surroundings> surroundings_of(const Controller& controller)
     return all;
 }
 
-/// The object's own name, of a scene's, and its model's.
+/// Name of the object's model, with the object's own name if a scene gives it one.
 std::string name_of(const Options& options, const Controller& controller, std::size_t object)
 {
     const std::string& model = controller.models()[controller.objects()[object].model.value].name;
@@ -71,7 +71,7 @@ std::string name_of(const Options& options, const Controller& controller, std::s
     return own.empty() || own == model ? model : fmt::format("{} ({})", own, model);
 }
 
-/// What was left to its default, of so many of the objects, where others were not; in words.
+/// Text on the objects with a default place or material, if other objects have a given one.
 std::string defaults_of(const Options& options, std::span<const PlacedObject> objects)
 {
     const auto left_by = [&](bool PlacedObject::*given) -> std::string
@@ -86,7 +86,7 @@ std::string defaults_of(const Options& options, std::span<const PlacedObject> ob
            (materials.empty() ? "" : materials + " --material: as stiff as --stiffness, smooth");
 }
 
-/// What the options say of an object; nothing of a scene's.
+/// Options of an object; empty for an object of a host's scene.
 std::span<const PlacedObject> placed_object(const Options& options, std::size_t object)
 {
     return object < options.objects.size() ? std::span(options.objects).subspan(object, 1)
@@ -121,7 +121,7 @@ std::string object_lines(const Options& options, const Controller& controller,
     return text;
 }
 
-/// What the tool comes to where its device reaches; of nothing, how far the nearest object is away.
+/// Number of the objects in the device's reach; if none is, the distance of the nearest.
 std::string reach_of(const Options& options, const ToolSetup& tool, const Controller& controller,
                      const std::vector<Surroundings>& objects)
 {
@@ -151,7 +151,7 @@ std::string reach_of(const Options& options, const ToolSetup& tool, const Contro
         *nearest);
 }
 
-/// Nothing unless the tool is several times as large as all that it can touch.
+/// Note on a tool several times as large as all objects; else empty.
 std::string size_note(const ToolSetup& tool, const std::vector<Surroundings>& objects)
 {
     double largest_m = 0.0;
@@ -164,15 +164,15 @@ std::string size_note(const ToolSetup& tool, const std::vector<Surroundings>& ob
                                : fmt::format(", {:.2g} TIMES AS LARGE as what it can touch", times);
 }
 
-/// A count above 0, to two digits: 27000.
+/// Count above 0, to two digits, such as 27000.
 std::string about(double count)
 {
     const double step = std::pow(10.0, std::max(0.0, std::floor(std::log10(count)) - 1.0));
     return fmt::format("{:.0f}", std::round(count / step) * step);
 }
 
-/// Nothing unless more faces lie below the tool, on the densest of the objects, than a frame looks
-/// at or the pools have room for.
+/// Note if more faces lie below the tool than a frame searches or the pools can hold. The densest
+/// object counts. Else empty.
 std::string footprint_note(const ToolSetup& tool, const Controller& controller,
                            const std::vector<FaceDensity>& densities)
 {
@@ -206,7 +206,7 @@ std::string footprint_note(const ToolSetup& tool, const Controller& controller,
                                                    : "MAY BE HELD BACK, without --force-tolerance");
 }
 
-/// Which of the rule's terms makes the wall softer than asked.
+/// Term of the stiffness limit that softens the wall below the asked stiffness.
 std::string softened_by(const ToolSetup& tool, double damping_n_s_per_m, double asked_n_per_m)
 {
     const DeviceLimits& device = tool.device->info().limits;
@@ -234,7 +234,7 @@ std::string tool_line(const Options& options, const ToolSetup& tool, const Contr
     const DeviceInfo& device = tool.device->info();
     const auto& centre = device.workspace_centre_world_m;
     const double asked = options.stiffness_n_per_m;
-    double damping_n_s_per_m = 0.0; // The most there is allows the least.
+    double damping_n_s_per_m = 0.0; // The largest damping gives the lowest limit.
     for (const PlacedObject& object : options.objects)
     {
         damping_n_s_per_m = std::max(damping_n_s_per_m, object.material.damping_n_s_per_m);

@@ -10,9 +10,9 @@
 namespace tactus::hrtc
 {
 
-/// What is to be touched, where, and what each tool can do there: a line for each object, or one
-/// for many, and one for each tool. What will come to nothing says so, as does what was left to its
-/// default where others were not.
+/// Lines on the objects, their places, and the tools: one for each object, or one for many, and one
+/// for each tool. They warn of objects out of reach and of walls too soft to feel. They name
+/// defaults if other objects have given values.
 [[nodiscard]] std::string start_lines(const Options& options, const Controller& controller);
 
 } // namespace tactus::hrtc

@@ -23,10 +23,11 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-/// A smaller share of a run is data-limited by the time that data takes to arrive.
+/// Least data-limited share of a run for a complaint. Smaller shares come from the time that data
+/// takes to arrive.
 constexpr double kDataLimitedShare = 0.25;
 
-/// Collects what there is to be said.
+/// Collects the complaints.
 class Judge
 {
 public:
@@ -51,8 +52,7 @@ private:
     {
         return report_["safety"]["begun"].value(cause, std::uint64_t{0});
     }
-    /// Whether the loop came late, and for the machine's sake. A watchdog alone may be the
-    /// device's.
+    /// True if the loop was late because of the machine. A watchdog alone may be the device's.
     [[nodiscard]] bool is_latency_miss() const
     {
         return begun("stall") > 0 && report_["deadline"]["overrun"].get<std::uint64_t>() == 0;
@@ -114,7 +114,7 @@ void Judge::judge_models()
     }
 }
 
-/// What is known of the surface, and what keeps it from being known.
+/// Judges the answers, and names the limit that kept them from being exact.
 void Judge::judge_answers()
 {
     const Json& answers = report_["answers"];
@@ -195,7 +195,7 @@ void Judge::judge_controller()
     }
 }
 
-/// Causes that are told with what they are about are not told here.
+/// Lists the causes of fades, except for those in other complaints.
 void Judge::judge_forces()
 {
     std::string causes;
@@ -223,7 +223,7 @@ void Judge::judge_walls()
     const Json& tools = report_["tools"];
     for (std::size_t i = 0; i < tools.size(); ++i)
     {
-        const Json& softest = tools[i]["least_stiffness_n_per_m"]; // Null: none was softened.
+        const Json& softest = tools[i]["least_stiffness_n_per_m"]; // Null: no wall was softened.
         if (!softest.is_null() && softest.get<double>() < kSoftestFelt_n_per_m)
         {
             say_loss(RunPart::controller,
@@ -233,7 +233,7 @@ void Judge::judge_walls()
     }
 }
 
-/// A stall is a fade of some milliseconds, and no force that was off.
+/// Judges the machine. A stall is a fade of a few milliseconds, so it doesn't count as a force off.
 void Judge::judge_machine()
 {
     const auto stopped = report_["deadline"]["stopped"].get<std::uint64_t>();

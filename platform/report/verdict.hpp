@@ -12,34 +12,33 @@
 namespace tactus::hrtc
 {
 
-/// What a complaint is about.
+/// Subject of a complaint.
 enum class RunPart : std::uint8_t
 {
-    scene,      ///< Mesh, scene and those who serve them.
+    scene,      ///< Mesh, scene and their hosts.
     controller, ///< This program, its options and devices.
-    machine,    ///< What the loop runs on.
+    machine,    ///< Machine of the loop.
 };
 
-/// Something that no user wants to see of a run.
+/// Undesired event or state of a run.
 struct Complaint
 {
     RunPart part;
     std::string words;
-    bool is_loss{
-        false}; ///< Something was lost or came to nothing: with --strict the run has failed.
+    bool is_loss{false}; ///< True for a loss or an empty result, which fails with --strict.
 
     [[nodiscard]] bool operator==(const Complaint&) const = default;
 };
 
-/// None when the run was as it should be.
+/// Complaints on a run; empty if there are none.
 [[nodiscard]] std::vector<Complaint> complaints_of(const nlohmann::ordered_json& report);
 
 [[nodiscard]] bool has_loss(std::span<const Complaint> complaints) noexcept;
 
-/// Whether neither mesh and scene nor the controller is complained of.
+/// True if no complaint concerns the scene or the controller.
 [[nodiscard]] bool is_machine_alone(std::span<const Complaint> complaints) noexcept;
 
-/// "ok", or mesh and scene, controller and machine judged apart.
+/// Text "ok", or the verdict on scene, controller and machine separately.
 [[nodiscard]] std::string verdict_text(std::span<const Complaint> complaints);
 
 } // namespace tactus::hrtc

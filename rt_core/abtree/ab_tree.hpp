@@ -20,8 +20,8 @@
 namespace tactus
 {
 
-/// Three words of the 3DIM 2005 paper for a node: *inactive* nodes are not in the tree, *deformed*
-/// ones wait for refit.
+/// Node states of the 3DIM 2005 paper: *inactive* nodes are not in the tree, *deformed* ones wait
+/// for refit.
 enum class NodeStatus : std::uint8_t
 {
     inactive,
@@ -29,24 +29,24 @@ enum class NodeStatus : std::uint8_t
     deformed,
 };
 
-/// The Active Bounding Tree over one model's active faces, in a pool that other trees may be in as
-/// well.
+/// The Active Bounding Tree over one model's active faces, in a pool that other trees may share.
 ///
-/// It is a path-compressed radix tree. A face's path is its bucket (the upper bits of its rank in
-/// the left-full median order of the finest mesh's faces) followed by its id with the bits mixed,
-/// so paths differ and depend on nothing but the face. Leaves are blocks: the largest binary cells
-/// of the path space that hold at most 16 active faces over at most 16 vertices. Binary levels
-/// are collapsed into 8-wide nodes. Nodes and blocks exist only where faces are active.
+/// It is a path-compressed radix tree. A face's path is its bucket followed by its id with the bits
+/// mixed. The bucket is the upper bits of its rank in the left-full median order of the finest
+/// mesh's faces. So paths differ and depend on nothing but the face. Leaves are blocks: the largest
+/// binary cells of the path space that hold at most 16 active faces over at most 16 vertices.
+/// Binary levels are collapsed into 8-wide nodes. Nodes and blocks exist only where faces are
+/// active.
 ///
-/// Changes go in face by face; boxes are right again after refit(), which visits deformed
-/// blocks and nodes only, level by level from below, and stops where a box did not change. A box
-/// holds its faces inflated by their error bounds, so a face's distance minus its error is never
-/// less than the distance of any box around it.
+/// Changes are made face by face. refit() then updates the boxes. It visits deformed blocks and
+/// nodes only, level by level from below, and stops where a box did not change. A box holds its
+/// faces inflated by their error bounds. So a face's distance minus its error is never less than
+/// the distance of any box around it.
 ///
-/// When the pool has no more for it a face stays *unplaced*: is_complete() is false then and a
-/// query may prove nothing; unplaced faces are offered again by the caller in later frames.
+/// If the pool is exhausted a face stays *unplaced*: is_complete() is then false and a query may
+/// prove nothing. The caller offers unplaced faces again in later frames.
 ///
-/// A block or node that is freed while it waits for refit is the pool's again after that.
+/// A block or node that is freed while it waits for refit returns to the pool after that.
 ///
 /// The bounding volume is a policy (AabbVolume in volume.hpp ships). All memory is the pool's.
 ///
@@ -66,33 +66,33 @@ public:
         std::uint32_t nodes{0};
     };
 
-    /// Pool and kernels must outlive the tree; blocks and nodes of `least` are kept for it in the
-    /// pool. No two trees of a pool have the same owner, which is below kMaxModels.
+    /// Pool and kernels must outlive the tree. Blocks and nodes of `least` are reserved for it in
+    /// the pool. Each tree of a pool has its own owner, below kMaxModels.
     BasicAbTree(Pool& pool, ModelId owner, const TreeCapacities& least, float quantum_m,
                 const Kernels& kernels = best_kernels()) noexcept;
 
-    /// Adds a face; its prim has none so far, in any tree of the pool.
+    /// Adds a face; its prim must have none in any tree of the pool.
     void insert(const ChangedFace& face) noexcept TACTUS_NONBLOCKING;
 
-    /// One corner (0 .. 2) of the face has moved, and its error changed: what a split or a merge
-    /// does to a fan face, for much less than removing and inserting it. Without effect on an
-    /// unplaced face.
+    /// Moves one corner (0 .. 2) of the face and changes its error. Splits and merges do this to
+    /// fan faces, for much less than removing and inserting them. Without effect on an unplaced
+    /// face.
     void move_corner(PrimId prim, std::uint32_t corner, const Vec3f& position_m,
                      ErrorCode error) noexcept TACTUS_NONBLOCKING;
 
     /// Removes the prim's face, placed or not.
     void remove(PrimId prim) noexcept TACTUS_NONBLOCKING;
 
-    /// A vertex of a block (leaf_of() / 16) has moved: all its faces there follow. For meshes that
-    /// deform; a vertex has a row in each block whose faces it is a corner of.
+    /// Moves a vertex of a block (leaf_of() / 16) with all its faces there. For deforming meshes. A
+    /// vertex has a row in each block whose faces it is a corner of.
     void move_vertex(std::uint32_t block, std::uint32_t row,
                      const Vec3f& position_m) noexcept TACTUS_NONBLOCKING;
 
-    /// As if every face had changed: for measuring what refit() saves.
+    /// Marks every face as changed, to measure what refit() saves.
     void mark_all() noexcept TACTUS_NONBLOCKING;
 
-    /// Makes all boxes right again. At most one visit for each dirty block and for each node on a
-    /// path from one to the root.
+    /// Updates all boxes. Visits each dirty block, and each node on a path from one to the root, at
+    /// most once.
     RefitWork refit() noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] bool is_complete() const noexcept { return first_unplaced_ == kLastUnplaced; }
@@ -102,7 +102,7 @@ public:
         const std::uint32_t leaf = prims_[prim.value].leaf;
         return (leaf & kUnplaced) != 0 && leaf != kNoLeaf;
     }
-    /// Offers each unplaced face once more; `describe(prim)` tells the face as it is now.
+    /// Offers each unplaced face once more; `describe(prim)` returns the face as it is now.
     template <typename Describe>
     void offer_unplaced(const Describe& describe) noexcept
     {
@@ -121,23 +121,21 @@ public:
             index = next;
         }
     }
-    /// A face that is in the tree, placed or not: whichever is found at once. None when it is
-    /// empty.
+    /// Any face in the tree, placed or not, found without a search. None if the tree is empty.
     [[nodiscard]] PrimId any_prim() const noexcept TACTUS_NONBLOCKING;
-    /// Keeps blocks and nodes in the pool for a tree that is empty and had nothing kept. False,
-    /// with nothing changed, where the pool has no room.
+    /// Reserves blocks and nodes in the pool for an empty tree without a reservation. False, with
+    /// nothing changed, if the pool has too few.
     [[nodiscard]] bool try_promise(const TreeCapacities& least) noexcept TACTUS_NONBLOCKING
     {
         return pool_->try_promise(share_, least);
     }
-    /// The tree is empty, and was refitted since: nothing is kept for it any more.
+    /// Ends the reservation of a tree that is empty and was refitted since.
     void end_promise() noexcept TACTUS_NONBLOCKING { pool_->end_promise(share_); }
     /// Blocks and nodes that one more changed face may need at worst.
     static constexpr std::uint32_t kReserve = kBlockFaces + 1;
     [[nodiscard]] bool has_room_for(std::uint32_t changed_faces) const noexcept TACTUS_NONBLOCKING;
 
-    /// The number of the last change, of no other tree of the pool: what was proven of the tree
-    /// holds while this is the same.
+    /// Number of the last change, unique in the pool. Proven distances hold while this is the same.
     [[nodiscard]] std::uint64_t last_change() const noexcept { return last_change_; }
     [[nodiscard]] TreeRef root() const noexcept { return root_; }
     [[nodiscard]] const Node& node(std::uint32_t index) const noexcept { return nodes_[index]; }
@@ -157,7 +155,7 @@ public:
     {
         return index < nodes_.size() && nodes_[index].in_use && nodes_[index].owner == owner_;
     }
-    /// Brings a node or a block on its way into the cache.
+    /// Prefetches a node or a block into the cache.
     void prefetch(TreeRef ref) const noexcept
     {
         const void* first = ref.is_block() ? static_cast<const void*>(&blocks_[ref.index()])
@@ -171,17 +169,18 @@ public:
             __builtin_prefetch(&sides_[ref.index()].coarse);
         }
     }
-    /// Volume of the whole tree; empty when the tree is.
+    /// Volume of the whole tree; empty if the tree is.
     [[nodiscard]] Box box() const noexcept TACTUS_NONBLOCKING;
     /// The box of one of its nodes or blocks, errors added.
     [[nodiscard]] Box box_of(TreeRef ref) const noexcept TACTUS_NONBLOCKING;
-    /// The face that a prim stands for; its lasting name, used for ties and answers.
+    /// The face that a prim stands for: its lasting name, used for ties and answers.
     [[nodiscard]] FaceId face_of(PrimId prim) const noexcept
     {
         TACTUS_ASSERT(prim.value < prims_.size());
         return prims_[prim.value].face;
     }
-    /// Block x 16 + lane of a prim, or kNoLeaf. With `parent` of blocks and nodes: the way up.
+    /// Block x 16 + lane of a prim, or kNoLeaf. With `parent` of blocks and nodes it gives the path
+    /// to the root.
     static constexpr std::uint32_t kNoLeaf = TreePrim::kNoLeaf;
     [[nodiscard]] std::uint32_t leaf_of(PrimId prim) const noexcept
     {
@@ -255,7 +254,7 @@ private:
     Pool* pool_;
     float quantum_m_;
     const Kernels* kernels_;
-    std::span<BlockGeometry> blocks_; ///< All of the pool's, as the three below.
+    std::span<BlockGeometry> blocks_; ///< Arrays of the whole pool, here and in the three below.
     std::span<BlockSide> sides_;
     std::span<Node> nodes_;
     std::span<Prim> prims_;
@@ -263,8 +262,8 @@ private:
     TreeRef root_;
     std::uint64_t last_change_{0};
     std::uint8_t owner_;
-    TreeShare share_;                     ///< With what was freed and waits for refit.
-    std::uint32_t marked_block_{kNoNode}; ///< First of its list, as the two below.
+    TreeShare share_;                     ///< Share, with freed parts that wait for refit.
+    std::uint32_t marked_block_{kNoNode}; ///< Head of its list, like the two below.
     std::uint32_t marked_node_{kNoNode};
     std::uint32_t first_unplaced_{kLastUnplaced};
     std::uint32_t blocks_used_{0};

@@ -47,7 +47,7 @@ typename BasicAbTree<Volume>::RefitWork BasicAbTree<Volume>::refit() noexcept
     }
     for (std::uint32_t& head : dirty_heads_)
     {
-        // A parent's level is higher than its children's, so it is reached after all of them.
+        // A parent's level is higher than its children's, so it is visited after all of them.
         while (head != kNoNode)
         {
             Node& node = nodes_[head];
@@ -95,7 +95,7 @@ void BasicAbTree<Volume>::pass_up(std::uint32_t parent, std::uint32_t child, con
     enqueue(parent);
 }
 
-/// What was freed while it waited for refit waits no more.
+/// Returns parts that were freed while they waited for refit.
 template <typename Volume>
 void BasicAbTree<Volume>::give_back_freed() noexcept
 {
@@ -123,7 +123,7 @@ void BasicAbTree<Volume>::give_back_freed() noexcept
     }
 }
 
-/// Into the list of what waits for refit, unless it is there.
+/// Adds a block or node to the list of parts that wait for refit, unless it is there.
 template <typename Volume>
 void BasicAbTree<Volume>::mark(TreeRef ref) noexcept
 {
@@ -166,7 +166,7 @@ void BasicAbTree<Volume>::mark_all() noexcept
     }
 }
 
-/// Into refit's list of the node's level, unless it is there.
+/// Adds a node to refit's list of its level, unless it is there.
 template <typename Volume>
 void BasicAbTree<Volume>::enqueue(std::uint32_t index) noexcept
 {

@@ -8,15 +8,15 @@
 
 #include <bit>
 
-/// How the AB-Tree grows and shrinks: included where the tree is instantiated for a volume.
+/// Growth and shrinking of the AB-Tree: included where the tree is instantiated for a volume.
 namespace tactus
 {
 
 namespace detail
 {
 
-/// Sibling cells with at most this many faces together become one block again; the gap to the 16
-/// at which a block splits keeps a face that comes and goes from splitting it each time.
+/// Number of faces up to which sibling cells become one block again. A block splits at 16; the gap
+/// keeps a face that comes and goes from splitting it each time.
 inline constexpr std::uint32_t kMergeFaces = 10;
 static_assert(kMergeFaces < kBlockFaces);
 
@@ -178,7 +178,7 @@ void BasicAbTree<Volume>::insert_below(TreeRef ref, const ChangedFace& face,
     TACTUS_ASSERT(false && "a path has no more digits than levels");
 }
 
-/// The path leaves the tree above `node`: a new node takes both.
+/// Inserts a face whose path leaves the tree above `node`: a new node takes both.
 template <typename Volume>
 void BasicAbTree<Volume>::insert_beside(std::uint32_t node, const ChangedFace& face,
                                         std::uint64_t path) noexcept
@@ -193,7 +193,8 @@ void BasicAbTree<Volume>::insert_beside(std::uint32_t node, const ChangedFace& f
     TACTUS_ASSERT(added);
 }
 
-/// Prefers to widen a block beside the free digit to the binary cell that holds both.
+/// Inserts a face at a free digit. If possible, a block beside the digit is widened to the binary
+/// cell that holds both.
 template <typename Volume>
 void BasicAbTree<Volume>::insert_at_free_digit(std::uint32_t node_index, const ChangedFace& face,
                                                std::uint32_t digit) noexcept
@@ -243,7 +244,7 @@ void BasicAbTree<Volume>::update(const ChangedFace& face) noexcept
     }
 }
 
-/// The face has left its lane of `block`, where there are not enough rows for it now.
+/// Inserts a face that has left its lane of `block` because the rows no longer suffice.
 template <typename Volume>
 void BasicAbTree<Volume>::reinsert(std::uint32_t block, const ChangedFace& face) noexcept
 {
@@ -307,8 +308,8 @@ bool BasicAbTree<Volume>::try_add(std::uint32_t block, const ChangedFace& face) 
     return true;
 }
 
-/// Parts the block into smaller binary cells until the face finds room in its own. Each round parts
-/// at least one face off, so there are at most as many as faces.
+/// Parts the block into smaller binary cells until the face fits into its own. Each round parts off
+/// at least one face, so there are at most as many rounds as faces.
 template <typename Volume>
 void BasicAbTree<Volume>::split_block(std::uint32_t block, const ChangedFace& face) noexcept
 {
@@ -341,8 +342,8 @@ void BasicAbTree<Volume>::split_block(std::uint32_t block, const ChangedFace& fa
     TACTUS_ASSERT(false && "a face alone fits a block");
 }
 
-/// Halves the block's cell by a bit of the paths, above which they all agree with `path`; the lanes
-/// `apart` differ from it in that bit. Returns the block of the half with `path`.
+/// Halves the block's cell by a bit of the paths, above which they all agree with `path`. The lanes
+/// `apart` differ from `path` in that bit. Returns the block of the half with `path`.
 template <typename Volume>
 std::uint32_t BasicAbTree<Volume>::part(std::uint32_t block, std::uint32_t bit, std::uint64_t path,
                                         std::uint32_t apart) noexcept
@@ -405,7 +406,7 @@ std::uint32_t BasicAbTree<Volume>::node_above(std::uint32_t block, std::uint32_t
     return above;
 }
 
-/// A block that lost a face takes in its sibling cell while both fit into kMergeFaces.
+/// Merges a block that lost a face with its sibling cells while both fit into kMergeFaces.
 template <typename Volume>
 void BasicAbTree<Volume>::merge_upward(std::uint32_t block) noexcept
 {
@@ -437,7 +438,8 @@ void BasicAbTree<Volume>::merge_upward(std::uint32_t block) noexcept
     }
 }
 
-/// Moves all faces of `other` into `block` and frees it; nothing changes when they do not fit.
+/// Moves all faces of `other` into `block` and frees it. False, with nothing changed, if they do
+/// not fit.
 template <typename Volume>
 bool BasicAbTree<Volume>::try_absorb(std::uint32_t block, std::uint32_t other) noexcept
 {
@@ -511,7 +513,8 @@ void BasicAbTree<Volume>::detach(std::uint32_t node_index, std::uint32_t child) 
     mark(TreeRef::to_node(node_index));
 }
 
-/// Puts `new_ref` where `old_ref` hangs: below the same child of the same parent, or at the root.
+/// Puts `new_ref` in the place of `old_ref`: below the same child of the same parent, or at the
+/// root.
 template <typename Volume>
 void BasicAbTree<Volume>::replace(TreeRef old_ref, TreeRef new_ref) noexcept
 {
@@ -558,18 +561,18 @@ ChangedFace BasicAbTree<Volume>::describe(std::uint32_t block, std::uint32_t lan
 template <typename Volume>
 std::uint64_t BasicAbTree<Volume>::path_of(FaceId face, std::uint32_t bucket) noexcept
 {
-    // Multiplying by an odd number is a bijection, so paths of different faces differ; it spreads
-    // neighbouring ids over the upper bits, which are looked at first.
+    // Multiplying by an odd number is a bijection, so paths of different faces differ. It spreads
+    // neighbouring ids over the upper bits, which are tested first.
     const std::uint32_t mixed = face.value * 0x9E37'79B9U;
-    // The bucket begins on a digit: else its lowest bit would share one with the id's, and every
-    // second node would be half empty.
+    // The bucket begins on a digit. Otherwise its lowest bit would share a digit with the id's, and
+    // every second node would be half empty.
     return (std::uint64_t{bucket} << 33U) | (std::uint64_t{mixed} << 1U);
 }
 
 template <typename Volume>
 bool BasicAbTree<Volume>::has_room_for(std::uint32_t changed_faces) const noexcept
 {
-    // One changed face splits one block in the ordinary case; the reserve covers the worst one.
+    // Ordinarily one changed face splits one block; the reserve covers the worst case.
     return pool_->has_room_for(share_, changed_faces + kReserve);
 }
 

@@ -36,39 +36,41 @@ static_assert(offsetof(BlockGeometry, corners) == kBlockCornersAt);
 static_assert(offsetof(BlockGeometry, faces) == kBlockFacesAt);
 static_assert(offsetof(BlockGeometry, vertices) == kBlockVerticesAt);
 
-/// What a query reads of a block only when a lane matters, and the block's place in the tree. 96 B.
+/// Data of a block that a query reads only if a lane matters, and the block's place in the tree. 96
+/// B.
 struct BlockSide
 {
     std::array<PrimId, kBlockFaces> prims{};
     std::array<ErrorCode, kBlockFaces> errors{};
-    std::uint32_t parent{0xFFFF'FFFFU}; ///< Node; none for a root block.
-    std::uint32_t link{0xFFFF'FFFFU};   ///< In a list: of free blocks or of marked ones.
+    std::uint32_t parent{0xFFFF'FFFFU}; ///< Parent node; none for a root block.
+    std::uint32_t link{0xFFFF'FFFFU};   ///< Link in the list of free or of marked blocks.
     std::uint16_t coarse{0};            ///< Lanes whose error is not 0.
-    std::uint8_t child{0};              ///< Which child of the parent.
+    std::uint8_t child{0};              ///< Index as child of the parent.
     bool in_use{false};
-    bool is_marked{false}; ///< In the list of marked blocks, even once freed.
-    std::uint8_t owner{0}; ///< Whose tree it is in.
+    bool is_marked{false}; ///< True while in the list of marked blocks, even once freed.
+    std::uint8_t owner{0}; ///< Owner of its tree.
     std::array<std::uint8_t, 2> reserved{};
 };
 
 static_assert(sizeof(BlockSide) == 96);
 
 /// Adds the face's corners to free vertex rows and takes a free lane. Returns the lane, or
-/// kBlockFaces with the faces unchanged when faces or vertices do not fit.
+/// kBlockFaces with the faces unchanged if faces or vertices do not fit.
 [[nodiscard]] std::uint32_t add_to_block(BlockGeometry& block, BlockSide& side,
                                          const ChangedFace& face) noexcept TACTUS_NONBLOCKING;
 
-/// Moves one corner of a face to another position and gives it another error; false, with the face
-/// unchanged, when the block has no row for the position.
+/// Moves one corner of a face to another position and changes the face's error. False, with the
+/// face unchanged, if the block has no row for the position.
 [[nodiscard]] bool move_corner_in_block(BlockGeometry& block, BlockSide& side, std::uint32_t lane,
                                         std::uint32_t corner, const Vec3f& position_m,
                                         ErrorCode error) noexcept TACTUS_NONBLOCKING;
 
-/// Takes an active face out, with the rows that only it used.
+/// Removes an active face, with the rows that only it used.
 void remove_from_block(BlockGeometry& block, BlockSide& side,
                        std::uint32_t lane) noexcept TACTUS_NONBLOCKING;
 
-/// Moves the faces in `moved` to an unused block. All get new lanes, the first ones.
+/// Moves the faces in `moved` to an unused block. In both blocks the faces get new lanes, the first
+/// ones.
 void halve_block(BlockGeometry& block, BlockSide& side, std::uint32_t moved, BlockGeometry& other,
                  BlockSide& other_side) noexcept TACTUS_NONBLOCKING;
 
@@ -93,7 +95,7 @@ void halve_block(BlockGeometry& block, BlockSide& side, std::uint32_t moved, Blo
 [[nodiscard]] std::uint32_t lanes_above(const BlockSide& side,
                                         ErrorCode tolerance) noexcept TACTUS_NONBLOCKING;
 
-/// Counts the bits of a block's 16 lanes: std::popcount is a call where the processor may lack the
+/// Counts the bits of a block's 16 lanes: std::popcount is a call if the processor may lack the
 /// instruction.
 [[nodiscard]] inline std::uint32_t count_lanes(std::uint32_t bits) noexcept
 {

@@ -40,7 +40,7 @@ struct DigitRange
     std::uint32_t width{0};
 };
 
-/// What faces there are below a child.
+/// Kinds of faces below a child.
 struct FacesBelow
 {
     bool some_coarse{false};
@@ -49,7 +49,7 @@ struct FacesBelow
     bool operator==(const FacesBelow&) const noexcept = default;
 };
 
-/// An 8-wide node of the AB-Tree over a bounding volume. It stands for one octal digit of the
+/// An 8-wide node of the AB-Tree over a bounding volume. It represents one octal digit of the
 /// faces' paths, at bit `shift`; all paths below it agree above that digit. A child is a node (one
 /// digit value) or a block (an aligned range of 1, 2 or 4 digit values: the binary levels are
 /// collapsed). 256 B with boxes.
@@ -58,29 +58,30 @@ struct alignas(64) BasicAbNode
 {
     static constexpr std::uint32_t kNoChild = 8;
     static_assert(kNoChild >= kNodeChildren, "no child's index says that there is none");
-    static constexpr std::uint32_t kSeveral = 9; ///< Answer of only_child_in(); never stored.
+    static constexpr std::uint32_t kSeveral = 9; ///< Result of only_child_in(); never stored.
 
-    typename Volume::Rows volumes{}; ///< Of the children.
+    typename Volume::Rows volumes{}; ///< Volumes of the children.
     std::array<TreeRef, kNodeChildren> children{};
     std::uint64_t prefix{0}; ///< Path of any face that was below; its upper bits count.
     std::uint32_t digit_map{0x8888'8888U}; ///< Child of each digit value, 4 bits each; 8 is none.
     std::uint32_t parent{kNoNode};
-    std::uint32_t link{kNoNode}; ///< In a list: of free nodes, of marked ones, of refit's level.
+    std::uint32_t link{kNoNode}; ///< Link in a list: of free nodes, of marked ones, or of refit's
+                                 ///< level.
     std::uint8_t shift{0};
     std::uint8_t mask{0};   ///< Children in use.
-    std::uint8_t coarse{0}; ///< Children below which some face is not exact.
-    std::uint8_t child{0};  ///< Which child of the parent.
+    std::uint8_t coarse{0}; ///< Children with an inexact face below.
+    std::uint8_t child{0};  ///< Index as child of the parent.
     bool in_use{false};
-    bool is_marked{false}; ///< In the list of marked nodes, even once freed.
-    bool is_queued{false}; ///< In refit's list of its level.
-    std::uint8_t owner{0}; ///< Whose tree it is in.
-    std::uint8_t exact{0}; ///< Children below which some face is exact.
+    bool is_marked{false}; ///< True while in the list of marked nodes, even once freed.
+    bool is_queued{false}; ///< True while in refit's list of its level.
+    std::uint8_t owner{0}; ///< Owner of its tree.
+    std::uint8_t exact{0}; ///< Children with an exact face below.
 
     [[nodiscard]] std::uint32_t digit_of(std::uint64_t path) const noexcept
     {
         return static_cast<std::uint32_t>(path >> shift) & 7U;
     }
-    /// Whether the path agrees with the node's above its digit.
+    /// True if the path agrees with the node's above its digit.
     [[nodiscard]] bool holds(std::uint64_t path) const noexcept
     {
         return (((path ^ prefix) >> shift) >> 3U) == 0;
@@ -98,7 +99,7 @@ struct alignas(64) BasicAbNode
             digit_map = (digit_map & ~(15U << (4 * digit))) | (child_index << (4 * digit));
         }
     }
-    /// The digit values that lead to a child; it has at least one.
+    /// The digit values of a child; it has at least one.
     [[nodiscard]] DigitRange range_of(std::uint32_t child_index) const noexcept
     {
         DigitRange range;
@@ -111,7 +112,7 @@ struct alignas(64) BasicAbNode
         }
         return range;
     }
-    /// The one child that the digits lead to: kNoChild when there is none, kSeveral when more.
+    /// The one child that the digits lead to: kNoChild if there is none, kSeveral if more.
     [[nodiscard]] std::uint32_t only_child_in(DigitRange digits) const noexcept
     {
         std::uint32_t only = kNoChild;
@@ -135,7 +136,7 @@ struct alignas(64) BasicAbNode
         TACTUS_ASSERT(index < kNodeChildren);
         return volumes.get(index);
     }
-    /// Of all children.
+    /// Faces below all children.
     [[nodiscard]] FacesBelow below() const noexcept { return {coarse != 0, exact != 0}; }
     [[nodiscard]] FacesBelow below(std::uint32_t index) const noexcept
     {

@@ -23,7 +23,7 @@ struct TreeCapacities
     std::uint32_t nodes{0};
 };
 
-/// What one tree has of a pool.
+/// Share of a pool that one tree has.
 struct TreeShare
 {
     PoolShare blocks;
@@ -33,7 +33,7 @@ struct TreeShare
 template <typename Tree>
 class TreeValidator;
 
-/// A face of some tree.
+/// A face of a tree.
 struct TreePrim
 {
     static constexpr std::uint32_t kNoLeaf = 0xFFFF'FFFFU;
@@ -44,9 +44,8 @@ struct TreePrim
     std::uint32_t leaf{kNoLeaf};
 };
 
-/// The memory of AB-Trees over one kind of volume: each has its blocks and nodes wherever one was
-/// free. Who makes the faces says which prim is whose. 352 B a block, 256 B a node with boxes, 12 B
-/// a prim.
+/// The memory of AB-Trees over one kind of volume. A tree's blocks and nodes lie anywhere in it.
+/// The creator of the faces assigns the prims. 352 B a block, 256 B a node with boxes, 12 B a prim.
 ///
 /// Haptic thread only.
 template <typename VolumePolicy>
@@ -55,7 +54,7 @@ class BasicTreePool
 public:
     using Node = BasicAbNode<VolumePolicy>;
 
-    /// A face's place, block x 16 + lane, has 31 bits.
+    /// Number of blocks limited by a face's place, block x 16 + lane, which has 31 bits.
     static constexpr std::uint32_t kMostBlocks = 0x8000'0000U / kBlockFaces;
 
     BasicTreePool(Arena& arena, const TreeCapacities& capacities) noexcept
@@ -82,10 +81,10 @@ public:
         }
     }
 
-    /// The number of a change of any of its trees; from 1.
+    /// Number of the next change in any of its trees; from 1.
     [[nodiscard]] std::uint64_t next_change() noexcept { return ++changes_; }
 
-    /// Keeps as many blocks and nodes for a new tree, or what is not kept for others.
+    /// Reserves blocks and nodes for a new tree, or as many as are not reserved for others.
     [[nodiscard]] TreeShare promise(const TreeCapacities& least) noexcept
     {
         return {block_room_.promise(least.blocks), node_room_.promise(least.nodes)};
@@ -109,14 +108,14 @@ public:
         block_room_.end_promise(share.blocks);
         node_room_.end_promise(share.nodes);
     }
-    /// Whether a tree may take so many of either.
+    /// True if a tree may take `count` of each.
     [[nodiscard]] bool has_room_for(const TreeShare& share, std::uint32_t count) const noexcept
     {
         return block_room_.left_for(share.blocks) >= count &&
                node_room_.left_for(share.nodes) >= count;
     }
 
-    /// An empty block; the tree has room for one.
+    /// An empty block; the tree must have one left.
     [[nodiscard]] std::uint32_t take_block(TreeShare& share, ModelId owner) noexcept
     {
         block_room_.take(share.blocks);
@@ -131,7 +130,7 @@ public:
         sides_[block].owner = static_cast<std::uint8_t>(owner.value);
         return block;
     }
-    /// A node without children; the tree has room for one.
+    /// A node without children; the tree must have one left.
     [[nodiscard]] std::uint32_t take_node(TreeShare& share, ModelId owner) noexcept
     {
         node_room_.take(share.nodes);
@@ -144,7 +143,7 @@ public:
         nodes_[node].owner = static_cast<std::uint8_t>(owner.value);
         return node;
     }
-    /// The tree has it no more, not even in a list.
+    /// Returns a block that is in no list of the tree.
     void give_back_block(TreeShare& share, std::uint32_t block) noexcept
     {
         TACTUS_ASSERT(!sides_[block].in_use);
@@ -180,7 +179,7 @@ private:
     std::span<TreePrim> prims_;
     PoolRoom block_room_;
     PoolRoom node_room_;
-    std::uint32_t free_block_{kNoNode}; ///< First of its list, as below.
+    std::uint32_t free_block_{kNoNode}; ///< Heads of the free lists.
     std::uint32_t free_node_{kNoNode};
     std::uint64_t changes_{0};
 };

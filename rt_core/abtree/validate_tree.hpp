@@ -14,7 +14,7 @@
 namespace tactus
 {
 
-/// Holds an AB-Tree against what it promises after refit():
+/// Checks an AB-Tree against its invariants after refit():
 ///
 ///     free lists   of the pool hold exactly what no tree uses, each once
 ///     links        a child and its parent name each other; a parent's digit is above its child's;
@@ -23,8 +23,8 @@ namespace tactus
 ///     faces        each placed one is in one lane, and its prim says in which
 ///     boxes        a parent has its child's box, which holds every face inflated by its error
 ///
-/// One look at each block, node and prim, without recursion or memory. It trusts the kernels that
-/// make boxes; the tests' own oracle does not.
+/// Each block, node and prim is visited once, without recursion or memory. The check trusts the
+/// kernels that compute boxes; the tests' own oracle does not.
 template <typename Tree>
 class TreeValidator
 {
@@ -36,7 +36,7 @@ public:
         validator.check_free_nodes();
         validator.check_counts();
         validator.check_work_is_done();
-        // What follows goes along links, and these are bounded by what is above.
+        // The next checks follow links, which the checks above bound.
         for (std::uint32_t i = 0; validator.is_sound() && i < tree.sides_.size(); ++i)
         {
             validator.check_block(i);
@@ -118,7 +118,7 @@ private:
                        "nodes are in use, and some are neither that nor free");
     }
 
-    /// Blocks and nodes that name the tree as their owner.
+    /// Counts blocks and nodes that name the tree as their owner.
     void check_counts() noexcept
     {
         const auto is_own = [this](const auto& each)
@@ -151,7 +151,7 @@ private:
         return ref.is_block() ? tree_.is_block_in_use(index) : tree_.is_node_in_use(index);
     }
 
-    /// Whether `parent` has `ref` as its child; without a parent, whether it is the root.
+    /// True if `parent` has `ref` as its child; without a parent, if it is the root.
     [[nodiscard]] bool is_linked(TreeRef ref, std::uint32_t parent,
                                  std::uint32_t child) const noexcept
     {
@@ -238,7 +238,7 @@ private:
         return side.coarse == 0 ? box : box.inflated(largest_error_quanta(side) * tree_.quantum_m_);
     }
 
-    /// Of boxes with two corners only; others are as refit makes them.
+    /// Only for boxes with two corners; others are taken as refit makes them.
     void check_is_inside(const Box& box, std::uint32_t index, std::uint32_t lane) noexcept
     {
         if constexpr (std::same_as<Box, Aabb>)
@@ -350,7 +350,7 @@ private:
         if ((own.leaf & Tree::kUnplaced) != 0 ||
             (at < tree_.sides_.size() && tree_.sides_[at].owner != tree_.owner_))
         {
-            return; // It waits, or is another tree's.
+            return; // The face waits, or is another tree's.
         }
         prim(tree_.is_block_in_use(at) &&
                  ((std::uint32_t{tree_.blocks_[at].faces} >> lane) & 1U) != 0 &&

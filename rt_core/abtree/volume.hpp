@@ -14,13 +14,13 @@ namespace tactus
 inline constexpr std::uint32_t kNodeChildren = 8;
 static_assert(kNodeChildren <= 8, "a node's masks are bytes");
 
-/// The bounding volume of the AB-Tree, as a policy: what a volume is, how a node keeps those of its
-/// eight children, and the loops over them. Another volume needs the same members.
+/// The bounding volume of the AB-Tree, as a policy: the volume type, a node's storage of its eight
+/// children's volumes, and the loops over them. Another volume needs the same members.
 struct AabbVolume
 {
     using Box = Aabb;
 
-    /// The children's boxes, row by axis, as the kernels read them.
+    /// The children's boxes, row by axis, in the kernels' layout.
     struct Rows
     {
         std::array<std::array<float, kNodeChildren>, 3> low{};
@@ -60,15 +60,15 @@ struct AabbVolume
         return {{box[0], box[1], box[2]}, {box[3], box[4], box[5]}};
     }
 
-    /// Lower bounds on the distances from the probe, in quanta; returns the children in `mask`
-    /// not farther than `bound`.
+    /// Lower bounds on the distances from the probe, in quanta. Returns the children in `mask` not
+    /// farther than `bound`.
     static std::uint32_t child_gaps(const Kernels& kernels, const Rows& rows,
                                     const KernelProbe& probe, std::uint32_t mask, float bound,
                                     float* gaps) noexcept
     {
         return kernels.child_gaps(rows.low.front().data(), probe, mask, bound, gaps);
     }
-    /// The same from a box.
+    /// Lower bounds on the distances from a box.
     static std::uint32_t child_gaps(const Kernels& kernels, const Rows& rows, const KernelBox& box,
                                     std::uint32_t mask, float bound, float* gaps) noexcept
     {

@@ -14,32 +14,33 @@ namespace tactus
 namespace
 {
 
-/// Planes this alike are one: a share of the tool's size. The one that holds back most is kept.
+/// Difference below which planes count as one, as a share of the tool's size. The plane that
+/// restrains most is kept.
 constexpr double kSamePlane = 1e-3;
-/// An edge of a face that is touched is a seam where it leans by no more than this, and is farther
-/// away by no more than this share of the radius: it leans by its distance along the face over the
-/// radius. A face that really rises by an angle is touched above the other's plane by half of the
-/// angle's square times the radius. And the tool stands as high over the other's plane there as
-/// where that is touched: an edge that carries it has it lower, by half of the lean's square.
+/// Limits of a seam: an edge of a touched face. It leans by its distance along the face over the
+/// radius, by kMostLean at most, and its gap is at most kSeamGap radii. A face that really rises by
+/// an angle is touched above the other's plane by half of the angle's square times the radius. Over
+/// a seam the tool is as high over the face's plane as where that plane is touched. An edge that
+/// carries the tool has it lower, by half of the lean's square.
 constexpr double kLeastLean = 1e-3;
 constexpr double kMostLean = 0.8;
 constexpr double kSeamGap = 0.5;
 constexpr double kOnFace = 1e-3;
 constexpr double kAbove = 0.1;
-/// The tool point of a seam lies among those that touch the face's plane, to within this share of
-/// the radius: they hold it up without the edge.
+/// Share of the radius to which a seam's tool point lies among those that touch the face's plane:
+/// they support the tool without the edge.
 constexpr double kSameSupport = 0.01;
-/// What is within this share of the radius of touching may be held by friction.
+/// Distance from touching within which friction may hold, as a share of the radius.
 constexpr double kTouchingGap = 0.02;
-/// Slips below this share of the radius are none.
+/// Slips below this share of the radius count as none.
 constexpr double kLeastSlip = 1e-4;
-/// Friction that is this near to what the pressure allows is not corrected.
+/// Share of the friction that the pressure allows within which it is not corrected.
 constexpr double kSameFriction = 1e-4;
 
 constexpr double kHalfRoot = 0.7071067811865476; ///< sin 45 degrees.
 constexpr double kSin22 = 0.3826834323650898;    ///< sin 22.5 degrees.
 constexpr double kCos22 = 0.9238795325112867;    ///< cos 22.5 degrees.
-/// Directions in a plane, half a turn of them.
+/// Directions in a plane, over half a turn.
 constexpr std::array<std::array<double, 2>, 8> kDirections{{{1.0, 0.0},
                                                             {kCos22, kSin22},
                                                             {kHalfRoot, kHalfRoot},
@@ -67,7 +68,7 @@ double pressure_of(const NearestMotion<6>& held) noexcept
     return pressure;
 }
 
-/// Some unit vector across a unit vector.
+/// A unit vector across a unit vector.
 Vec3 across(const Vec3& normal) noexcept
 {
     const Vec3 axis = std::abs(normal.x()) < 0.6 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
@@ -100,7 +101,7 @@ void BodyPlanes::add(const BodyTouch& touch, const BodyGrip& grip) noexcept
 {
     if (touch.normal == Vec3(0.0, 0.0, 0.0))
     {
-        return; // Of a face without area: those round it hold.
+        return; // A face without area has no normal; its neighbours hold.
     }
     const Vec3 lever = (touch.on_tool_m - place_m_) / arm_m_;
     const HalfSpace<6> space{to_motion(touch.normal, lever.cross(touch.normal)),
@@ -272,7 +273,7 @@ BodyMotion BodyPlanes::nearest(const Motion<6>& wanted) noexcept
         return answer;
     }
     const Chosen chosen = rubs ? choose(held) : Chosen{};
-    if (chosen.empty()) // Without friction, or it comes to the surface in this step.
+    if (chosen.empty()) // Without friction, or the tool reaches the surface in this step.
     {
         rub(held, wanted, Motion<6>::Zero(), answer);
         return answer;
@@ -281,12 +282,13 @@ BodyMotion BodyPlanes::nearest(const Motion<6>& wanted) noexcept
     const NearestMotion<6> tilted = nearest_motion<6>(tilted_.view(), wanted);
     if (!tilted.is_feasible || tilted.held_by.empty())
     {
-        return answer; // Surfaces that part under the tool: nothing says where it would stick.
+        return answer; // Surfaces that part under the tool: no sticking place is known.
     }
     return is_stuck(tilted) ? stuck(tilted) : sliding(tilted, wanted);
 }
 
-/// A gap that is too narrow for the tool holds it where it is.
+/// Nearest motion by the plain planes. If a gap is too narrow for the tool, it holds the tool in
+/// place.
 NearestMotion<6> BodyPlanes::plain(const Motion<6>& wanted, bool& is_over_constrained) noexcept
 {
     NearestMotion<6> nearest = nearest_motion<6>(spaces_.view(), wanted);
@@ -302,22 +304,23 @@ NearestMotion<6> BodyPlanes::plain(const Motion<6>& wanted, bool& is_over_constr
     return nearest_motion<6>(spaces_.view(), wanted);
 }
 
-/// The square of how different two planes are, the tool's size being the arm.
+/// Squared difference of two planes, with the tool's size as arm.
 double BodyPlanes::apart_sq(const HalfSpace<6>& a, const HalfSpace<6>& b) const noexcept
 {
     const Motion<6> between = a.normal - b.normal;
     return between.head<3>().squaredNorm() + turn_weight_ * between.tail<3>().squaredNorm();
 }
 
-/// What holds, then of what touches always that which differs most from what was chosen: a flat
-/// body needs all its corners to stick, wherever its weight goes.
+/// Chooses the contacts that friction may hold: first holding planes, then always the touching
+/// plane that differs most from those chosen. A flat body needs all its corners to stick, wherever
+/// its weight shifts.
 BodyPlanes::Chosen BodyPlanes::choose(const NearestMotion<6>& plain) const noexcept
 {
     Chosen chosen;
     struct Candidate
     {
         std::uint32_t plane{0};
-        double apart_sq{kInfinity}; ///< From all that are chosen; 0: it is out.
+        double apart_sq{kInfinity}; ///< Difference from all chosen planes; 0: not a candidate.
     };
     StaticVector<Candidate, kMaxHalfSpaces> candidates;
     for (std::uint32_t i = 0; i < spaces_.size(); ++i)
@@ -360,7 +363,8 @@ BodyPlanes::Chosen BodyPlanes::choose(const NearestMotion<6>& plain) const noexc
     return chosen;
 }
 
-/// What finds no room among the tilted ones is left to the plain planes, and to the certificate.
+/// Builds the pyramids of the chosen contacts. Contacts without capacity there are left to the
+/// plain planes and to the certificate.
 void BodyPlanes::tilt(const Chosen& chosen, const Motion<6>& wanted) noexcept
 {
     tilted_.clear();
@@ -380,8 +384,8 @@ void BodyPlanes::tilt(const Chosen& chosen, const Motion<6>& wanted) noexcept
     }
 }
 
-/// Offsets are none where the tool is too near: sticking then always is possible. The surface's own
-/// way moves the pyramid's top along with it.
+/// Tilts one contact's plane into four. Offsets are zero if the tool is too near: sticking is then
+/// always possible. The surface's own motion carries the pyramid's top along.
 void BodyPlanes::tilt(std::uint32_t touch, const Motion<6>& wanted) noexcept
 {
     const BodyGrip& grip = grips_[touch];
@@ -402,7 +406,7 @@ void BodyPlanes::tilt(std::uint32_t touch, const Motion<6>& wanted) noexcept
     }
 }
 
-/// A tilted plane that pushes lifts the tool as far as it slips, times the coefficient.
+/// True if no pushing tilted plane lifts the tool: it lifts by the slip times the coefficient.
 bool BodyPlanes::is_stuck(const NearestMotion<6>& tilted) const noexcept
 {
     return std::ranges::all_of(tilted.held_by,
@@ -430,13 +434,13 @@ BodyMotion BodyPlanes::stuck(const NearestMotion<6>& tilted) noexcept
             plane < tilts_.size() ? tilts_[plane].touch : untilted_[plane - tilts_.size()];
         answer.pushes.push_back({touch, tilted_[plane].normal, tilted.reactions[i]});
     }
-    // What found no room above, and what the tool is too near to.
+    // Restrains contacts without capacity above, and those that the tool is too near to.
     const NearestMotion<6> free = plain(tilted.motion, answer.is_over_constrained);
     answer.motion = free.motion;
     return answer;
 }
 
-/// How much of that friction the planes' pressure makes.
+/// Share of that friction that the planes' pressure allows.
 double BodyPlanes::share_of(const NearestMotion<6>& plain, double most) const noexcept
 {
     double sum = 0.0;
@@ -472,7 +476,8 @@ BodyMotion BodyPlanes::sliding(const NearestMotion<6>& tilted, const Motion<6>& 
     return answer;
 }
 
-/// What holds back a body that the planes hold so and `drag` along them, and what viscosity adds.
+/// Sets the motion and pushes of a body that the planes hold, with `drag` along them and the added
+/// viscosity.
 void BodyPlanes::rub(const NearestMotion<6>& held, const Motion<6>& wanted, const Motion<6>& drag,
                      BodyMotion& answer) noexcept
 {
@@ -497,7 +502,7 @@ void BodyPlanes::rub(const NearestMotion<6>& held, const Motion<6>& wanted, cons
     }
     answer.motion = rubbed.motion;
     const double pressure = pressure_of(rubbed);
-    // It goes with the planes that press, so that a push is a normal and its part of it.
+    // The pressing planes carry the drag, so that a push is a normal and its share of the drag.
     const Motion<6> part = pressure > 0.0 ? Motion<6>(all / pressure) : Motion<6>::Zero();
     answer.pushes.clear();
     for (std::size_t i = 0; i < rubbed.held_by.size(); ++i)
@@ -507,7 +512,7 @@ void BodyPlanes::rub(const NearestMotion<6>& held, const Motion<6>& wanted, cons
     }
 }
 
-/// Whether the plane touches, presses, and is viscous.
+/// True if the plane touches, presses, and is viscous.
 bool BodyPlanes::drags(const NearestMotion<6>& held, std::size_t i) const noexcept
 {
     const std::uint32_t plane = held.held_by[i];
@@ -515,7 +520,7 @@ bool BodyPlanes::drags(const NearestMotion<6>& held, std::size_t i) const noexce
            spaces_[plane].offset >= -kTouchingGap * radius_m_;
 }
 
-/// Each contact that presses has its part of it; none where none drags.
+/// Viscosity of the contacts, each by its share of the pressure; none if no contact drags.
 std::optional<BodyPlanes::Viscosity>
 BodyPlanes::viscosity_of(const NearestMotion<6>& held) const noexcept
 {

@@ -10,17 +10,17 @@ namespace tactus
 namespace
 {
 
-/// Never more of a proven distance than this is gone, and of the radius half is kept: what dips
-/// into it has room to come back.
+/// Largest used share of a proven distance. Half of the radius is kept: a tool that uses part of it
+/// can come back.
 constexpr double kMostOfDistance = 0.9;
 constexpr double kKeptOfRadius = 0.5;
-/// Below this share of the radius a distance is scarce.
+/// Share of the radius below which a distance is scarce.
 constexpr double kScarce = 0.1;
-/// Points nearer to one another than this share of the core's radius tell no direction.
+/// Share of the core's radius below which two points define no direction.
 constexpr double kLeastSlab = 1e-5;
 
-/// Of an exact distance. Where little is left, less and less of it is gone: a tool that is wedged
-/// in comes nearer by one over the number of frames, and never to nothing.
+/// Free part of an exact distance. The less is left, the smaller the used share: a wedged tool
+/// approaches by one over the number of frames, and never to zero.
 double free_of(double distance_m, double radius_m) noexcept
 {
     const double scarcity = std::min(1.0, distance_m / (kScarce * radius_m));
@@ -83,7 +83,7 @@ double BodyRoom::share_of(const BodyWay& way, const PlacedSurface& placed) const
     }
     const double known_m =
         std::min(touches.covered_m, answer.certified_radius_m * placed.pose->scale);
-    // What the way to the world and back may round is taken off L already, as are errors.
+    // Rounding of the transforms to the world and back is already subtracted from L, as are errors.
     const double off_m = std::max(0.0, answer.lower_m * placed.pose->scale - placed.lower_m) +
                          answer.tolerated_m * placed.pose->scale;
     const double turn_m = way.turn_rad.norm() * way.core_radius_m;

@@ -25,7 +25,7 @@ struct Carried
 };
 
 /// Carries a proxy along with the object that holds it, or else with one that would pass over it,
-/// so that the proxy keeps its place before that object's surface; otherwise it stays. Reports
+/// so that it keeps its place before that object's surface. Otherwise the proxy stays. Reports
 /// is_overrun if an object passes over it in each case.
 ///
 /// `along(object)` is its place when carried by an object; `is_overrun(place)` is true if the proxy

@@ -16,11 +16,11 @@ namespace tactus
 ///     sent       _______|__----
 ///                 waits | free again
 ///
-/// After a frame in which the proxy waited, the force approaches the wanted one by no more than the
-/// device's displacement may have changed it, plus the rate. The remaining lag decreases by the
-/// rate. Otherwise the force is the wanted one to the last bit. A lagging force may briefly point
-/// into a surface that has rotated meanwhile. For torques the same with newton metres. Haptic
-/// thread; about 10 ns.
+/// After a frame in which the proxy waited, the force approaches the wanted one. Its change per
+/// frame is limited to that by the device's displacement, plus the rate. The remaining lag
+/// decreases by the rate. Otherwise the force is the wanted one to the last bit. A lagging force
+/// may briefly point into a surface that has rotated meanwhile. For torques the same with newton
+/// metres. Haptic thread; about 10 ns.
 class CatchUp
 {
 public:

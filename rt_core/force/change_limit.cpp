@@ -15,7 +15,7 @@ namespace tactus
 namespace
 {
 
-/// `free`: all of the way to `rest` is open.
+/// Limits one spring's change. `is_free`: all forces between the last one and `rest` are allowed.
 bool hold_spring(SpringForce& spring, const Vec3& last, const Vec3& rest, bool is_free,
                  double step) noexcept
 {
@@ -27,8 +27,8 @@ bool hold_spring(SpringForce& spring, const Vec3& last, const Vec3& rest, bool i
     return has_acted;
 }
 
-/// How far a hand went by itself: where it goes along with what carries its tool that counts as the
-/// object's way. 0 where it isn't known.
+/// Device displacement by the user alone: motion along with the object that carries the tool counts
+/// as the object's. 0 if unknown.
 double own_way(const Vec3& way, const Vec3& carried, double most) noexcept
 {
     const double norm = std::min(way.norm(), (way - carried).norm());

@@ -31,12 +31,12 @@ struct ChangeRule
 ///     |M' - M| <= A turned + K x arm x (hand + objects) + slew of the torque x T
 ///
 /// K and A are the stiffnesses in use, `hand` and `turned` the device's measured motion in this
-/// period and `objects` the frame's limited displacement of those in reach, plus arm x their
+/// period. `objects` is the frame's limited displacement of those in reach, plus arm x their
 /// rotation. A device that moves along with an object that carries its tool is counted by its
-/// motion relative to that, so that nothing is counted twice. A surface that stays as it is changes
-/// the force by no more, since a proxy among planes moves no farther than its device, in the metric
-/// of the spring's energy. The slew is for all other changes: another normal, a material, damping,
-/// a program's force, and a contact that begins with a spring that is already stretched, which so
+/// motion relative to that, so that nothing is counted twice. An unchanged surface changes the
+/// force by no more: a proxy among planes moves no farther than its device, in the metric of the
+/// spring's energy. The slew is for all other changes: another normal, a material, damping, a
+/// program's force, and a contact that begins with a spring that is already stretched, which so
 /// rises from zero. It counts one period, even after a longer stall.
 ///
 /// Decreases are unlimited if the tool does not touch, down to the program's external force, and if

@@ -24,15 +24,15 @@ bool is_stiffness(double value) noexcept
     return value >= 0.0 && value <= std::numeric_limits<double>::max(); // False for NaN.
 }
 
-/// What the spring of a wall gives back when the tool leaves: triangle, or, where the force is cut
-/// at `force_n` short of stiffness x stretch, triangle and rectangle.
+/// Energy that a wall's spring returns when the tool leaves: a triangle. If the force is clamped to
+/// `force_n`, below stiffness x stretch: triangle and rectangle.
 double spring_energy_j(double force_n, double stiffness_n_per_m, double stretch_m) noexcept
 {
     const double least_stretch = force_n / stiffness_n_per_m;
     return force_n * (std::max(stretch_m, least_stretch) - 0.5 * least_stretch);
 }
 
-/// For a device that makes a torque.
+/// Set-up for a device that produces torques.
 ConditionerSetup in_angles(const ConditionerSetup& setup) noexcept
 {
     ConditionerSetup angles = setup;
@@ -95,8 +95,8 @@ void ForceConditioner::follow(const SpringForce& sent, bool is_ramp) noexcept
     hold(sent, true);
 }
 
-/// The energy since the last frame. False when the position is of no use for that; then the next
-/// one is a first one.
+/// Observes the energy since the last frame. False if the position is unusable; then the next one
+/// counts as the first.
 bool ForceConditioner::observe(const DeviceStep& device) noexcept
 {
     const std::uint32_t periods = std::max<std::uint32_t>(device.elapsed_periods, 1);
@@ -124,8 +124,8 @@ bool ForceConditioner::observe(const DeviceStep& device) noexcept
     return is_usable;
 }
 
-/// Most frames touch what the last one touched. Under a force the wall goes step by step where a
-/// surface damps more or less than before; in free air at once.
+/// Sets the stiffness limit. Most frames touch the same surfaces as the last one. If the surface
+/// damping changes, the limit moves in steps under a force, and at once in free air.
 void ForceConditioner::cap_for(const SpringForce& force, double surface_damping_n_s_per_m) noexcept
 {
     if (surface_damping_n_s_per_m != surface_damping_n_s_per_m_)
@@ -142,7 +142,7 @@ void ForceConditioner::cap_for(const SpringForce& force, double surface_damping_
     }
 }
 
-/// Brings it within the device's limits. Returns how much of it is left.
+/// Limits the force to the device's range. Returns the remaining share.
 double ForceConditioner::limit(SpringForce& force) const noexcept
 {
     force.actions = ForceAction::none;
@@ -162,7 +162,7 @@ double ForceConditioner::limit(SpringForce& force) const noexcept
     force.stiffness_n_per_m *= scale;
     force.actions |= is_too_stiff ? ForceAction::stiffness_limited : ForceAction::none;
     force.actions |= is_clamped ? ForceAction::clamped : ForceAction::none;
-    // By the largest coordinate: the square of what is huge is infinite.
+    // Ratio by the largest coordinates: the square of a huge value is infinite.
     const double share =
         is_clamped && has_direction(capped_n)
             ? largest_coordinate({&force.force_n, 1}) / largest_coordinate({&capped_n, 1})
@@ -170,7 +170,7 @@ double ForceConditioner::limit(SpringForce& force) const noexcept
     return scale * share;
 }
 
-/// What the spring of this force holds from now on, or in place of what was just said.
+/// Sets the energy of this force's spring; `is_again` replaces the last value.
 void ForceConditioner::hold(const SpringForce& force, bool is_again) noexcept
 {
     const double force_n = force.force_n.norm();
@@ -186,7 +186,7 @@ void ForceConditioner::hold(const SpringForce& force, bool is_again) noexcept
     is_again ? observer_.hold_instead(energy_j) : observer_.hold(energy_j);
 }
 
-/// The wall's force and the damping against the velocity; never a pull.
+/// Adds the damping against the velocity to the wall's force; the sum never pulls.
 void ForceConditioner::damp(SpringForce& force) const noexcept
 {
     const Vec3 velocity = velocity_.velocity_m_per_s();

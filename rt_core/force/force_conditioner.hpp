@@ -118,8 +118,8 @@ private:
 };
 
 /// A conditioner for the force and one for the torque, by the same law in lengths and in angles. If
-/// one of them is capped or clamped, both are shortened by one gain, and an invalid value in one
-/// removes both, so that a wrench keeps its line of action; each has its own damping.
+/// one of them is capped or clamped, both are shortened by one gain. An invalid value in one
+/// removes both. So a wrench keeps its line of action. Each has its own damping.
 class WrenchConditioner
 {
 public:

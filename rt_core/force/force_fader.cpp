@@ -14,11 +14,11 @@ namespace tactus
 namespace
 {
 
-/// Faults of a sample after which neither its position nor the force made of it is used.
+/// Faults of a sample after which neither its position nor its force is used.
 constexpr FrameFault kSampleFaults =
     FrameFault::tool_invalid | FrameFault::tool_stuck | FrameFault::tool_jumped;
 
-/// While nothing else is wrong the frame's force is that of a proxy held where it is.
+/// Causes under which the frame's force is that of a held proxy.
 constexpr ForceOff kHeldProxy = ForceOff::halted | ForceOff::over_constrained | ForceOff::starved;
 
 bool is_trusted(ForceOff causes) noexcept
@@ -36,7 +36,7 @@ bool is_finite(const Vec3& v) noexcept
     return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
 }
 
-/// `v`, or as much of it as has this norm.
+/// `v`, shortened to this norm if it is longer.
 Vec3 shortened(const Vec3& v, double norm_max) noexcept
 {
     const double norm = v.norm();
@@ -81,7 +81,7 @@ void ForceFader::fade(ToolForce& force, double elapsed_s, ForceOff cause) noexce
     let_out(force, cause);
 }
 
-/// What fades is from before the cause, so the fade itself is no part of it.
+/// The fading base is from before the cause, so the fade itself is no part of it.
 void ForceFader::follow(const ToolForce& sent) noexcept
 {
     if (gain_ > 0.0 && !is_fading_)
@@ -94,7 +94,7 @@ void ForceFader::follow(const ToolForce& sent) noexcept
 void ForceFader::let_out(ToolForce& force, ForceOff causes) noexcept
 {
     const bool feels_nothing = base_n_.squaredNorm() <= 0.0 && base_nm_.squaredNorm() <= 0.0;
-    // On the way back in free air there is nothing to soften.
+    // A rising gain in free air needs no damping.
     const double share =
         causes == ForceOff::none && feels_nothing ? 0.0 : 4.0 * gain_ * (1.0 - gain_);
     damping_n_ = shortened(-share * limits_.damping_n_s_per_m * velocity_m_per_s_,
@@ -109,8 +109,8 @@ void ForceFader::let_out(ToolForce& force, ForceOff causes) noexcept
     force.causes = causes;
 }
 
-/// From the device, or from the ways and turns between new samples over the true times between
-/// them.
+/// Takes the speed from the device, or from the displacements and rotations between new samples
+/// over the true times between them.
 void ForceFader::observe_speed(const ToolPeriod& period) noexcept
 {
     since_sample_s_ += period.elapsed_s;
@@ -188,12 +188,13 @@ void ForceFader::move_gain(const ToolPeriod& period, ForceOff causes) noexcept
     {
         gain_ = std::min(gain_ + period.elapsed_s / kRiseTime_s, 1.0);
     }
-    // Another device, or the same one after it was moved: what it says first counts anew.
+    // Another device, or the same one after it was moved: its first sample starts over.
     has_sample_ = has_sample_ && (gain_ > 0.0 || !has_cause(causes, ForceOff::disconnect));
     is_following_ = is_following_ && is_trusted(causes);
 }
 
-/// A hand so deep in a wall that the device couldn't make the spring's force has to come out first.
+/// False if the user is so deep in a wall that the device can't produce the spring's force: the
+/// user has to come out first.
 bool ForceFader::may_begin(const ToolPeriod& period) const noexcept
 {
     const double spring_n = limits_.stiffness_n_per_m * period.stretch_m;
@@ -202,8 +203,8 @@ bool ForceFader::may_begin(const ToolPeriod& period) const noexcept
            (limits_.torque_max_nm <= 0.0 || spring_nm <= limits_.torque_max_nm);
 }
 
-/// At its full gain the frame's force goes out as it is, once it has been caught up with. Where
-/// nothing was felt there is no way to go.
+/// Moves the base towards the frame's force. At full gain, once reached, the frame's force is sent
+/// as it is. If no force was felt the base is reached at once.
 void ForceFader::catch_up(const ToolForce& force, double elapsed_s, bool was_off) noexcept
 {
     const Vec3 target_n = shortened(force.push.force_n, limits_.force_max_n);

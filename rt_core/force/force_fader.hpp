@@ -36,25 +36,25 @@ struct SafetyLimits
 ///
 /// While any cause is present the gain falls with the true elapsed time, from the frame on that
 /// finds it, and scales the last force from before: no force computed from bad data is sent. Only a
-/// halted or over-constrained proxy still has good data: then the gain scales its present force, so
-/// that a user who withdraws is released at once. Once all causes are gone the gain rises, and its
-/// base moves from that last force to the frame's no faster than the device's largest force in
-/// kRiseTime_s, until the gain is full and the frame's force is reached; at a gain of zero, where
-/// nothing is felt, it is the frame's at once. From zero the gain rises only once the spring
-/// between proxy and device is within the device's range. So, with dt the elapsed time and without
-/// the damping, the force changes by at most force_max x dt / kFadeTime_s in a brake and 2 x
-/// force_max x dt / kRiseTime_s on the way back, independent of the frame's force meanwhile. If the
-/// proxy was only held, both bounds are those of the gain: the frame's own change is added, and
-/// CatchUp bounds that once data has arrived.
+/// halted or over-constrained proxy still has good data. The gain then scales its present force, so
+/// that a user who withdraws is released at once. Once all causes are gone the gain rises. Its base
+/// then moves from that last force to the frame's, no faster than the device's largest force in
+/// kRiseTime_s. This ends when the gain is full and the frame's force is reached. At a gain of
+/// zero, where nothing is felt, the base is the frame's force at once. From zero the gain rises
+/// only once the spring between proxy and device is within the device's range. So the force changes
+/// by at most force_max x dt / kFadeTime_s in a brake and 2 x force_max x dt / kRiseTime_s
+/// afterwards, with dt the elapsed time and without the damping. These bounds do not depend on the
+/// frame's force meanwhile. If the proxy was only held, both bounds are those of the gain: the
+/// frame's own change is added, and CatchUp bounds that once data has arrived.
 ///
 /// The device is in reset until its first good sample, and again if it is disconnected.
 ///
 /// The damping works against the device's velocities while the gain is between 0 and 1, most at 1/2
-/// and none at either end, by at most kDampingForceShare of the largest force or torque. If there
-/// was no force and is none, there is no damping on the way back.
+/// and none at either end. It is at most kDampingForceShare of the largest force or torque. If
+/// there was no force and is none, a rising gain has no damping.
 ///
-/// If a device has dropped the force by itself, or part of it, the gain is at once what is left,
-/// without a ramp. Haptic thread; about 50 ns.
+/// If a device has dropped the force by itself, or part of it, the gain is at once the remaining
+/// share, without a ramp. Haptic thread; about 50 ns.
 class ForceFader
 {
 public:

@@ -23,7 +23,7 @@ constexpr ForceOff when(bool is_so, ForceOff cause) noexcept
     return is_so ? cause : ForceOff::none;
 }
 
-/// Its part in this direction; 0 when there is none.
+/// Component in this direction; 0 if the direction is zero.
 double along(const Vec3& way, const Vec3& direction) noexcept
 {
     const double norm = direction.norm();
@@ -121,7 +121,7 @@ const ToolForce& ForcePipeline::fade(double elapsed_s, ForceOff cause) noexcept
     return force_;
 }
 
-/// What the stages go by.
+/// Collects the inputs of the stages.
 void ForcePipeline::look(const ToolState& tool, const ToolOutput& output,
                          const DeviceRecord& device, const PeriodContext& context) noexcept
 {
@@ -141,7 +141,7 @@ void ForcePipeline::look(const ToolState& tool, const ToolOutput& output,
     period_.carried_rad = output.carried_rad;
 }
 
-/// Whether the hand is at a place. One that isn't where it says doesn't turn.
+/// True if the device pose is valid. An invalid place doesn't rotate.
 bool ForcePipeline::look_at_device(const ToolState& tool, const DeviceRecord& device) noexcept
 {
     const DevicePose hand = device.hand.value_or(DevicePose{tool.position_m, tool.rotation});

@@ -19,21 +19,21 @@ namespace
 constexpr double kHighest = 0x1p-3;
 /// Depth from which half of a step is left, as a share of the width.
 constexpr double kHalfDepth = 0x1p-4;
-/// Weight of the unknown surface beside a face as large as the width, near to the sphere.
+/// Weight of the unknown surface beside a face as large as the width, near the sphere.
 constexpr double kUnknownWeight = 0.02;
-/// The square of the least share of its width that is worth a look.
+/// Square of the least share of its width that is evaluated.
 constexpr double kLeastWidth = 1e-4;
-/// Cosines of the angles to what is touched: faces turned by 17 degrees have all their weight,
-/// those by 25 none.
+/// Cosines of the angles to the touched surface: faces rotated by 17 degrees have their whole
+/// weight, those by 25 none.
 constexpr double kWholeCosine = 0.9563;
 constexpr double kNoCosine = 0.9063;
-/// Thinner faces have no direction, by the square of twice their area over their edges' fourth
-/// power, and no weight worth having.
+/// Thinness below which a face has no direction and hardly any weight: square of twice its area
+/// over its edges' fourth power.
 constexpr double kThinnest = 1e-20;
-/// The tangent by which the mean normal is off what is touched, at most.
+/// Largest tangent between the mean normal and the touched surface's.
 constexpr double kSteepest = 0.5;
 
-/// (1 - t)^2 of a share of its range, and what it loses there.
+/// (1 - t)^2 of a share of its range, and its derivative.
 struct Bell
 {
     double value{0.0};
@@ -45,7 +45,7 @@ Bell bell_of(double share) noexcept
     return {rest * rest, -2.0 * rest};
 }
 
-/// From 0 to 1 without a kink.
+/// Rises from 0 to 1 without a kink.
 double smooth_step(double from, double to, double value) noexcept
 {
     const double t = std::clamp((value - from) / (to - from), 0.0, 1.0);
@@ -54,7 +54,8 @@ double smooth_step(double from, double to, double value) noexcept
 
 } // namespace
 
-/// Far more faces than this are far smaller than the width, so that there is little to smooth.
+/// If far more faces than kMaxShadedFaces are near, they are much smaller than the width, and there
+/// is little to smooth.
 ForceShading::ForceShading(double width_m, std::span<const PlacedSurface> surfaces,
                            double clear_m) noexcept
     : width_m_(width_m), known_m_(clear_m), surfaces_(surfaces)
@@ -128,7 +129,7 @@ ForceShading::Felt ForceShading::at(const Place& place, double depth_m) const no
     return felt;
 }
 
-/// In the object's frame, lengths in metres of the world.
+/// Adds one object's faces. In the object's frame, lengths in metres of the world.
 void ForceShading::add(const PlacedSurface& placed, const Place& place, double reach_m,
                        Sums& sums) const noexcept
 {
@@ -174,7 +175,7 @@ void ForceShading::add(const PlacedSurface& placed, const Place& place, double r
             continue;
         }
         const double area = std::min(1.0, 0.5 * length * scale * scale / bell_sq);
-        // 1 where a face is touched, 0 where the reach ends.
+        // 0 at a touched face, 1 at the end of the reach.
         const double far = (distance_sq - place.radius_m * place.radius_m) / bell_sq;
         const Bell near = bell_of(far);
         const double share = rise_m / highest_m;

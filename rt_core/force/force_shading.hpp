@@ -29,7 +29,7 @@ namespace tactus
 /// So the proxy rests where the planes hold a goal that is raised by e along the mean normal. The
 /// share D / (d + D) of a step at an edge remains. Proofs: docs/stability.md.
 ///
-/// Any thread: functions of their arguments alone; no call waits or allocates.
+/// Any thread: the functions depend on their arguments alone; no call waits or allocates.
 class ForceShading
 {
 public:

@@ -15,13 +15,12 @@ namespace tactus
 namespace
 {
 
-/// Of the scene and of time, not of the device.
+/// Causes in the scene and in timing, not in the device.
 constexpr ForceOff kOfTheScene = ForceOff::host | ForceOff::stall | ForceOff::jump |
                                  ForceOff::halted | ForceOff::over_constrained | ForceOff::clutch |
                                  ForceOff::starved | ForceOff::growth;
 
-/// The largest share of `wall` that with `load` is no longer than `most`: where the line from
-/// `load` along `wall` leaves the sphere.
+/// The largest share of `wall` for which `load` + share x `wall` is no longer than `most`.
 double share_beside(const Vec3& wall, const Vec3& load, double most) noexcept
 {
     if ((wall + load).norm() <= most)
@@ -84,7 +83,7 @@ void GravityCompensation::make_room(ToolForce& force) const noexcept
     force.turn.force_n *= share;
 }
 
-/// Where nothing is carried there is nothing to jump.
+/// Rotates the lever at a limited rate; without a payload force at once.
 void GravityCompensation::turn_lever(const Mat3& rotation, double elapsed_s) noexcept
 {
     const Vec3 way = rotation * load_.centre_m - lever_m_;

@@ -22,12 +22,13 @@ template <int N>
 class HoldingPlanes
 {
 public:
-    /// A normal as the holding ones see it.
+    /// A normal, split by the holding ones.
     struct Split
     {
-        Motion<N> along{Motion<N>::Zero()};  ///< In terms of Q's columns.
-        Motion<N> across{Motion<N>::Zero()}; ///< What is left.
-        Motion<N> shares{Motion<N>::Zero()}; ///< `along` in terms of the holding normals.
+        Motion<N> along{Motion<N>::Zero()};  ///< Coefficients of Q's columns.
+        Motion<N> across{Motion<N>::Zero()}; ///< Remainder across all holding normals.
+        Motion<N> shares{Motion<N>::Zero()}; ///< Coefficients of the holding normals that give
+                                             ///< `along`.
     };
 
     [[nodiscard]] int size() const noexcept { return size_; }
@@ -43,7 +44,7 @@ public:
     {
         Split result;
         result.across = normal;
-        // Once leaves what rounding mixed in; twice is enough.
+        // One pass leaves rounding residues; two suffice.
         for (int pass = 0; pass < 2; ++pass)
         {
             for (int i = 0; i < size_; ++i)
@@ -85,7 +86,7 @@ public:
         }
     }
 
-    /// The multipliers go down by this share each, never below zero.
+    /// Lowers the multipliers by `step` times their shares, never below zero.
     void lower(const Motion<N>& shares, double step) noexcept
     {
         TACTUS_ASSERT(step >= 0.0);
@@ -95,7 +96,7 @@ public:
         }
     }
 
-    /// The motion nearest to `wanted` on all holding planes, and the multipliers that make it.
+    /// The motion nearest to `wanted` on all holding planes; sets its multipliers.
     [[nodiscard]] Motion<N> settle(std::span<const HalfSpace<N>> planes,
                                    const Motion<N>& wanted) noexcept
     {
@@ -144,7 +145,7 @@ private:
     std::array<std::uint32_t, static_cast<std::size_t>(N)> planes_{};
     std::array<Motion<N>, static_cast<std::size_t>(N)> normals_{};
     std::array<Motion<N>, static_cast<std::size_t>(N)> q_{};
-    std::array<Motion<N>, static_cast<std::size_t>(N)> r_{}; ///< By columns.
+    std::array<Motion<N>, static_cast<std::size_t>(N)> r_{}; ///< Columns of R.
     Motion<N> multipliers_{Motion<N>::Zero()};
 };
 
@@ -159,7 +160,7 @@ public:
     {
     }
 
-    /// False when there is none.
+    /// False if no motion is allowed.
     [[nodiscard]] bool try_find() noexcept
     {
         while (rounds_ > 0)
@@ -190,7 +191,7 @@ public:
     }
 
 private:
-    /// The number of planes when there is none.
+    /// The most violated plane; the number of planes if none is violated.
     [[nodiscard]] std::uint32_t most_violated() noexcept
     {
         const double size = wanted_length_ + motion_.norm();
@@ -201,7 +202,7 @@ private:
             const double violation = planes_[i].offset - planes_[i].normal.dot(motion_);
             if (!(violation > 0.0))
             {
-                continue; // As most planes are.
+                continue; // Most planes are not violated.
             }
             if ((measured_ >> i & 1U) == 0)
             {
@@ -223,19 +224,20 @@ private:
         return worst;
     }
 
-    /// What takes so long goes round in a circle, over what dependent normals leave open.
+    /// Tolerance of a plane. A long search cycles within the slack that dependent normals leave; it
+    /// gets the wide one.
     [[nodiscard]] double tolerance(std::uint32_t plane) const noexcept
     {
         const bool is_wide = rounds_ < kConstraintRounds / 2 || (let_pass_ >> plane & 1U) != 0;
         return is_wide ? kSqueezeTolerance : kPlaneTolerance;
     }
 
-    /// Pushes the motion out of a plane; planes that hold it no longer are let go on the way. Where
-    /// that can't be, all is as it was.
+    /// Pushes the motion out of a plane and drops planes that no longer hold it. If that is
+    /// impossible, nothing changes.
     [[nodiscard]] bool try_hold(std::uint32_t plane) noexcept
     {
         const Motion<N>& normal = planes_[plane].normal;
-        std::optional<HoldingPlanes<N>> held_before; // Before any was let go.
+        std::optional<HoldingPlanes<N>> held_before; // State before the first drop.
         const Motion<N> motion_before = motion_;
         double multiplier = 0.0;
         while (rounds_ > 0)
@@ -280,7 +282,8 @@ private:
         return false;
     }
 
-    /// A plane that excludes those that hold, but only by what dependent normals leave open.
+    /// True if a plane conflicts with the holding ones by no more than dependent normals leave
+    /// open.
     [[nodiscard]] bool try_let_pass(std::uint32_t plane) noexcept
     {
         const double violation = planes_[plane].offset - planes_[plane].normal.dot(motion_);
@@ -299,7 +302,7 @@ private:
         int index{0};
     };
 
-    /// The holding plane whose multiplier is first at zero as the new one's grows.
+    /// The holding plane whose multiplier first reaches zero as the new one's grows.
     [[nodiscard]] LetGo first_to_let_go(const Motion<N>& shares, double length) const noexcept
     {
         LetGo first;
@@ -324,11 +327,11 @@ private:
     Motion<N> motion_;
     HoldingPlanes<N> holding_;
     double wanted_length_;
-    // Of the normals of planes that were violated: zeros for all would cost more than a search.
+    // Norms of the violated planes' normals: zeros for all would cost more than a search.
     std::array<double, kMaxHalfSpaces> lengths_;
     static_assert(kMaxHalfSpaces <= 64);
-    std::uint64_t measured_{0}; ///< A bit for each plane, as in
-    std::uint64_t let_pass_{0}; ///< this.
+    std::uint64_t measured_{0}; ///< Planes whose norm is known, one bit each.
+    std::uint64_t let_pass_{0}; ///< Planes with the wide tolerance, one bit each.
     std::uint32_t rounds_{kConstraintRounds};
 };
 

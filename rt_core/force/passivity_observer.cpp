@@ -18,11 +18,11 @@ void SentForces::send(const Vec3& force_n) noexcept
     sent_[0] = {force_n, 0.0};
 }
 
-/// On a time line that starts when the newest was sent, each force is at the device from `begin`
-/// to `end`, and the question is about 0 .. elapsed:
+/// Mean over 0 .. elapsed, on a time line that starts when the newest force was sent. Each force is
+/// at the device from `begin` to `end`:
 ///
 ///     -- sent[2] --|-- sent[1] --|------- sent[0] -------
-///         0 <- asked about ------+----------> elapsed
+///         0 <- mean over --------+----------> elapsed
 ///                                 delay
 Vec3 SentForces::mean_since(std::uint32_t elapsed_periods) noexcept
 {
@@ -56,7 +56,7 @@ void PassivityObserver::observe(const Vec3& force_n, const Vec3& displacement_m,
 {
     TACTUS_ASSERT(elapsed_s > 0.0);
     const double work = force_n.dot(displacement_m);
-    // By Cauchy's inequality b v^2 over the time is no less than this, whatever the motion.
+    // This bounds b v^2 over the time from below, for any motion (Cauchy's inequality).
     const double viscous_loss = damping_n_s_per_m_ * displacement_m.squaredNorm() / elapsed_s;
     work_j_ += work;
     observed_energy_j_ +=

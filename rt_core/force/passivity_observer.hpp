@@ -59,7 +59,7 @@ private:
 /// lost long ago hides nothing; unlike Hannaford and Ryu's sum, which a long contact makes large.
 ///
 /// Work and losses are of measured positions. A position that toggles between two quanta adds the
-/// same square to the energy that the wall generates and that b dissipates, so it doesn't
+/// same square to the energy that the wall generates and to that which b dissipates. So it doesn't
 /// accumulate within the limit. Haptic thread.
 class PassivityObserver
 {

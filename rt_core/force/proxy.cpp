@@ -14,16 +14,17 @@ namespace tactus
 namespace
 {
 
-/// Over a curved surface a press turns into a way along it: this share of it within a frame.
+/// Share of a press that may turn into a displacement along a curved surface within a frame.
 constexpr double kDipShare = 0.1;
-/// A further list is asked for where the last one brought the proxy on by this share of the radius.
+/// Displacement by the last list, as a share of the radius, above which another list is requested.
 constexpr double kWorthAList = 0.05;
-/// A proxy on its way along a surface feels what is this share of the radius below it.
+/// Gap within which a moving proxy feels the surface, as a share of the radius.
 constexpr double kNearlyTouching = 0.1;
-/// A weaker push, of a stiffness of zero say, has no direction: the last contact's is kept.
+/// Force below which a push has no direction, for example with a stiffness of zero: the last
+/// contact's direction is kept.
 constexpr double kLeastPush_n = 1e-150;
 
-/// The planes of one step, and whose they are.
+/// The planes of one step, and their faces.
 struct StepPlanes
 {
     StaticVector<HalfSpace<3>, kMaxHalfSpaces> planes;
@@ -38,7 +39,7 @@ struct StepPlanes
         faces.push_back(face);
         planes.push_back(plane);
     }
-    /// Only those that hold.
+    /// Keeps only the planes that hold.
     void compact(const NearestMotion<3>& found) noexcept
     {
         const StepPlanes before = *this;
@@ -59,23 +60,23 @@ struct StepPlanes
     }
 };
 
-/// nearest_motion(), counted: a search goes through its planes some eight times.
+/// nearest_motion() with its work counted: a search passes through its planes about eight times.
 NearestMotion<3> search(Vicinity& near, const StepPlanes& step, const Vec3& wanted) noexcept
 {
     near.use(1 + static_cast<std::uint32_t>(step.planes.size()) / 8);
     return nearest_motion<3>(step.planes.view(), wanted);
 }
 
-/// As much of the motion as leads `room` far.
+/// The motion, shortened to `room`.
 Vec3 within(const Vec3& motion, double room) noexcept
 {
     const double length = motion.norm();
     return length > room ? Vec3(motion * (room / length)) : motion;
 }
 
-/// The motion nearest to `wanted` that enters no triangle within `room`, as far as there is room,
-/// or what of the way towards it is proven to be free. `step` holds its planes then, of which
-/// `found` is what they alone allow. What a way beyond the room would enter is not asked.
+/// The motion nearest to `wanted` that enters no triangle, shortened to `room`. If the search is
+/// cut, the part of the motion that is proven to be free. `found` is the motion that the planes of
+/// `step` allow; `step` receives the entered faces. Motions beyond `room` are not tested.
 NearestMotion<3> nearest_free_motion(Vicinity& near, const Vec3& wanted, double radius, double room,
                                      StepPlanes& step, NearestMotion<3> found) noexcept
 {
@@ -107,7 +108,7 @@ NearestMotion<3> nearest_free_motion(Vicinity& near, const Vec3& wanted, double 
     return found;
 }
 
-/// What of a vector lies along all planes that hold: they are independent.
+/// The component of a vector along all holding planes, which are independent.
 Vec3 along_all(const Vec3& vector, const StepPlanes& planes,
                std::span<const std::uint32_t> held_by) noexcept
 {
@@ -124,14 +125,14 @@ Vec3 along_all(const Vec3& vector, const StepPlanes& planes,
     return vector - normal * normal.dot(vector);
 }
 
-/// Whether something of the material holds back what moves along it.
+/// True if the material resists motion along it.
 bool rubs(const Material& material) noexcept
 {
     return material.static_friction > 0.0 || material.viscosity_n_s_per_m > 0.0 ||
            material.texture_height_m > 0.0;
 }
 
-/// How far round the tool's centre all of the surface is known, in the world.
+/// Radius round the tool's centre within which the surface is known, in the world.
 double known(const PlacedSurface& placed) noexcept
 {
     const DistanceAnswer& answer = placed.surface->answer;
@@ -140,14 +141,15 @@ double known(const PlacedSurface& placed) noexcept
 
 } // namespace
 
-/// What holds the proxy at one place, before anything is looked for that a motion would enter.
+/// Contacts at one place, before faces that a motion would enter are searched.
 struct Proxy::Touch
 {
     Hold hold;
-    StepPlanes planes;        ///< Of what touches.
-    Vec3 wanted;              ///< The way: to the hand, or to where force shading raises it.
-    NearestMotion<3> held;    ///< What the planes let go of it.
-    Vec3 kept{0.0, 0.0, 0.0}; ///< What friction and bumps keep of the slip.
+    StepPlanes planes;        ///< Planes of the contacts.
+    Vec3 wanted;              ///< Wanted displacement: to the device, or to its goal raised by
+                              ///< force shading.
+    NearestMotion<3> held;    ///< Part of it that the planes allow.
+    Vec3 kept{0.0, 0.0, 0.0}; ///< Part of the slip that friction and textures hold back.
 };
 
 Proxy::Proxy(ToolSpec spec) noexcept : spec_(std::move(spec)), radius_(spec_.radius_m) {}
@@ -228,7 +230,7 @@ void Proxy::begin_frame() noexcept
     path_.push_back(position_);
 }
 
-/// What ends for want of data ends there whatever is asked.
+/// True if another list would help. A proxy that lacks data would end at the same place.
 bool Proxy::is_worth_going_on(Motion motion, std::span<const PlacedSurface> surfaces) const noexcept
 {
     const bool is_cut =
@@ -260,7 +262,7 @@ double Proxy::way_to_m(const ProxyGoal& goal) const noexcept
     return (way + inward * normal_).norm() + kDipShare * inward;
 }
 
-/// A point's is a share of the coarsest model's quantum.
+/// The tool's radius. For a point it is a multiple of the coarsest model's quantum.
 double Proxy::find_radius(std::span<const PlacedSurface> surfaces) const noexcept
 {
     double skin = 0.0;
@@ -271,7 +273,7 @@ double Proxy::find_radius(std::span<const PlacedSurface> surfaces) const noexcep
     return std::max(spec_.radius_m, skin);
 }
 
-/// How far the proxy may move with the tool still inside what is proven; <= 0 is not at all.
+/// Distance that the proxy may move within the proven space; <= 0: none.
 double Proxy::free_travel(std::span<const PlacedSurface> surfaces, double clear_m) const noexcept
 {
     double travel = clear_m - radius_;
@@ -282,7 +284,7 @@ double Proxy::free_travel(std::span<const PlacedSurface> surfaces, double clear_
     return travel;
 }
 
-/// Whether less is known than was asked for where the proxy's way ends.
+/// True if less is known at the proxy's end than was requested.
 bool Proxy::is_short_of(std::span<const PlacedSurface> surfaces, double travel) const noexcept
 {
     return std::ranges::any_of(surfaces,
@@ -294,7 +296,7 @@ bool Proxy::is_short_of(std::span<const PlacedSurface> surfaces, double travel) 
                                });
 }
 
-/// First straight on as far as nothing is in the way, then among the triangles in reach.
+/// Moves straight on while nothing blocks it, then among the triangles in reach.
 Proxy::Motion Proxy::follow(const Vec3& goal, double travel,
                             std::span<const PlacedSurface> surfaces) noexcept
 {
@@ -348,7 +350,7 @@ Proxy::Motion Proxy::follow_among(Vicinity& near, std::span<const PlacedSurface>
         }
         ++steps_;
         near.stand_at(position_ - anchor_, normal_);
-        // What is not among them, or not certified, is at least this far away.
+        // Unlisted and uncertified triangles are at least this far away.
         const double moved = (position_ - anchor_).norm();
         const double room = std::min(near.reach_m() - radius_, travel) - moved;
         hold_ = hold_at(near, surfaces, goal - position_, room);
@@ -413,7 +415,7 @@ Proxy::Hold Proxy::hold_at(Vicinity& near, std::span<const PlacedSurface> surfac
     return hold;
 }
 
-/// What touches the proxy where it stands, to within the gap, and how that pushes and rubs.
+/// Contacts of the proxy at its place, within the gap, with their push and friction.
 Proxy::Touch Proxy::feel_at(Vicinity& near, std::span<const PlacedSurface> surfaces,
                             const Vec3& wanted, double gap_m) noexcept
 {
@@ -465,7 +467,7 @@ Proxy::Touch Proxy::feel_at(Vicinity& near, std::span<const PlacedSurface> surfa
     return touch;
 }
 
-/// The planes hold a hand that is raised towards the surface, along its smooth normal.
+/// Raises the goal towards the surface, along the shaded normal, for the planes to hold.
 ForceShading::Felt Proxy::hold_smoothly(Vicinity& near, Touch& touch,
                                         const Vec3& pressed) const noexcept
 {
@@ -482,14 +484,14 @@ ForceShading::Felt Proxy::hold_smoothly(Vicinity& near, Touch& touch,
     const NearestMotion<3> held = search(near, touch.planes, raised);
     if (held.held_by.empty())
     {
-        return {}; // Nothing would hold it: it is held as it is.
+        return {}; // No plane would hold the raised goal, so the original one is kept.
     }
     touch.wanted = raised;
     touch.held = held;
     return felt;
 }
 
-/// What the raise took from the push comes back along the smooth normal, and so does its energy.
+/// Returns the push and energy that the raise took, along the shaded normal.
 void Proxy::press_smoothly(Hold& hold, const ForceShading::Felt& felt, const Vec3& pressed) noexcept
 {
     const double depth_m = pressed.norm();
@@ -501,7 +503,7 @@ void Proxy::press_smoothly(Hold& hold, const ForceShading::Felt& felt, const Vec
     hold.is_smooth = true;
 }
 
-/// Adds one plane that touches; `depth` is how far the goal is behind it, along its normal.
+/// Adds a touching plane. `depth` is the vector from the goal to the plane, along its normal.
 void Proxy::press(Hold& hold, const PlacedSurface& placed, const Vec3& depth) const noexcept
 {
     const Material& material = *placed.material;
@@ -523,7 +525,7 @@ void Proxy::press(Hold& hold, const PlacedSurface& placed, const Vec3& depth) co
     hold.velocity += placed.memory->velocity_m_per_s * length;
 }
 
-/// Adds the texture of one that touches, by its share of what presses: `pressed` is all of that.
+/// Adds the texture of a touching surface, by its share of `pressed`, the whole pressure.
 void Proxy::press_into_texture(Hold& hold, const PlacedSurface& placed, const Vec3& pressed,
                                double share) const noexcept
 {
@@ -537,8 +539,8 @@ void Proxy::press_into_texture(Hold& hold, const PlacedSurface& placed, const Ve
     }
 }
 
-/// Friction begins where the tool touches, so it goes there straight: to where the first of the
-/// faces in the way is, each looked at from ever nearer.
+/// Moves straight to the contact, where friction begins: up to the first entered face, each
+/// approached in steps.
 Vec3 Proxy::go_to_contact(Vicinity& near, const Vec3& wanted, const Vec3& motion) const noexcept
 {
     StaticVector<std::uint32_t, kStepRounds> passed;
@@ -554,17 +556,17 @@ Vec3 Proxy::go_to_contact(Vicinity& near, const Vec3& wanted, const Vec3& motion
     }
     if (near.is_spent())
     {
-        return motion; // What it enters first isn't known: as far as is proven without friction.
+        return motion; // The first entered face is unknown: the motion proven without friction.
     }
     const Vec3 straight = wanted * share;
     return !passed.empty() && straight.norm() > kLeastStep * radius_ ? straight : motion;
 }
 
-/// Coulomb's cone: the tool sticks while what pulls it along, `slip` less what bumps do, is within
-/// the static one, and slides until it is within the dynamic one. What a viscous surface holds back
-/// then is viscosity x way / time, of the way that the proxy has gone in this frame and goes now:
-/// an implicit damper, which takes what it has to of the motion and no more. Returns the part of
-/// the slip that all of them take.
+/// Coulomb's cone: the tool sticks while its pull, `slip` less the textures' displacement, is
+/// within the static cone. It then slides until the pull is within the dynamic cone. A sliding
+/// viscous surface holds back viscosity x displacement / time, over the displacement in contact in
+/// this frame and now. That is an implicit damper, which takes only its part of the motion. Returns
+/// the part of the slip that all of them hold back.
 Vec3 Proxy::rub(Hold& hold, const Vec3& slip) noexcept
 {
     const Vec3 pull = slip - hold.bump_m;
@@ -585,7 +587,7 @@ Vec3 Proxy::rub(Hold& hold, const Vec3& slip) noexcept
     return kept;
 }
 
-/// What the surfaces say of how far the proxy is from each object now.
+/// Stores the proxy's clearance from each object's surface.
 void Proxy::keep_clearances(std::span<const PlacedSurface> surfaces, const Vicinity* near) noexcept
 {
     const double moved = (position_ - anchor_).norm();
@@ -634,14 +636,14 @@ void Proxy::forget(std::uint32_t object) noexcept
     hold_.object = hold_.object == object ? kNoObject : hold_.object;
 }
 
-/// Whether the proxy could be on the other side of a surface if it goes to `target` while the
+/// True if the proxy could be on another side of a surface after moving to `target` while the
 /// objects move.
 bool Proxy::is_overrun(const Vec3& target, std::span<const NearObject> objects) const noexcept
 {
     const double goes_m = (target - position_).norm();
     if (goes_m > 0.0 && goes_m >= clear_m_ - went_m())
     {
-        return true; // Past what is no object here.
+        return true; // Beyond the clearance from all other objects.
     }
     return std::ranges::any_of(
         objects,
@@ -655,7 +657,7 @@ bool Proxy::is_overrun(const Vec3& target, std::span<const NearObject> objects) 
         });
 }
 
-/// The spring's, and what damps the motion across the surface; together they never pull.
+/// Force of the spring and of the damping across the surface; together they never pull.
 Vec3 Proxy::force(const ProxyGoal& goal) const noexcept
 {
     const double inward = (hold_.velocity / hold_.depth_m - goal.velocity_m_per_s).dot(normal_);
@@ -664,7 +666,8 @@ Vec3 Proxy::force(const ProxyGoal& goal) const noexcept
     return clamped(hold_.push_n + damped * normal_ + hold_.drag_n);
 }
 
-/// The hand's way across the object may change a spring's force by stiffness x way.
+/// The force, with a limited catch-up. Device displacement across the object may change a spring's
+/// force by stiffness x displacement.
 Vec3 Proxy::caught_up(const ProxyGoal& goal) noexcept
 {
     const Vec3 velocity = goal.velocity_m_per_s - hold_.velocity / hold_.depth_m;
@@ -674,7 +677,7 @@ Vec3 Proxy::caught_up(const ProxyGoal& goal) noexcept
         {force(goal), by_hand_n, spec_.force_max_n, rate, goal.elapsed_s, has_waited_});
 }
 
-/// Along the last normal, never pulling.
+/// Force of a held proxy: along the last normal, never pulling.
 Vec3 Proxy::held_force(const Vec3& goal) const noexcept
 {
     const double push = spec_.stiffness_n_per_m * (position_ - goal).dot(normal_);

@@ -27,18 +27,18 @@ namespace tactus
 /// The proxy is the tool's centre that the surfaces allow: the reachable place nearest to the goal
 /// without entering a triangle, as far as friction permits. It moves in straight steps. Each step
 /// is the nearest motion to the goal that stays on the free side of a plane for every triangle
-/// near, so all planes that hold it, up to three, do so at once; the planes are found again at its
+/// near. So all planes that hold it, up to three, do so at once. The planes are found again at its
 /// end. No step enters a triangle, however fast or deep the goal is. Steps stay where the surfaces
 /// are certified: within (certified radius - tool radius), or (L - tool radius), of the place of
 /// their query.
 ///
 /// The force is the spring between goal and proxy, with the softer stiffness of tool and object;
 /// never a penalty on a distance. Friction, viscosity, a texture (texture.hpp) and force shading
-/// (force_shading.hpp) determine where along the surface the proxy comes to rest, so their only
-/// effect is to stretch that spring. Without a certified surface the proxy is halted, and if
-/// objects leave no room it is over-constrained, both of which it reports: ForceFader fades the
-/// force, which is along the last normal and never pulls. After a frame in which the proxy waited
-/// for data the force catches up by kCatchUp_n_per_s, besides the device's motion.
+/// (force_shading.hpp) determine where along the surface the proxy comes to rest. Their only effect
+/// is to stretch that spring. Without a certified surface the proxy is halted. If objects leave no
+/// free motion, it is over-constrained. It reports both: ForceFader then fades the force, which is
+/// along the last normal and never pulls. After a frame in which the proxy waited for data the
+/// force catches up by kCatchUp_n_per_s, besides the device's motion.
 ///
 /// A fast device needs more triangles than fit in a list. The proxy goes as far as the listed ones
 /// prove, then on from there with another list in the same frame, kListsPerFrame at most.

@@ -15,38 +15,39 @@ namespace tactus
 namespace
 {
 
-/// A hold is kept until the tool has slid this share of its radius. Of a tool that has come to rest
-/// it goes where a touch is as near: held by a plane of where it was, a tool would rest beside an
-/// edge that it should slide off. One that still rocks needs both ends of what it lies on.
+/// Slide, as a share of the radius, up to which a hold is kept. A tool at rest drops it if a touch
+/// is measured as near: with old planes it would rest beside an edge that it should slide off. A
+/// tool that still rocks needs both ends of its support.
 constexpr double kHoldSlide = 0.05;
-/// Cosine between the normals of holds that are one.
+/// Cosine between normals above which holds count as one.
 constexpr double kSameDirection = 0.999;
-/// Motions below this share of the radius are none where friction holds: 0.2 um of 2 mm.
+/// Share of the radius below which friction holds a motion: 0.2 um of 2 mm.
 constexpr double kLeastMotion = 1e-4;
 
-/// Of a way's stretch: more is as good as sticking, and would leave the range of what is computed.
+/// Largest viscous displacement per stretch: more is as good as sticking, and would leave the
+/// numeric range.
 constexpr double kMostViscous = 1e6;
 
-/// After a longer step than this share of the radius other planes hold.
+/// Step length, as a share of the radius, after which other planes hold.
 constexpr double kLongMotion = 0.25;
 
-/// One that rests may be expected to go this share of the radius.
+/// Least expected displacement of a resting tool, as a share of the radius.
 constexpr double kLeastWay = 0.5;
 
-/// Of a tool's size, its arm.
+/// Limits of the arm, as shares of the tool's size.
 constexpr double kLeastArm = 1e-3;
 constexpr double kMostArm = 1e6;
-/// A core that is a point, without a radius, is as large.
+/// Assumed size of a point core without a radius.
 constexpr double kLeastSkin_m = 1e-9;
 
-/// How much of it is no longer than this.
+/// Share of the vector that is no longer than `most`.
 double share_within(const Vec3& vector, double most) noexcept
 {
     const double length = vector.norm();
     return length > most ? most / length : 1.0;
 }
 
-/// Whether the tool was found to touch there, to within `near_m`.
+/// True if the query found a contact there, to within `near_m`.
 bool is_measured(const BodyTouch& touch, std::span<const Contact> contacts, double near_m) noexcept
 {
     return std::ranges::any_of(
@@ -63,21 +64,21 @@ bool turns(const ToolSpec& spec) noexcept
     return !spec.query_only && !std::holds_alternative<PointCore>(spec.core);
 }
 
-/// What it has to slide with, never nothing.
+/// Radius or skin for sliding, never zero.
 double skin_of(const ToolSpec& spec, double core_m) noexcept
 {
     return std::max({spec.radius_m, kLeastSkin * core_m, kLeastSkin_m});
 }
 
-/// The core's sphere and the radius.
+/// Radius of the core's sphere plus the tool's radius.
 double size_of(const ToolSpec& spec) noexcept
 {
     const double core_m = PlacedCore(spec.core, Similarity{}).radius();
     return core_m + skin_of(spec, core_m);
 }
 
-/// Of the metric: its square is the angular stiffness over the stiffness. What is farther from the
-/// tool's size would only leave the range of what is computed.
+/// Arm of the metric: its square is the angular stiffness over the stiffness. Limited near the
+/// tool's size to stay in the numeric range.
 double arm_of(const ToolSpec& spec) noexcept
 {
     const double size_m = size_of(spec);
@@ -157,7 +158,8 @@ void RigidProxy::carry(std::span<const NearObject> objects, double elapsed_s) no
     }
 }
 
-/// The centre of its core and its turn are to the object as they were.
+/// Place of the tool carried by the object: centre of the core and rotation keep their relation to
+/// it.
 Similarity RigidProxy::along(const NearObject& object) const noexcept
 {
     const ObjectPose& before = *object.before;
@@ -168,9 +170,9 @@ Similarity RigidProxy::along(const NearObject& object) const noexcept
     return {rotation, center_m - rotation * center_m_, 1.0};
 }
 
-/// No point of the core goes farther between two places, in the frame that both are of. The
-/// largest singular value of a difference of two scaled rotations is not above its norm / sqrt(2):
-/// two are alike, and the third, along the axis, is no more than they.
+/// Bound on the displacement of the core's points between two places in one frame. The largest
+/// singular value of a difference of two scaled rotations is at most its norm / sqrt(2): two are
+/// equal, and the third, along the axis, is not larger.
 double RigidProxy::way_m(const Similarity& from, const Similarity& to) const noexcept
 {
     constexpr double kOverSqrt2 = 0.7071067811865476;
@@ -179,15 +181,15 @@ double RigidProxy::way_m(const Similarity& from, const Similarity& to) const noe
            kOverSqrt2 * turned * core_radius_m_;
 }
 
-/// Whether some point of the core could be on another side of a surface if it goes to `target`
-/// while the objects move. A way that is no more than the poses' rounding is none.
+/// True if a point of the core could be on another side of a surface after moving to `target` while
+/// the objects move. A displacement within the poses' rounding does not count.
 bool RigidProxy::is_overrun(const Similarity& target,
                             std::span<const NearObject> objects) const noexcept
 {
     const double goes_m = way_m(place_, target);
     if (goes_m > 0.0 && goes_m >= clear_m_)
     {
-        return true; // Past what is no object here.
+        return true; // Beyond the clearance from all other objects.
     }
     return std::ranges::any_of(
         objects,
@@ -203,7 +205,7 @@ bool RigidProxy::is_overrun(const Similarity& target,
         });
 }
 
-/// For the next frame: what the core is away from surfaces at least, after this step.
+/// Stores the core's clearance from surfaces after this step, for the next frame.
 void RigidProxy::keep_clearances(std::span<const PlacedSurface> surfaces, double clear_m) noexcept
 {
     clear_m_ = clear_m - went_m_;
@@ -247,7 +249,7 @@ double RigidProxy::likely_way_m() const noexcept
     return last_pushes_.empty() ? kInfinity : std::max(2.0 * went_m_, kLeastWay * radius_m_);
 }
 
-/// The tool's origin and a turn about it, as the centre of its core goes.
+/// Converts a motion of the tool's origin and a rotation about it to that of the core's centre.
 BodyWay RigidProxy::way_of(const Motion<6>& motion) const noexcept
 {
     const Vec3 turn = motion.tail<3>() / arm_m_;
@@ -312,7 +314,7 @@ void RigidProxy::step(const ProxyGoal& goal, std::span<const PlacedSurface> surf
         found = planes_->nearest(wanted - bumps.aside);
     }
     exceeds_capacity_ = exceeds_capacity_ || planes_->exceeds_capacity();
-    // Contacts that were left out would have to hold what uses up the last of the radius.
+    // Contacts left out would have to hold if the last of the radius is used up.
     is_over_constrained_ = found.is_over_constrained || (exceeds_capacity_ && room.is_scarce());
     sticks_ = found.sticks;
     slides_ = found.slides;
@@ -324,7 +326,8 @@ void RigidProxy::step(const ProxyGoal& goal, std::span<const PlacedSurface> surf
     output.lag_m = advance(goal, found, room);
 }
 
-/// What sticks stays to the last bit, or it would creep. Returns what is left of the way.
+/// Moves the proxy. While it sticks, it keeps its place to the last bit, or it would creep. Returns
+/// the remaining displacement.
 double RigidProxy::advance(const ProxyGoal& goal, const BodyMotion& found,
                            const BodyRoom& room) noexcept
 {
@@ -341,7 +344,7 @@ double RigidProxy::advance(const ProxyGoal& goal, const BodyMotion& found,
                (share < 1.0 || (!found.pushes.empty() && length_m > kLongMotion * radius_m_));
     if (found.pushes.empty() && share == 1.0)
     {
-        place_ = {goal.rotation, goal.position_m, 1.0}; // As the hand has it, to the last bit.
+        place_ = {goal.rotation, goal.position_m, 1.0}; // The device pose, to the last bit.
         return 0.0;
     }
     const Vec3 center = place_.rotation * center_m_;
@@ -351,8 +354,8 @@ double RigidProxy::advance(const ProxyGoal& goal, const BodyMotion& found,
     return length_m - went_m_;
 }
 
-/// Where the proxy is the last planes hold what pushes against them. A core that an object came
-/// over has no way out that is known to be clear: when its force has faded it is given up.
+/// Holds a halted proxy: the last planes resist pressure. A core that an object has crossed has no
+/// proven way out, so the proxy is given up once its force has faded.
 void RigidProxy::freeze(const ProxyGoal& goal, bool is_crossed, ToolOutput& output) noexcept
 {
     StaticVector<HalfSpace<6>, 6> spaces;
@@ -385,8 +388,8 @@ void RigidProxy::freeze(const ProxyGoal& goal, bool is_crossed, ToolOutput& outp
     }
 }
 
-/// What the hand's way may change is told only where the tool was over-constrained: one that was
-/// halted goes on from a force that the hand's way has made already.
+/// Lets force and torque catch up. The device's motion counts only if the tool was
+/// over-constrained: a halted tool's force already contains it.
 void RigidProxy::catch_up(const ProxyGoal& goal, ToolOutput& output) noexcept
 {
     if (output.halted || !output.in_contact)
@@ -457,7 +460,7 @@ void RigidProxy::add(const BodyTouch& touch, const PlacedSurface& placed, double
     planes_->add(touch, grip);
 }
 
-/// Adds what held before, and forgets where the tool is no longer, or rests and is measured now.
+/// Adds the kept holds. Drops those that the tool has left, and those measured again at rest.
 void RigidProxy::add_holds(std::span<const PlacedSurface> surfaces, double elapsed_s) noexcept
 {
     std::size_t kept = 0;
@@ -509,7 +512,7 @@ void RigidProxy::keep_holds(const BodyMotion& found,
     }
 }
 
-/// In place of one that is all but the same; else the oldest goes when there is no room.
+/// Keeps a hold in place of an almost equal one. If the list is full, the oldest is dropped.
 void RigidProxy::keep(const Hold& hold) noexcept
 {
     const auto is_same = [&hold, this](const Hold& other)
@@ -529,8 +532,8 @@ void RigidProxy::keep(const Hold& hold) noexcept
     holds_[holds_.size() - 1] = hold;
 }
 
-/// The springs' energy has K e(d) h beside K d^2 / 2: d is what the planes hold back of the motion,
-/// in its metric, and h of the place of the core's middle.
+/// Texture on the springs, whose energy has K e(d) h besides K d^2 / 2. Here d is the motion held
+/// back by the planes, in its metric, and h is taken at the middle of the core.
 RigidProxy::Bumps RigidProxy::bumps_of(const BodyMotion& held,
                                        std::span<const PlacedSurface> surfaces) const noexcept
 {
@@ -574,7 +577,7 @@ RigidProxy::Bumps RigidProxy::bumps_of(const BodyMotion& held,
     return bumps;
 }
 
-/// Each push by the spring of its own object; what they make together keeps its line of action.
+/// Adds each push with the spring of its own object. The sum keeps its line of action.
 void RigidProxy::add_forces(const ProxyGoal& goal, const BodyMotion& found, const Bumps& bumps,
                             ToolOutput& output) noexcept
 {
@@ -601,8 +604,8 @@ void RigidProxy::add_forces(const ProxyGoal& goal, const BodyMotion& found, cons
     clamp(output);
 }
 
-/// Across the surface at each contact that pushes, each for its part of what pushes; never more
-/// than it pushes, so that nothing pulls.
+/// Damps motion across the surface at each pushing contact, by its share of the pushes. The damping
+/// never exceeds the push, so nothing pulls.
 void RigidProxy::damp(const ProxyGoal& goal, const BodyMotion& found, double reactions,
                       ToolOutput& output) const noexcept
 {

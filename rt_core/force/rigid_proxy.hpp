@@ -47,11 +47,11 @@ namespace tactus
 ///
 /// If the distance is not exact, the proxy moves no farther than its proven distance from every
 /// surface, minus the radius. If that is nothing it is halted and reports it: the last planes hold
-/// against pressure, and ForceFader fades that force; afterwards force and torque catch up by
-/// kCatchUpShare_per_s. They do the same, besides the device's motion, while objects leave it no
-/// room and in the frame after that, since planes then hold motions that were free before. A proxy
-/// about which nothing is known yet, or whose core an object has crossed for kFadeTime_s, is at the
-/// device pose, without a force, until it is proven to be clear there.
+/// against pressure, and ForceFader fades that force. Afterwards force and torque catch up by
+/// kCatchUpShare_per_s. They do the same, besides the device's motion, while the tool is
+/// over-constrained and in the frame after that, since planes then hold motions that were free
+/// before. A proxy about which nothing is known yet is at the device pose, without a force, until
+/// it is proven to be clear there. So is one whose core an object has crossed for kFadeTime_s.
 ///
 /// Haptic thread. Cost: 1 to 4 us with 8 to 32 contacts, with friction up to 10 us more.
 class RigidProxy

@@ -15,7 +15,7 @@ struct StiffnessLimits
     /// the device loses b v^2 (Colgate and Schenkel 1997; with the delay t Diolaiti et al. 2006).
     double sampling_n_per_m{0.0};
     /// 2 (f - B q / T) / q: a position that is wrong by up to half a quantum q gives away at most
-    /// (K q / 2 + B q / T) |v|, the device loses f |v| (Abbott and Okamura 2005, Diolaiti et al.
+    /// (K q / 2 + B q / T) |v|. The device loses f |v| (Abbott and Okamura 2005, Diolaiti et al.
     /// 2006). Infinite if friction f or quantum is 0.
     double quantisation_n_per_m{0.0};
     double device_n_per_m{0.0}; ///< DeviceLimits::stiffness_max_n_per_m.

@@ -14,9 +14,9 @@ namespace tactus
 
 /// Velocity of a position that is known in steps of a quantum: first-order adaptive windowing
 /// (Janabi-Sharifi, Hayward and Chen 2000), by the end points. The velocity is that of the straight
-/// line from the oldest to the newest position over the last n periods, with the largest n whose
-/// positions all lie within a quantum of their line. A slow motion gets a long window and a fine
-/// result, quantum / (n x period); a reversal gets a short one at once.
+/// line from the oldest to the newest position over the last n periods. The window n is the largest
+/// whose positions all lie within a quantum of their line. A slow motion gets a long window and a
+/// fine result, quantum / (n x period); a reversal gets a short one at once.
 ///
 /// Haptic thread. Cost: kVelocitySamples^2 / 2 comparisons of points at most.
 class VelocityWindow

@@ -21,15 +21,15 @@ namespace
 static_assert(sizeof(LocalTriangle) == kTriangleBytes);
 static_assert(offsetof(LocalTriangle, corners_m) == kTriangleCornersAt);
 
-/// Room for what the pairs of a frame have between them.
+/// Number of batches that all pairs of a frame may have together.
 constexpr std::size_t kMostBatches =
     std::size_t{kLocalSurfaces} * kMaxLocalTriangles / kPlaneLanes + kMaxNear;
 
-/// A float's rounding, as a share, and more.
+/// Rounding of a float, as a share, rounded up.
 constexpr double kFloatRounding = 0x1p-22;
 /// A proposed direction is not longer than 1 by more than this share (docs/accuracy.md).
 constexpr double kDirectionRounding = 0x1p-20;
-/// A sphere that is deeper in a face than to this share of its radius goes by what double says.
+/// Share of the radius: a sphere deeper in a face is decided in double precision.
 constexpr double kDeepest = 0x1p-6;
 
 std::uint32_t batches_of(const LocalSurface& surface) noexcept
@@ -42,7 +42,7 @@ std::uint32_t faces_in(const LocalSurface& surface, std::uint32_t batch) noexcep
     return std::min(kPlaneLanes, surface.count - kPlaneLanes * batch);
 }
 
-/// How far a batch's nearest face is from the core at least, in the world.
+/// Lower bound on the distance of a batch's nearest face from the core, in the world.
 double low_of(const PlacedSurface& placed, std::uint32_t batch) noexcept
 {
     const auto faces = placed.surface->distances_m.subspan(std::size_t{kPlaneLanes} * batch,
@@ -50,7 +50,7 @@ double low_of(const PlacedSurface& placed, std::uint32_t batch) noexcept
     return *std::ranges::min_element(faces) * placed.pose->scale;
 }
 
-/// Batches nearer than this fit; infinite when all do.
+/// Distance below which batches fit; infinite if all do.
 double farthest_that_fits(std::span<const PlacedSurface> surfaces) noexcept
 {
     std::size_t count = 0;
@@ -186,7 +186,8 @@ PlaneQuestion Vicinity::question(const Part& part, const Vec3& place) const noex
             0.0F};
 }
 
-/// What is this high at the stand does not hold back a sphere on its way out of others.
+/// Height at the sphere's place from which a face does not restrain a sphere that moves out of
+/// others.
 double Vicinity::least_here_m(double radius_m) const noexcept
 {
     return std::min(radius_m, std::max(clear_m_, kDeepest * radius_m));
@@ -242,7 +243,7 @@ const LocalTriangle& Vicinity::triangle(std::uint32_t face) const noexcept
     return first[face % kPlaneLanes];
 }
 
-/// The face's plane from any place.
+/// The face's plane, seen from any place.
 Vicinity::Plane Vicinity::see(std::uint32_t face, const Vec3& place) const noexcept
 {
     TACTUS_ASSERT(has(face));
@@ -259,7 +260,7 @@ Vicinity::Plane Vicinity::see(std::uint32_t face, const Vec3& place) const noexc
     return {normal, length * pose.scale - normal.dot(place)};
 }
 
-/// In double, from here.
+/// True if the plane was computed in double precision from here.
 bool Vicinity::is_seen(std::uint32_t face) const noexcept
 {
     const Look& look = looks_[face % kLooks];
@@ -320,7 +321,7 @@ HalfSpace<3> Vicinity::half_space(std::uint32_t face, double radius_m) noexcept
 std::optional<std::uint32_t> Vicinity::find_entered(const Vec3& motion, double radius_m,
                                                     std::span<const std::uint32_t> passed) noexcept
 {
-    TACTUS_ASSERT(parts_.empty() || radius_m > 0.0); // A point has no skin where no surface is.
+    TACTUS_ASSERT(parts_.empty() || radius_m > 0.0); // A point has no skin without a surface.
     const Vec3 place = place_ + motion;
     double deepest = radius_m * (1.0 - kContactTolerance);
     std::optional<std::uint32_t> entered;
@@ -362,9 +363,9 @@ std::optional<std::uint32_t> Vicinity::find_entered(const Vec3& motion, double r
     return entered;
 }
 
-/// How much of the motion the face's plane in single precision lets a sphere go, or a smaller share
-/// of what double would say. `here` and `way` are the stand and the motion as the model has them,
-/// in double: nothing of a way along the face is rounded to one towards it.
+/// Share of the motion that the face's plane in single precision allows a sphere, at most the share
+/// in double precision. `here` and `way` are the stand and the motion in the model's frame, in
+/// double precision: rounding turns no motion along the face into one towards it.
 double Vicinity::proven_share(std::uint32_t face, const Vec3& here, const Vec3& way,
                               double radius_m) const noexcept
 {
@@ -425,8 +426,8 @@ double Vicinity::free_share(const Vec3& motion, double radius_m) noexcept
     return share;
 }
 
-/// The distance along the way is convex, so the plane from each place lets the sphere go no farther
-/// than the face does.
+/// Share of the motion before the sphere touches. The distance along the motion is convex, so the
+/// plane from each place allows no more than the face does.
 double Vicinity::share_before(std::uint32_t face, const Vec3& motion, double radius_m) noexcept
 {
     const double least_step = kLeastStep * radius_m / motion.norm();
@@ -444,7 +445,7 @@ double Vicinity::share_before(std::uint32_t face, const Vec3& motion, double rad
         }
         if (!(gap > 0.0))
         {
-            break; // It touches here: it may even go along the face, which nothing divides.
+            break; // The sphere touches here and may move along the face: closing may be zero.
         }
         const double step = gap / closing; // Below 1 - share.
         share += step;

@@ -46,7 +46,8 @@ void AwakePairs::order() noexcept
     lend_fronts();
 }
 
-/// To the highest-priority pairs of tools that are meshes; what comes from another pair is empty.
+/// Lends fronts to the highest-priority pairs of mesh tools. A front from another pair starts
+/// empty.
 void AwakePairs::lend_fronts() noexcept
 {
     StaticVector<Pair*, PairFront::kFronts> first;

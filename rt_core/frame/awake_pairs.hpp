@@ -39,7 +39,7 @@ public:
     /// Sorts the pairs; called after Pair::place() of each.
     void order() noexcept TACTUS_NONBLOCKING;
 
-    /// Begins a pair; there must be room.
+    /// Begins a pair; capacity must be left.
     void begin(const PairParts& parts) noexcept TACTUS_NONBLOCKING;
     /// Ends a pair and releases its closures in its models.
     void end(Pair& pair, ModelSet& models) noexcept TACTUS_NONBLOCKING;

@@ -46,7 +46,7 @@ ToolOutput respond(FrameParts& parts, std::uint32_t index, NarrowPhase& narrow,
         const ToolOutput next = step(parts, index, clear_left_m, planes_left, work.budget);
         if (next.halted)
         {
-            break; // The last one's force is of a place that is known.
+            break; // The last step's force belongs to a known place.
         }
         output = next;
     }
@@ -55,7 +55,7 @@ ToolOutput respond(FrameParts& parts, std::uint32_t index, NarrowPhase& narrow,
     return tool.finish(output, clear_m);
 }
 
-/// Whether the tool waits before what has no pair, or before a model that isn't resident.
+/// True if the tool waits at an object without a pair, or at a model that isn't resident.
 bool is_walled(const FrameParts& parts, std::uint32_t tool, const ToolOutput& output) noexcept
 {
     return (output.halted || output.under_way) &&

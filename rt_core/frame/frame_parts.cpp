@@ -15,10 +15,10 @@ namespace tactus
 namespace
 {
 
-/// The work of a frame at 1 kHz suffices for about so many faces under a body.
+/// Approximate number of faces under a body that the work of a frame at 1 kHz allows.
 constexpr double kFewFaces = 0.25 * kMaxLocalTriangles;
 
-/// Whether a body that lies on the model lies on more faces than that, as far as they are spread
+/// True if a body on the model covers more faces than kFewFaces, assuming that they are spread
 /// evenly over the sides of its box. With a tolerance such a model isn't refined as a whole.
 bool is_too_fine(const FrameSetup& setup, ModelId id, const ModelHeader& header) noexcept
 {
@@ -53,7 +53,7 @@ bool is_too_fine(const FrameSetup& setup, ModelId id, const ModelHeader& header)
         });
 }
 
-/// Copies the header, reads the base mesh and lays out one model. False when the base mesh is
+/// Copies the header, reads the base mesh and lays out one model. False if the base mesh is
 /// damaged. The header must parse.
 [[nodiscard]] bool try_take_model(std::optional<Model>& model, Arena& arena, ModelPools& pools,
                                   ModelId id, const FrameSetup& setup) noexcept

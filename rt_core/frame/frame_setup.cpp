@@ -68,7 +68,7 @@ std::optional<FrameRefusal> find_refusal(const FrameSetup& setup) noexcept
     }
     const double tolerance_n = setup.force_tolerance_n;
     const bool is_taken = tolerance_n >= 0.0 && tolerance_n <= kForceToleranceMax_n;
-    if (!is_taken) // Nor what is no number.
+    if (!is_taken) // NaN is refused, too.
     {
         return FrameRefusal::bad_tolerance;
     }

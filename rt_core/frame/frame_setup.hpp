@@ -56,9 +56,9 @@ struct FrameSetup
     /// Load and refine a model fully, once, if it fits its pools (static mode).
     bool static_when_it_fits{false};
     Prediction prediction{Prediction::automatic};
-    /// Coarse faces count as the surface if that changes a force by no more than this, with an
-    /// error of no more than a quarter of a quantum; more if pools or budgets don't suffice
-    /// (SurfaceTolerance). 0: exact faces only. Not for tools that are meshes.
+    /// Largest change of a force by coarse faces that count as the surface; their error is then at
+    /// most a quarter of a quantum. More if pools or budgets don't suffice (SurfaceTolerance). 0:
+    /// exact faces only. Not for tools that are meshes.
     double force_tolerance_n{0.0};
     FrameVariant variant;            ///< Default: the shipped frame.
     const Kernels* kernels{nullptr}; ///< Null: best_kernels(). Must outlive the frame.
@@ -76,7 +76,7 @@ enum class FrameRefusal : std::uint8_t
     header_refused,   ///< A model's header did not pass its checks.
     base_refused,     ///< A model's base mesh did not pass its checks.
     bad_tolerance,    ///< The force tolerance is not 0 to kForceToleranceMax_n.
-    memory_too_small, ///< The lent memory is less than required_bytes().
+    memory_too_small, ///< The memory is less than required_bytes().
 };
 
 /// One line for the user; static.

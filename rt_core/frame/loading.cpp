@@ -8,7 +8,7 @@ namespace tactus
 namespace
 {
 
-/// The models of pairs are looked at.
+/// Wakes the models of all pairs.
 void wake_models(FrameParts& parts, WorkCounters& work) noexcept
 {
     ModelSet& models = parts.models;

@@ -14,7 +14,7 @@ namespace tactus
 {
 
 /// First stage of a frame: ranks the regions that tools may touch, adopts arrivals, loads and
-/// removes streamed models, and requests what the regions lack. Haptic thread.
+/// removes streamed models, and requests missing chunks of the regions. Haptic thread.
 class Loading
 {
 public:

@@ -15,22 +15,22 @@ namespace tactus
 namespace
 {
 
-/// Faces this near are exact whatever the tool's radius, a share of the tool's: surfaces that slide
-/// along each other part and meet in every frame.
+/// Distance within which faces are exact for any tool radius, as a share of the tool's size:
+/// surfaces that slide along each other part and meet in every frame.
 constexpr double kLeastReach = 0.002;
-/// Beyond the reach is refined by what the tool moves in so many frames, and along a surface by the
-/// way that a contact takes to be refined, but by no more than the reach: so long a front is
-/// certified without looking.
+/// Number of frames of tool motion that refinement covers beyond the reach. Along a surface it
+/// covers the approach during a contact's refinement instead, by no more than the reach. A front
+/// that wide is certified without a search.
 constexpr double kFramesAhead = 4.0;
-/// Touches are looked for within this share of the way at least: a tool that knows less of what is
-/// beside it runs into it.
+/// Least share of the reach beyond the radius within which touches are searched: with less, a tool
+/// runs into unknown surface beside it.
 constexpr double kLeastOfReach = 0.25;
-/// The cover for prefetching is looked for once in so many frames at most, and once the tool has
-/// moved this share of how far it looks, or looks farther or less far than that.
+/// Period of the cover for prefetching, in frames at least. A new cover is needed after a motion by
+/// kCoverMoved of its distance, or if that distance grows or shrinks below kCoverShrunk.
 constexpr std::uint32_t kCoverFrames = 8;
 constexpr double kCoverMoved = 0.1;
 constexpr double kCoverShrunk = 0.8;
-/// How far ahead in time faces are asked for, in units of RegionOfInterest::approach_m().
+/// Prefetch horizon, in units of RegionOfInterest::approach_m().
 constexpr double kPrefetchAhead = 4.0;
 
 WalkBudget budget_of(const Budgets& budgets, WorkBudget& frame, std::uint32_t factor,
@@ -42,7 +42,7 @@ WalkBudget budget_of(const Budgets& budgets, WorkBudget& frame, std::uint32_t fa
     return budget;
 }
 
-/// As many spheres as a cover may have; when there are too many, one grows.
+/// Spheres of a cover. If there are too many, one grows.
 class Cover
 {
 public:
@@ -63,7 +63,7 @@ public:
     [[nodiscard]] const CoreCover& spheres() const noexcept { return spheres_; }
 
 private:
-    /// By how much a sphere has to grow to hold another one.
+    /// Growth of a sphere that is to hold another one.
     [[nodiscard]] static double growth(const Sphere& grown, const Sphere& added) noexcept
     {
         return (grown.center - added.center).norm() + added.radius - grown.radius;
@@ -114,8 +114,8 @@ void MeshPair::place(const RegionOfInterest& region_of_interest, const MeshCore&
     see_surfaces(budgets, frame);
 }
 
-/// The cores stay: what moved since the last frame is told from them. Only the first place is
-/// asked.
+/// The cores stay, since motion since the last frame is measured from them. Only the first place
+/// moves.
 void MeshPair::move(const Similarity& tool, const Budgets& budgets, WorkBudget& frame) noexcept
 {
     const MeshPlacement before = placements_[0];
@@ -125,7 +125,7 @@ void MeshPair::move(const Similarity& tool, const Budgets& budgets, WorkBudget& 
     see_surfaces(budgets, frame);
 }
 
-/// By what the last frame's searches used of their allowance.
+/// Adapts the searches to their use of the last frame's allowance.
 void MeshPair::fit_searches() noexcept
 {
     note_use();
@@ -156,7 +156,7 @@ void MeshPair::note_use() noexcept
     }
 }
 
-/// Each with a whole allowance.
+/// Sets up the surfaces, each with a whole allowance.
 void MeshPair::see_surfaces(const Budgets& budgets, WorkBudget& frame) noexcept
 {
     const WalkBudget to_refine = budget_of(budgets, frame, kMeshRefineFactor, search_parts_);
@@ -221,8 +221,8 @@ double MeshPair::ahead_m(std::size_t place,
                     refine_reach_m(region_of_interest));
 }
 
-/// About the place where two faces meet, for what comes there in some frames. All that is exact
-/// already in the tool's sphere stays; `scale` is of lengths here in the object's frame.
+/// Question about the place where two faces meet and its surroundings of a few frames. Exact faces
+/// in the tool's sphere stay. `scale` converts lengths from this frame to the object's.
 RefineQuestion MeshPair::about_meeting(const Vec3& center_m, double radius_m, double scale,
                                        RefineMemory& memory) const noexcept
 {
@@ -260,7 +260,7 @@ RefineQuestion MeshPair::ask_tool(std::size_t place,
                     objects_[place], memory, place == 0 ? &of_tool_ : nullptr);
 }
 
-/// For the faces within `reach_m` of a surface that is in a sphere, in that sphere's frame.
+/// Question about the faces in a sphere within `reach_m` of a surface, in the sphere's frame.
 RefineQuestion MeshPair::question(const Sphere& sphere, double reach_m, double moved_m,
                                   double ahead_m, OtherSurface& surface, RefineMemory& memory,
                                   UnfinishedSearch* unfinished) noexcept
@@ -343,7 +343,7 @@ void MeshPair::rest(ContactReport& contacts) noexcept
     contacts.is_complete = true;
 }
 
-/// A cover that is cut short is of larger spheres.
+/// A truncated cover has larger spheres.
 void MeshPair::add_work(WorkCounters& work, FrameFault& faults) noexcept
 {
     const auto add = [&](OtherSurface& surface, bool lacks_some)

@@ -10,18 +10,18 @@ namespace tactus
 namespace
 {
 
-/// Share of the memory that goes to pages, with what linking keeps of each, unless the caller says
-/// how much, in percent: a page is mostly prefetched, an active face costs two thirds of a record.
+/// Default share of the memory for pages and their link data, in percent. A page is mostly
+/// prefetched, an active face costs two thirds of a record.
 constexpr std::size_t kPageShare = 72;
-/// Index pages beyond the least number get this part of the memory at most.
+/// Index pages beyond the least number get at most 1 / kIndexPageShare of the memory.
 constexpr std::size_t kIndexPageShare = 64;
-/// The least number of active faces beyond the base mesh that is worth starting with.
+/// Least number of active faces beyond the base mesh that is worth starting with.
 constexpr std::uint32_t kMinFaces = 256;
 
-/// From the arrival of chunks to a certified surface, after a jump at 1.1 M faces some frames: what
-/// is asked for has to be here this much before the tool is.
+/// Time from the arrival of chunks to a certified surface: a few frames after a jump at 1.1 M
+/// faces. Requested chunks have to arrive this much before the tool.
 constexpr double kRefineTime_s = 0.008;
-/// No hand can be predicted for longer.
+/// Limit of the prediction of a user's motion.
 constexpr double kLongestHorizon_s = 0.15;
 
 /// Blocks are about two thirds full, so 11 faces; twice that many for thin cuts.
@@ -30,7 +30,7 @@ std::uint32_t blocks_for(std::uint32_t faces) noexcept
     return faces / 8 + 2 * AbTree::kReserve;
 }
 
-/// With faces given, the other sizes of the tree follow.
+/// Capacities with this number of faces, and the tree's sizes that follow.
 ModelCapacities with_faces(ModelCapacities capacities, std::uint32_t faces) noexcept
 {
     capacities.faces = faces;
@@ -44,7 +44,7 @@ TreeCapacities tree_part(const ModelCapacities& capacities) noexcept
     return {capacities.faces, capacities.blocks, capacities.nodes};
 }
 
-/// Of what a model brings beyond its base mesh, and does not need as a whole, this part is kept.
+/// Divisor of a partial model's reserved capacity beyond its base mesh.
 constexpr std::uint32_t kKeptPart = 4;
 
 bool brings_all(const ModelCounts& counts, const ModelCapacities& capacities) noexcept
@@ -53,13 +53,13 @@ bool brings_all(const ModelCounts& counts, const ModelCapacities& capacities) no
            capacities.faces >= counts.face_ids();
 }
 
-/// What others can't take from a model.
+/// Capacities that are reserved for the model.
 ModelCapacities kept_for(const ModelHeader& header, const ModelCapacities& capacities) noexcept
 {
     const ModelCounts counts = header.counts();
     if (capacities.faces == 0)
     {
-        return {}; // A streamed model: its room is kept from when it is wanted.
+        return {}; // A streamed model's memory is reserved when it is wanted.
     }
     if (brings_all(counts, capacities))
     {
@@ -72,8 +72,8 @@ ModelCapacities kept_for(const ModelHeader& header, const ModelCapacities& capac
     return kept;
 }
 
-/// Divides `all` so that nobody gets more than `most` of its own, and what one does not need is for
-/// the others. Returns what is left in the end.
+/// Divides `all` evenly, at most `most_of` for each model; capacity that one model does not need
+/// goes to the others. Returns the rest.
 template <typename MostOf>
 std::uint32_t divide(std::uint32_t all, std::span<ModelCapacities> models,
                      std::uint32_t ModelCapacities::*part, const MostOf& most_of) noexcept
@@ -185,7 +185,7 @@ bool try_plan(std::span<const ModelHeader> headers, std::size_t bytes, std::size
         }
         return pages - divide(pages, capacities, &ModelCapacities::pages, chunks_of);
     };
-    // Faces beyond the whole model are of no use; below the base mesh there is no model.
+    // Faces beyond the whole model are useless; below the base mesh there is no model.
     const auto plan_faces = [&](std::uint32_t more)
     {
         std::uint64_t sum = 0;
@@ -200,7 +200,7 @@ bool try_plan(std::span<const ModelHeader> headers, std::size_t bytes, std::size
     };
     const std::uint32_t least_more = (kMinFaces + count - 1) / count;
     std::uint32_t pages = share_pages(fitting);
-    if (cache_bytes == 0 && !plan_faces(least_more)) // As many as leave room for the least faces.
+    if (cache_bytes == 0 && !plan_faces(least_more)) // Leaves memory for the least faces.
     {
         std::uint32_t too_many = pages;
         pages = std::min(pages, count);
@@ -309,7 +309,7 @@ void Model::go_on(std::uint32_t& entering, std::uint32_t& leaving, std::uint32_t
         {
             cache.open();
             stage = ModelStage::resident;
-            ++revision; // Whatever answered for it has to look again.
+            ++revision; // Answers for the former state are outdated.
         }
     }
 }
@@ -325,7 +325,7 @@ void Model::leave() noexcept
     ++revision;
 }
 
-/// Faces, a refit, pages, and then what was kept for it.
+/// Dissolves the model in steps: faces, a refit, pages, and then its reservation.
 void Model::dissolve(std::uint32_t& leaving, std::uint32_t frame, WorkCounters& work) noexcept
 {
     if (forest.active_faces() > 0)
@@ -341,7 +341,7 @@ void Model::dissolve(std::uint32_t& leaving, std::uint32_t frame, WorkCounters& 
     end_stay();
 }
 
-/// What was kept for it is for others.
+/// Ends the reservation.
 void Model::end_stay() noexcept
 {
     forest.end_promise();

@@ -24,7 +24,7 @@
 namespace tactus
 {
 
-/// Pool capacities of one model, in slots: those of try_plan(), or else at least one page, one
+/// Pool capacities of one model, in slots: those of try_plan(). Otherwise at least one page, one
 /// index page, and the faces, blocks and nodes of its base mesh, which is asserted for the faces.
 struct ModelCapacities
 {
@@ -33,10 +33,10 @@ struct ModelCapacities
     std::uint32_t faces{0};       ///< Active faces.
     std::uint32_t blocks{0};      ///< Leaves of the AB-Tree.
     std::uint32_t nodes{0};       ///< Inner nodes of the AB-Tree.
-    /// Pages are requested only while the refinement waits for records, never ahead of need, and
-    /// evicted as soon as it waits for none and no record in them is refined: then the refined and
-    /// the loaded front agree to a page (figure 5 of the 3DIM 2005 paper). For measuring
-    /// the benefit of a cache.
+    /// Cache off: pages are requested only while the refinement waits for records, never ahead of
+    /// need. They are evicted as soon as it waits for none and no record in them is refined. Then
+    /// the refined and the loaded front agree to a page (figure 5 of the 3DIM 2005 paper). For
+    /// measuring the benefit of a cache.
     bool cache_off{false};
     /// Memory for base meshes of streamed models, in cells of a face and a vertex each. Only in
     /// capacities for all models: FrameSetup::for_streamed_models.
@@ -124,8 +124,8 @@ struct Model
     /// Offers the tree again the faces that had no place in it, and refits it.
     void refit(WorkCounters& work, FrameFault& faults) noexcept TACTUS_NONBLOCKING;
 
-    /// First stage of the frame, after arrivals were adopted: requests what the ranking's regions
-    /// of this model lack.
+    /// First stage of the frame, after arrivals were adopted: requests missing chunks in the
+    /// ranking's regions of this model.
     void load(ModelId id, const RegionRanking& ranking, const Budgets& budgets, std::uint32_t frame,
               WorkCounters& work, FrameFault& faults) noexcept TACTUS_NONBLOCKING;
     /// Present prediction horizon of chunk requests, in seconds > 0.
@@ -133,7 +133,7 @@ struct Model
     [[nodiscard]] bool is_complete() const noexcept { return residence == Residence::complete; }
     /// True if the model is resident as a whole or loading towards that.
     [[nodiscard]] bool is_whole() const noexcept { return residence != Residence::partial; }
-    /// Ends that: the model is then refined only as tools need it.
+    /// Ends that state: the model is then refined only as tools need it.
     void end_whole() noexcept { residence = Residence::partial; }
     /// True if, after a frame without requests, another one like it would change nothing.
     [[nodiscard]] bool is_at_rest() const noexcept
@@ -198,7 +198,7 @@ struct Model
 private:
     void end_stay() noexcept;
     void dissolve(std::uint32_t& leaving, std::uint32_t frame, WorkCounters& work) noexcept;
-    /// True if this frame may request what the region lacks.
+    /// True if this frame may request missing chunks of the region.
     [[nodiscard]] bool may_ask_for(const RankedRegion& region) const noexcept TACTUS_NONBLOCKING;
 
     ModelPools* shared_;

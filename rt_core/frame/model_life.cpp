@@ -13,7 +13,8 @@ namespace tactus
 namespace
 {
 
-/// A hand that goes back and forth doesn't have a model brought again and again.
+/// Time that a model stays without a pair, so that it isn't loaded again each time a user goes back
+/// and forth.
 constexpr std::int64_t kLinger_ns = 2'000'000'000;
 
 } // namespace
@@ -32,7 +33,7 @@ void ModelLife::go_on(ModelSet& models, std::span<Pair* const> pairs, std::uint3
     {
         Model& model = models[pair->parts().model.id];
         want(models, *pair, frame, turn);
-        // One that leaves goes on below, once a frame: a refit lies between its steps.
+        // A leaving model is handled below, once a frame: a refit lies between its steps.
         if (model.stage != ModelStage::leaving)
         {
             go_on(model, turn, frame, work);
@@ -59,14 +60,14 @@ void ModelLife::go_on(Model& model, Turn& turn, std::uint32_t frame, WorkCounter
 void ModelLife::want(ModelSet& models, const Pair& pair, std::uint32_t frame, Turn& turn) noexcept
 {
     Model& model = models[pair.parts().model.id];
-    // One of lower priority doesn't take what there is.
+    // A model of lower priority doesn't take memory before a waiting one.
     if (model.may_come(frame) && turn.waits == nullptr && !model.try_want())
     {
         turn.waits = &pair;
     }
 }
 
-/// One model's turn each frame.
+/// Checks one model each frame.
 void ModelLife::let_go(ModelSet& models, std::uint32_t frame) const noexcept
 {
     const ModelId turn{frame % models.size()};
@@ -78,7 +79,7 @@ void ModelLife::let_go(ModelSet& models, std::uint32_t frame) const noexcept
     }
 }
 
-/// One that goes at a time.
+/// Lets one model at a time leave.
 void ModelLife::make_room(ModelSet& models, std::span<Pair* const> pairs, const Pair& waits,
                           std::uint32_t frame) noexcept
 {
@@ -107,7 +108,7 @@ void ModelLife::make_room(ModelSet& models, std::span<Pair* const> pairs, const 
     models.keep_busy(*goes);
 }
 
-/// The one that no pair has been of for longest.
+/// The model without a pair for the longest time.
 std::optional<ModelId> ModelLife::find_left(const ModelSet& models, std::uint32_t frame) noexcept
 {
     std::uint32_t longest = 0;
@@ -125,8 +126,8 @@ std::optional<ModelId> ModelLife::find_left(const ModelSet& models, std::uint32_
     return left;
 }
 
-/// The one whose highest-priority pair comes last, if all its pairs can spare it and that one is so
-/// much lower in priority that the two won't change places the next moment.
+/// The model whose highest-priority pair comes last. All its pairs must spare it. The priority of
+/// that pair must be so much lower that the two do not swap at once.
 std::optional<ModelId> ModelLife::find_spare(const ModelSet& models, std::span<Pair* const> pairs,
                                              const Pair& waits) noexcept
 {
@@ -139,7 +140,7 @@ std::optional<ModelId> ModelLife::find_spare(const ModelSet& models, std::span<P
             pairs[i]->priority().contact_s > kLessUrgent * waits.priority().contact_s;
         if (!is_less_urgent)
         {
-            return std::nullopt; // Nor are those before it.
+            return std::nullopt; // The pairs before it aren't either.
         }
         if (models[id].is_streamed_model && models[id].is_resident() &&
             std::ranges::none_of(pairs.first(i), is_of_it) &&

@@ -23,10 +23,10 @@ namespace tactus
 /// A model is wanted as soon as it has a pair, which is as far ahead as the device moves in 150 ms,
 /// or kStreamedHorizon_m. Memory for its base mesh is then reserved, the mesh is requested, and its
 /// faces enter in slices, those of the pair of highest priority first. Until it is resident its
-/// pairs answer from its box. It leaves after 2 s without a pair, or earlier if a wanted model has
-/// no room: then the model that has been without a pair for longest leaves, or else, of those whose
-/// pairs can spare them, that of the lowest-priority pair, if it is twice as far from contact.
-/// Haptic thread.
+/// pairs answer from its box. It leaves after 2 s without a pair, or earlier if memory for a wanted
+/// model is missing. Then the model that has been without a pair for longest leaves. If there is
+/// none, the model of the lowest-priority pair leaves, if its pairs can spare it and it is twice as
+/// far from contact. Haptic thread.
 class ModelLife
 {
 public:
@@ -43,10 +43,10 @@ private:
     {
         std::uint32_t entering{0}; ///< Faces that may still enter in this frame.
         std::uint32_t leaving{0};  ///< Faces that may still leave.
-        /// Highest-priority pair whose model has no room; null if none.
+        /// Highest-priority pair whose model lacks memory; null if none.
         const Pair* waits{nullptr};
-        /// A model returned its room, which the waiting pair finds in the next frame; no other
-        /// model has to leave before that.
+        /// True if a model returned its memory, which the waiting pair finds in the next frame. No
+        /// other model has to leave before that.
         bool gave_room{false};
     };
     static void want(ModelSet& models, const Pair& pair, std::uint32_t frame, Turn& turn) noexcept;

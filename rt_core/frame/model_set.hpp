@@ -43,8 +43,8 @@ public:
 
     /// Busy models by their numbers.
     [[nodiscard]] std::span<const ModelId> busy() const noexcept { return busy_.view(); }
-    /// Busy models in rotation: each is first in turn, and what it leaves of the frame's budgets is
-    /// for the next.
+    /// Busy models in rotation: each is first in turn, and the rest of the frame's budgets is for
+    /// the next.
     [[nodiscard]] ModelId in_turn(std::uint32_t busy, std::uint32_t frame) const noexcept
     {
         return busy_[(frame + busy) % busy_.size()];

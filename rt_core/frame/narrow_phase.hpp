@@ -15,9 +15,9 @@ namespace tactus
 
 /// Query stage of a frame: each pair's distance, and the surface that its tool may touch.
 ///
-/// The highest-priority pairs come first; the others share the rest of the frame's walks and of the
-/// room for triangles. Pairs of tools that are meshes have a separate allowance (kMeshBudgetFactor)
-/// and use none of that. Haptic thread.
+/// The highest-priority pairs come first. The others share the rest of the frame's walks and of the
+/// memory for triangles. Pairs of mesh tools have a separate allowance (kMeshBudgetFactor) and use
+/// none of that. Haptic thread.
 class NarrowPhase
 {
 public:

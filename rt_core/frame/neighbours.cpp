@@ -12,11 +12,11 @@ namespace tactus
 namespace
 {
 
-/// Streamed models are brought as far ahead of a tool, however slow: what a hand at 2 m/s comes to
-/// in 80 ms, a round trip of 20 ms and what asking, sending and entering take beside it.
+/// Distance ahead of a tool, at any speed, at which streamed models are loaded. A user at 2 m/s
+/// covers it in 80 ms: a round trip of 20 ms plus request, transfer and entering.
 constexpr double kStreamedHorizon_m = 0.16;
 
-/// Round a model's box, in its frame.
+/// Sphere round a model's box, in its frame.
 Sphere model_sphere(const ModelHeader& header) noexcept
 {
     const auto& extent = header.fields().extent_quanta;
@@ -36,7 +36,7 @@ bool are_paired(const FrameParts& parts, std::uint32_t tool, std::uint32_t objec
                                [object](const Pair* pair) { return pair->object() == object; });
 }
 
-/// From the last one on: the pairs behind one that ends move up.
+/// Ends pairs from the last one on: the pairs behind one that ends move up.
 void end_pairs(FrameParts& parts, const auto& ends) noexcept
 {
     for (std::size_t i = parts.pairs.all().size(); i > 0; --i)
@@ -56,7 +56,7 @@ Neighbours::Neighbours(Arena& arena, const FrameSetup& setup) noexcept
 {
 }
 
-/// The object's sphere holds its model's box, and what it may be off by there.
+/// Places the object's sphere, which holds its model's box and the rounding there.
 void Neighbours::place(const FrameParts& parts, std::uint32_t object) noexcept
 {
     const ObjectPose& pose = parts.objects[object].pose;
@@ -122,8 +122,8 @@ void Neighbours::find(FrameParts& parts, FrameAccount& account) noexcept
     find_clearances(parts, first_out, account);
 }
 
-/// Each tool looks as far as a surface may matter to it soon, or a streamed model should be on its
-/// way.
+/// Sets each tool's search distance: up to surfaces that may matter soon, or to streamed models
+/// that should be loading.
 void Neighbours::look(const FrameParts& parts) noexcept
 {
     for (std::uint32_t i = 0; i < parts.tools.size(); ++i)
@@ -143,7 +143,7 @@ void Neighbours::look(const FrameParts& parts) noexcept
     }
 }
 
-/// Of what is near and has no room to be a pair, the nearest.
+/// The nearest of the near objects that do not fit as pairs.
 Neighbours::Nearness Neighbours::first_left_out(const FrameParts& parts) const noexcept
 {
     std::size_t near = 0;
@@ -168,7 +168,8 @@ Neighbours::Nearness Neighbours::first_left_out(const FrameParts& parts) const n
     return *first_out;
 }
 
-/// How far beyond where the object could matter to the tool in this frame; no two are alike.
+/// Distance beyond the range within which the object matters to the tool in this frame. All values
+/// differ.
 Neighbours::Nearness Neighbours::nearness(const FrameParts& parts, std::uint32_t tool,
                                           std::uint32_t object) const noexcept
 {
@@ -177,7 +178,7 @@ Neighbours::Nearness Neighbours::nearness(const FrameParts& parts, std::uint32_t
     return {gap_m, tool * kMaxObjects + object};
 }
 
-/// Pairs that are nearer than `first_out` go on or begin, others end.
+/// Continues or begins pairs nearer than `first_out`, and ends the others.
 void Neighbours::pair_up(FrameParts& parts, const Nearness& first_out) const noexcept
 {
     end_pairs(parts,
@@ -217,8 +218,8 @@ void Neighbours::begin_pair(FrameParts& parts, std::uint32_t tool,
     parts.pairs.begin(pair);
 }
 
-/// What a frame starts with is where it is meant to be, and so is what comes to a tool that was
-/// proven farther away than the two have moved since.
+/// False for the objects at start, and if the tool was proven farther away than the motion of both
+/// since. An added object begins apart.
 bool Neighbours::begins_apart(const FrameParts& parts, std::uint32_t tool,
                               std::uint32_t object) const noexcept
 {
@@ -230,7 +231,7 @@ bool Neighbours::begins_apart(const FrameParts& parts, std::uint32_t tool,
             !(parts.tools.status(tool).clear_m - ways_m > parts.tools[tool].radius_m()));
 }
 
-/// Each tool's from everything that it has no pair of.
+/// Finds each tool's clearance from all objects without a pair of it.
 void Neighbours::find_clearances(FrameParts& parts, const Nearness& first_out,
                                  FrameAccount& account) noexcept
 {

@@ -15,7 +15,7 @@ namespace tactus
 namespace
 {
 
-/// From the model's frame to the world.
+/// Transforms contacts from the model's frame to the world.
 void place_each_in_world(const ObjectPose& pose, auto& contacts) noexcept
 {
     for (Contact& contact : contacts)
@@ -49,7 +49,7 @@ void place_in_world(const ObjectPose& pose, TouchReport& touches) noexcept
     touches.covered_m *= pose.scale;
 }
 
-/// Of contacts that were looked for farther away: those within the radius.
+/// Keeps the contacts within the radius, from a search with a larger distance.
 void keep_within(double radius_m, const DistanceAnswer& answer, ContactReport& report) noexcept
 {
     ContactSet& contacts = report.contacts;
@@ -64,21 +64,21 @@ void keep_within(double radius_m, const DistanceAnswer& answer, ContactReport& r
                          (answer.certified_radius_m >= radius_m || answer.lower_m > radius_m);
 }
 
-/// Faces count as the surface whose error is at most this share of a quantum, however soft it is;
+/// Largest error of faces that count as the surface, as a share of a quantum, for any stiffness.
 constexpr double kToleratedQuanta = 0.25;
-/// and where there is no room for them, this share of the tool's radius: it stays outside.
+/// Largest error if capacity is short, as a share of the tool's radius: the tool stays outside.
 constexpr double kMostTolerated = 0.5;
 
-/// What a coarser surface helps against.
+/// Faults that a coarser surface helps against.
 constexpr FrameFault kSurfaceFull = FrameFault::forest_full | FrameFault::tree_full |
                                     FrameFault::cache_full | FrameFault::refine_heap_full |
                                     FrameFault::held_records_full;
 constexpr FrameFault kSurfaceLate = FrameFault::split_budget_spent | FrameFault::node_budget_spent;
 
-/// What lies ahead is looked for this far beyond, a share of the way: once in some two frames.
+/// Share of the approach by which the search ahead goes farther: one search in about two frames.
 constexpr double kWalkedShare = 0.2;
 
-/// More than four roundings of the distance to a box are off.
+/// Factor for more than four roundings of the distance to a box.
 constexpr double kBoxRoundedDown = 1.0 - 0x1p-49;
 
 const MeshCore& mesh_core_of(const Tool& tool) noexcept
@@ -164,7 +164,7 @@ void Pair::find_priority() noexcept
     }
 }
 
-/// What the predictor is told.
+/// Input of the predictor.
 PairMotion Pair::motion() const noexcept
 {
     const Tool& tool = *parts_.tool;
@@ -224,8 +224,8 @@ void Pair::rank(RegionRanking& ranking) noexcept
     }
 }
 
-/// What may be the nearest: within it of the core's centre, beyond the pair's reach. 0 where that
-/// is not wanted or nothing is known.
+/// Distance from the core's centre within which the nearest surface may lie, beyond the pair's
+/// reach. 0 if it is not requested or nothing is known.
 double Pair::distance_reach_m() const noexcept
 {
     if (!tells_distance() || !region_of_interest_.has_known())
@@ -238,13 +238,13 @@ double Pair::distance_reach_m() const noexcept
                : 0.0;
 }
 
-/// Then what its distance needs is all that lies ahead: the ranking has room for many such pairs.
+/// True if the distance alone needs surface ahead: the ranking has capacity for many such pairs.
 bool Pair::measures_from_afar() const noexcept
 {
     return parts_.tool->spec().query_only && distance_reach_m() > 0.0;
 }
 
-/// What has no room only waits.
+/// Regions that do not fit only wait.
 void Pair::rank_distance(RegionRanking& ranking) const noexcept
 {
     const double reach_m = distance_reach_m();
@@ -261,7 +261,7 @@ void Pair::ask(RefineRequests& requests) noexcept
     of_tool_.questions.clear();
     if (!is_model_here_)
     {
-        return; // Nothing has been asked yet, or lose_model() has forgotten it.
+        return; // Nothing was requested yet, or lose_model() has dropped the state.
     }
     if (mesh_ != nullptr)
     {
@@ -311,7 +311,7 @@ SurfaceTolerance::Range Pair::tolerance_range() const noexcept
     return {std::min(least, most), most};
 }
 
-/// What the last frame found.
+/// Result of the last frame.
 SurfaceTolerance::Room Pair::surface_room() const noexcept
 {
     const LocalSurface& surface = surface_;
@@ -332,7 +332,7 @@ SurfaceTolerance::Room Pair::surface_room() const noexcept
     return has_room ? SurfaceTolerance::Room::enough : SurfaceTolerance::Room::fitting;
 }
 
-/// What has no sphere has nothing to know.
+/// Asks for the spheres of the region of interest. Memories of unused spheres are invalidated.
 void Pair::ask_for_spheres() noexcept
 {
     const double fixed_radius = parts_.rules->variant.fixed_radius;
@@ -359,8 +359,8 @@ void Pair::ask_for_spheres() noexcept
     }
 }
 
-/// All that may be nearer than what is known to be there; it may wait. Kept is hardly more, or a
-/// far tool would keep all that it ever passed by.
+/// Asks for all surface that may be nearer than the known one; it may wait. The kept range is
+/// hardly larger, or a distant tool would keep all that it passed.
 void Pair::ask_for_distance() noexcept
 {
     RefineQuestion question{region_of_interest_.core().center(), distance_reach_m(), 0.0,
@@ -373,8 +373,8 @@ void Pair::ask_for_distance() noexcept
         of_object_);
 }
 
-/// The question where the tool will be. Along a surface that is no farther than the reach, and may
-/// wait; it is looked for at once for some frames.
+/// The question at the tool's future place. Along a surface it is no farther than the reach, may
+/// wait, and covers several frames in one search.
 RefineQuestion Pair::ahead_of(RefineQuestion question) const noexcept
 {
     Vec3 way_m = region_of_interest_.approach_m();
@@ -415,7 +415,7 @@ void Pair::ask(bool is_asked, const Model& model, const RefineQuestion& question
     {
         question.memory->is_known = false;
     }
-    // From beyond the kernels' range nothing of a model is in reach; a whole one lacks nothing.
+    // Beyond the kernels' range no model is in reach, and a complete model lacks nothing.
     if (is_asked && !is_shed_ && !model.is_complete() &&
         !is_beyond_kernels(question.center_m, model.header.quantum_m()))
     {
@@ -428,7 +428,7 @@ void Pair::ask(bool is_asked, const Model& model, const RefineQuestion& question
     question.memory->is_known = false;
 }
 
-/// A pair that asks nothing is heard when it asked before.
+/// A pair without questions still submits a request while its closure is open.
 template <std::size_t Capacity>
 void Pair::request(const NamedModel& model, Inquiry<Capacity>& inquiry,
                    RefineRequests& requests) const noexcept
@@ -505,14 +505,14 @@ SurfaceRoom Pair::query_again(const SurfaceRoom& room, const Budgets& budgets, W
     return room;
 }
 
-/// Both only grow.
+/// Sum of the models' revisions, which only grow.
 std::uint32_t Pair::revision() const noexcept
 {
     return parts_.model.model->revision +
            (mesh_ != nullptr ? parts_.tool_model.model->revision : 0U);
 }
 
-/// A pose that a host repeats may grow too old.
+/// True if a query would give the same answer. A pose from a host may become too old.
 bool Pair::is_unchanged() const noexcept
 {
     return was_answered_ && !has_moved() && !feels_otherwise_ &&
@@ -536,7 +536,7 @@ void Pair::lose_model() noexcept
     }
 }
 
-/// All of the surface is in its box, and there is some at each of the box's sides.
+/// Bounds by the model's box: all of the surface is in it, and some at each of its sides.
 Pair::BoxGap Pair::gap_to_box() const noexcept
 {
     const ModelHeader& header = parts_.model.model->header;
@@ -583,7 +583,7 @@ void Pair::query_box() noexcept
     }
 }
 
-/// That a body meets the object is all that its force asks of a surface that it meets.
+/// Meeting faces that end a search. For the force of a rigid tool one is enough.
 std::uint32_t Pair::enough_meeting() const noexcept
 {
     return touches_ != nullptr && !parts_.tool->spec().wants_contacts ? 1 : kEnoughMeetingFaces;
@@ -616,7 +616,7 @@ void Pair::query_core(const Budgets& budgets, WorkCounters& work, FrameFault& fa
     report_core(work);
 }
 
-/// Contacts for the caller and touches for the force, in the world.
+/// Reports contacts for the caller and touches for the force, in the world.
 void Pair::report_core(WorkCounters& work) noexcept
 {
     const ToolSpec& tool = parts_.tool->spec();
@@ -632,7 +632,7 @@ void Pair::report_core(WorkCounters& work) noexcept
     if (touches_ != nullptr)
     {
         touches_->clear();
-        if (surface_.answer.lower_m > 0.0) // Else the body stays where it is, or waits.
+        if (surface_.answer.lower_m > 0.0) // Otherwise the body stays in place, or waits.
         {
             work.budget.spend(surface_.count * WorkCost::contact);
             report_touches(region_of_interest_.core(), region_of_interest_.reach_m(), model.tree,
@@ -642,7 +642,7 @@ void Pair::report_core(WorkCounters& work) noexcept
     }
 }
 
-/// What a search that was cut short leaves open, the last answer may tell.
+/// Tightens the answer of a truncated search by the last answer.
 void Pair::narrow(DistanceAnswer& answer) const noexcept
 {
     if (answer.kind == AnswerKind::bounded && region_of_interest_.has_known())
@@ -661,7 +661,7 @@ void Pair::query_mesh(WorkCounters& work, FrameFault& faults) noexcept
     const ObjectPose& pose = parts_.object->pose;
     DistanceAnswer& answer = surface_.answer;
     ContactReport& contacts = *contacts_;
-    // A tool that waits to be clear needs to know whether the two meet, and no more.
+    // A tool that waits to be clear only needs the intersection test.
     TouchReport* touches = parts_.tool->is_held() ? touches_ : nullptr;
     if (touches_ != nullptr)
     {
@@ -680,7 +680,7 @@ void Pair::query_mesh(WorkCounters& work, FrameFault& faults) noexcept
                                                        : -1.0;
         const FrameVariant& variant = parts_.rules->variant;
         const bool is_proven = variant.fixed_radius == 0.0;
-        // What is felt goes nowhere while anything meets: one pair tells that.
+        // A force-rendering tool does not move while any faces meet: one pair is enough.
         const std::uint32_t enough = tool.wants_pairs      ? kAllMeetingFaces
                                      : tool.wants_contacts ? kEnoughMeetingFaces
                                                            : 1;
@@ -708,7 +708,7 @@ void Pair::query_mesh(WorkCounters& work, FrameFault& faults) noexcept
     mesh_->add_work(work, faults);
 }
 
-/// What the distances may be off in the world.
+/// Rounding of the distances in the world.
 double Pair::rounding_m() const noexcept
 {
     const ObjectPose& pose = parts_.object->pose;
@@ -756,7 +756,7 @@ PairOutput Pair::output() const noexcept
 {
     const ObjectPose& pose = parts_.object->pose;
     const DistanceAnswer& answer = surface_.answer;
-    // Beyond reach as well; the force has no use for that.
+    // Known beyond the reach as well, which the force does not use.
     const bool is_nearest_known =
         answer.kind == AnswerKind::separated && tells_distance() && !answer.nearest_face.is_none();
     const AnswerKind known =

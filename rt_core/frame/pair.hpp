@@ -64,7 +64,7 @@ struct SurfaceRoom
     std::span<LocalTriangle> triangles;
     std::span<double> distances_m;
 
-    /// A surface with the largest room left for one.
+    /// A surface with the largest capacity left for one.
     [[nodiscard]] LocalSurface surface() const noexcept
     {
         LocalSurface surface;
@@ -154,8 +154,8 @@ public:
                                     FrameFault& faults) noexcept TACTUS_NONBLOCKING;
 
     /// Repeats the query in the same frame, from the tool's new place; nothing is refined between.
-    /// A proxy's triangles need a separate room: its previous one, or the one given. Returns what
-    /// is left of that.
+    /// A proxy's triangles need a separate room: its previous one, or the one given. Returns the
+    /// rest of that.
     [[nodiscard]] SurfaceRoom query_again(const SurfaceRoom& room, const Budgets& budgets,
                                           WorkCounters& work,
                                           FrameFault& faults) noexcept TACTUS_NONBLOCKING;

@@ -19,7 +19,7 @@ bool PairShedding::shed(std::span<Pair* const> order) noexcept
         pair.shed(is_shed);
         left -= is_shed ? 1 : 0;
     }
-    count_ -= left; // There are no more.
+    count_ -= left; // Fewer pairs were left than should wait.
     return count_ > 0;
 }
 

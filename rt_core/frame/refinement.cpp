@@ -14,10 +14,10 @@ namespace tactus
 namespace
 {
 
-/// A split near another surface costs as much as so many others, with the search for it.
+/// Cost of a split near another surface, with its search, in ordinary splits.
 constexpr std::uint32_t kSurfaceSplit = 4;
 
-/// What merges may help against.
+/// Faults that merges may help against.
 constexpr FrameFault kNoRoom =
     FrameFault::forest_full | FrameFault::tree_full | FrameFault::cache_full;
 
@@ -34,7 +34,7 @@ std::uint32_t Refinement::run(FrameParts& parts, FrameAccount& account) noexcept
         had_no_room_ = had_no_room_ || pair->is_short();
         if (pair->needs_coarser_model())
         {
-            models[pair->parts().model.id].end_whole(); // It asks from the next frame on.
+            models[pair->parts().model.id].end_whole(); // Requests follow in the next frame.
         }
     }
     std::fill_n(services_.begin(), requests_.size(), Service{});
@@ -70,7 +70,7 @@ std::uint32_t Refinement::run(FrameParts& parts, FrameAccount& account) noexcept
     return refused;
 }
 
-/// For all models, before any split. Where room is short, all that the budget allows.
+/// Merges for all models, before any split. If capacity is short, uses the whole merge budget.
 void Refinement::merge(FrameParts& parts, FrameAccount& account) noexcept
 {
     auto& [budgets, shares, work, faults, scene] = account;
@@ -106,7 +106,7 @@ std::uint32_t Refinement::refused_class() const noexcept
     return refused;
 }
 
-/// Counts the requests of each model, then puts each in its place.
+/// Counts the requests of each model, then groups them by model.
 void Refinement::group(ModelSet& models) noexcept
 {
     for (const ModelId id : models.busy())
@@ -117,7 +117,7 @@ void Refinement::group(ModelSet& models) noexcept
     for (const RefineRequest& request : requests_)
     {
         ++models.slot(request.model).requests;
-        by_model_.push_back(request); // In any place: the last loop puts it right.
+        by_model_.push_back(request); // The order is arbitrary; the last loop corrects it.
     }
     std::uint32_t before = 0;
     for (const ModelId id : models.busy())
@@ -136,8 +136,8 @@ std::span<const RefineRequest> Refinement::requests_of(const ModelSlot& slot) co
     return by_model_.view().subspan(slot.requests_end - slot.requests, slot.requests);
 }
 
-/// Each request that waits gets its part of the splits, class by class: first those that came off
-/// with nothing for longest, then those that saved some.
+/// Gives each waiting request its share of the splits, class by class. Requests without a share for
+/// longest come first, then those with savings.
 void Refinement::share_splits(FrameParts& parts, FrameAccount& account, SplitLimits limits) noexcept
 {
     SplitShares shares(limits.now);
@@ -176,16 +176,16 @@ void Refinement::share_splits(FrameParts& parts, FrameAccount& account, SplitLim
     }
 }
 
-/// First those that are late still, with all that is left; then what may wait.
+/// Serves late requests with the remaining splits, then requests that may wait.
 void Refinement::serve_again(FrameParts& parts, FrameAccount& account, SplitLimits limits) noexcept
 {
     const WorkCounters& work = account.work;
     for (std::uint32_t i = 0; i < requests_.size() && work.splits < limits.now; ++i)
     {
-        // One that stopped short of the budget gets no farther unless others split since.
+        // A request that stopped short of its budget proceeds only if others split since.
         const Service& last = services_[i];
         const bool may_go_on = last.limits.now < limits.now || last.splits != work.splits;
-        // Near another surface the search for what is left is dear.
+        // Near another surface a repeated search is expensive.
         const bool has_had_enough =
             requests_[i].is_near_surface() &&
             has_fault(last.found, FrameFault::split_budget_spent | FrameFault::chunk_late);
@@ -196,7 +196,7 @@ void Refinement::serve_again(FrameParts& parts, FrameAccount& account, SplitLimi
     }
     for (std::uint32_t i = 0; i < requests_.size(); ++i)
     {
-        // With nothing left a closure that nobody wants any more is released all the same.
+        // Without splits left, a closure that is no longer needed is still released.
         const bool may_wait = requests_[i].is_open() && !requests_[i].is_late();
         if (may_wait && services_[i].limits.later < limits.later)
         {
@@ -211,7 +211,7 @@ void Refinement::serve(FrameParts& parts, FrameAccount& account, std::uint32_t r
     auto& [budgets, shares, work, faults, scene] = account;
     Model& model = parts.models[requests_[request].model];
     work.budget.spend(WorkCost::refining);
-    model.refit(work, faults); // What others split, or was merged, is where it is looked for.
+    model.refit(work, faults); // The tree includes other requests' splits and merges.
     SplitLimits own = limits;
     if (requests_[request].is_near_surface())
     {
@@ -228,7 +228,7 @@ void Refinement::serve(FrameParts& parts, FrameAccount& account, std::uint32_t r
     }
 }
 
-/// What was in the way matters where something within reach is coarse still.
+/// Faults of a request. They matter only if faces within its reach are still coarse.
 FrameFault Refinement::lateness_of(std::uint32_t request) const noexcept
 {
     const FrameFault found = services_[request].found;

@@ -22,7 +22,7 @@ public:
     /// If tools are meshes, trees are refitted at once, since others query their surfaces.
     explicit Refinement(bool has_meshes) noexcept : has_meshes_(has_meshes) {}
 
-    /// Returns the class of highest priority of pairs that found no room for a face,
+    /// Returns the class of highest priority of pairs for which a face did not fit,
     /// kPriorityClasses if all did.
     [[nodiscard]] std::uint32_t run(FrameParts& parts,
                                     FrameAccount& account) noexcept TACTUS_NONBLOCKING;

@@ -22,7 +22,7 @@ bool is_in_range(const Vec3& point) noexcept
            std::abs(point.z()) < kGoalRange_m;
 }
 
-/// A device that doesn't know the time says 0 and is never late.
+/// False for a device without a clock: its time is 0 and it is never late.
 bool tells_time(const ToolState& sample) noexcept
 {
     return sample.sample_time_ns != 0;
@@ -33,7 +33,7 @@ bool turns(const ToolSpec& spec) noexcept
     return !std::holds_alternative<PointCore>(spec.core);
 }
 
-/// In rad. Both are rotations, to kRotationTolerance at least.
+/// Angle in rad. Both must be rotations to kRotationTolerance.
 double angle_between(const Mat3& from, const Mat3& to) noexcept
 {
     return from == to ? 0.0 : rotation_vector(orthonormalised(to * from.transpose())).norm();

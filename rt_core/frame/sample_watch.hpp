@@ -20,9 +20,9 @@ namespace tactus
 /// taken; the goal stays. A sample with the time of the one before is not taken either: a device
 /// may be slower than the frame. The last sample replaces missing ones for kSampleHold_s; then the
 /// device is stuck. A goal that jumps or rotates farther than a user can is taken, but reported as
-/// a jump until it is so near the proxy that the springs between them are within the device's
-/// range: a device that lost its place must not pull towards the old one. A sphere's rotation is
-/// ignored. Haptic thread.
+/// a jump. The jump ends when the springs between goal and proxy are within the device's range: a
+/// device that lost its place must not pull towards the old one. A sphere's rotation is ignored.
+/// Haptic thread.
 class SampleWatch
 {
 public:

@@ -14,25 +14,25 @@ namespace tactus
 namespace
 {
 
-/// The sphere is wider than the proxy's possible motion by this share of the tool's radius, so that
-/// a front that lags by a frame or two still holds what the proxy needs.
+/// Margin of the reach beyond the proxy's possible motion, as a share of the tool's radius: a front
+/// that lags by a frame or two still holds the needed surface.
 constexpr double kReachMargin = 0.05;
 
-/// A second sphere is refined this far ahead in time, so that the front is there when the tool is:
-/// a contact needs some 600 splits at 1 M faces, ten frames of 64.
+/// Time ahead for which a second sphere is refined, so that the front is ready for the tool: a
+/// contact needs about 600 splits at 1 M faces, ten frames of 64.
 constexpr double kApproachTime_s = 0.01;
 
-/// What a tool can come to in this time is looked at: chunks of it are asked for that far ahead.
+/// Time ahead for which chunks are requested within the tool's possible motion.
 constexpr double kNearTime_s = 0.15;
 
-/// As a rotation vector, about the world's axes.
+/// Rotation vector about the world's axes.
 Vec3 rotation_between(const Mat3& from, const Mat3& to) noexcept
 {
     return from == to ? Vec3(0.0, 0.0, 0.0)
                       : rotation_vector(orthonormalised(to * from.transpose()));
 }
 
-/// How far a body may be expected to go in a frame; infinity where it has no expectation.
+/// Expected displacement of a body in a frame; infinity if it has no expectation.
 double likely_way_m(const auto& body) noexcept
 {
     if constexpr (requires { body.likely_way_m(); })
@@ -68,7 +68,7 @@ Tool::Body Tool::make_body(const ToolSpec& spec, RigidProxy::Planes* planes) noe
     return Proxy(spec);
 }
 
-/// As std::visit, which would bring an exception.
+/// Like std::visit, which would need an exception.
 template <typename Function>
 auto Tool::with(auto& body, const Function& function) noexcept
 {
@@ -104,13 +104,13 @@ FrameFault Tool::begin(const ToolState& sample, double period_s,
              stand(body);
          });
     began_m_ = sphere().center;
-    // A mesh in contact is refined ahead by what it moves: see MeshPair.
+    // A mesh in contact is refined ahead by its motion: see MeshPair.
     const double ahead_s = output_.in_contact && is_mesh(spec_) ? 0.0 : kApproachTime_s;
     placement_.approach_m = ahead_s * goal_.velocity_m_per_s;
     return fault;
 }
 
-/// What no object moves costs nothing here.
+/// Without moving objects this costs nothing.
 void Tool::let_carry(auto& body, std::span<const NearObject> objects) noexcept
 {
     has_motion_ = !objects.empty();
@@ -133,8 +133,9 @@ bool Tool::is_held() const noexcept
     return rigid != nullptr ? rigid->is_joined() : !spec_.query_only;
 }
 
-/// Where the body is now it looks as far as it may go for the goal. Of a mesh all that is in reach
-/// costs a hundred times as much as of another body.
+/// Updates the placement. The reach covers the body's possible way to the goal. For a mesh it is
+/// limited to the expected way, as surface in reach costs a hundred times as much as for another
+/// body.
 void Tool::stand(const auto& body) noexcept
 {
     const double likely_m = is_mesh(spec_) ? likely_way_m(body) : kInfinity;
@@ -172,8 +173,8 @@ FrameFault Tool::take(const ToolState& sample) noexcept
     return verdict.fault;
 }
 
-/// No surface that a hand holds on to, or is to meet, goes so far in one frame that the spring
-/// would change by more than the device's largest force.
+/// True if an object that the tool touches or may meet moved farther in one frame than the stretch
+/// for the device's largest force.
 bool Tool::is_jump(const NearObject& object) const noexcept
 {
     const Sphere reach = reach_sphere();
@@ -182,7 +183,7 @@ bool Tool::is_jump(const NearObject& object) const noexcept
            (output_.in_contact || object.lower_m <= spec_.radius_m + kTouchSlack_m + way_m);
 }
 
-/// Of objects whose surface may be at the tool: what is farther changes no force in this frame.
+/// Motion of objects whose surface may be at the tool. Farther ones change no force in this frame.
 Tool::Motion Tool::motion_of(std::span<const NearObject> objects) const noexcept
 {
     Motion motion;
@@ -209,13 +210,13 @@ void Tool::forget(const PlacedSurface& gone) noexcept
     with(body_, [&gone](auto& body) { body.forget(gone.object); });
 }
 
-/// Seen from the object, the core's sphere goes straight.
+/// The core's sphere moves straight in the object's frame.
 void Tool::look_for_leap(const ObjectPose& before, const ObjectPose& now,
                          const Sphere& object) noexcept
 {
     if (spec_.query_only || goal_.elapsed_s == 0.0)
     {
-        return; // It is not held, or is nowhere yet.
+        return; // The tool is not held, or has no place yet.
     }
     const Vec3 from_m = to_model(before, center_m()) - object.center;
     const Vec3 way_m = to_model(now, center_m()) - object.center - from_m;

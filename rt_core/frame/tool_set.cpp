@@ -10,7 +10,7 @@ namespace tactus
 namespace
 {
 
-/// The tool, a mesh with what its model's header says of it.
+/// The tool's specification; for a mesh with data of its model's header.
 [[nodiscard]] ToolSpec described(const ToolSpec& tool, const FrameSetup& setup) noexcept
 {
     ToolSpec spec = tool;
@@ -71,7 +71,7 @@ FrameFault ToolSet::begin(std::span<const ToolState> samples, const AwakePairs& 
                 near.push_back(pair->near());
             }
         }
-        if (!near.empty()) // What moved may take the tool along, past what stands.
+        if (!near.empty()) // Moved objects may carry the tool past objects at rest.
         {
             for (Pair* pair : pairs.of(i))
             {

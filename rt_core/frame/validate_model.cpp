@@ -26,7 +26,7 @@ Flaw find_flaw(const Model& model) noexcept
                       model.pages.owner(), "has pages");
         flaw = flaw.is_none() ? finder.first() : flaw;
     }
-    // What comes or goes is not whole.
+    // An arriving or leaving model is not whole.
     return flaw.is_none() && model.is_resident() ? find_flaw(model.forest) : flaw;
 }
 

@@ -10,15 +10,15 @@ namespace tactus
 namespace
 {
 
-/// So much of a frame's work may be done when a stage ends.
+/// Shares of a frame's work that may be used by the end of each stage.
 constexpr double kLoading = 0.3;
 constexpr double kRefiningLeast = 0.25;
 constexpr double kRefiningMost = 0.6;
 constexpr double kQueries = 0.9;
 constexpr double kRehearsal = 0.25;
-/// Answers may take this much more than in the last frame.
+/// Allowed work of the answers, relative to the last frame.
 constexpr double kMoreAnswers = 1.1;
-/// Kept for each query that comes later, where there is as much.
+/// Work reserved for each later query, if as much is left.
 constexpr std::uint32_t kQueryKept = 20'000;
 constexpr std::uint32_t kPlanesLeast = 16;
 

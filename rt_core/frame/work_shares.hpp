@@ -27,7 +27,7 @@ public:
     void begin_forces() noexcept TACTUS_NONBLOCKING;
     void end() noexcept TACTUS_NONBLOCKING;
 
-    /// Planes that a proxy may check now; with fewer than the least it stays in place.
+    /// Number of planes that a proxy may check now, kPlanesLeast at least.
     [[nodiscard]] std::uint32_t planes() const noexcept TACTUS_NONBLOCKING;
     /// Limit of the work between this frame and the next.
     [[nodiscard]] WorkBudget for_warming() const noexcept TACTUS_NONBLOCKING;

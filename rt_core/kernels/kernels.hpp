@@ -11,64 +11,66 @@
 #include <cstdint>
 #include <span>
 
-// Any thread: functions of their arguments alone; no call waits or allocates.
+// Any thread: the functions depend on their arguments alone; no call waits or allocates.
 namespace tactus
 {
 
-/// The point of a query as the kernels see it: in single precision, split so that a coordinate's
+/// The point of a query in the kernels' form: in single precision, split so that a coordinate's
 /// difference from it is right to a few units in the last place.
 struct KernelProbe
 {
     // NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): kernel_source.inc.
-    float high[3]; ///< The point rounded to float, in metres.
-    float low[3];  ///< What the rounding left.
+    float high[3]; ///< Point rounded to float, in metres.
+    float low[3];  ///< Remainder of the rounding.
     // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
     float scale; ///< 1 / quantum, a power of two: kernels work and answer in quanta.
-    float slack; ///< What `high` and `low` leave of the point, in quanta; in every bound.
+    float slack; ///< Error of `high` + `low`, in quanta; part of every bound.
 };
 
 static_assert(sizeof(KernelProbe) == 32);
 
-/// Bounds on the distances from the probe to the 16 faces of a block, in quanta: one lane a face;
-/// lanes without a face hold values of no meaning.
+/// Bounds on the distances from the probe to the 16 faces of a block, in quanta, one lane per face.
+/// Lanes without a face hold meaningless values.
 struct FaceBounds
 {
     // NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): kernel_source.inc.
     alignas(64) float lower[16];
-    /// Upper bounds on the distance to the nearest corner; only of faces that are not exact.
+    /// Upper bounds on the distance to the nearest corner; only for faces that are not exact.
     alignas(64) float corner[16];
     // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
 };
 
-/// A box of another frame as the kernels see it, turned as it is; around its centre, in units that
-/// both frames share.
+/// A rotated box of another frame in the kernels' form; around its centre, in units shared by both
+/// frames.
 struct KernelBox
 {
-    KernelProbe center; ///< `scale` is units a metre; `slack` holds what is rounded of the box.
+    KernelProbe center; ///< Centre; `scale` is units per metre, `slack` includes the box's
+                        ///< rounding.
     // NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): kernel_source.inc.
     float half[3];       ///< Half its extent along the axes of this frame.
-    float half_along[3]; ///< Half its extent along its own axes,
-    float axes[3][3];    ///< which are these, of unit length to rounding.
+    float half_along[3]; ///< Half its extent along its own axes.
+    float axes[3][3];    ///< Its own axes, of unit length to rounding.
     // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
 };
 
-/// The faces of a block, one lane each, with all that bounds the distance of two faces from below.
-/// In quanta, around some point. 1 KiB.
+/// The faces of a block, one lane each, with the data that bounds the distance of two faces from
+/// below. In quanta, around one point. 1 KiB.
 struct TriangleRows
 {
     // NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): kernel_source.inc.
-    alignas(64) float vertex[3][16]; ///< By the block's rows.
-    float low[3][16];                ///< Of the faces' boxes.
+    alignas(64) float vertex[3][16]; ///< Coordinates by the block's rows.
+    float low[3][16];                ///< Low and high corners of the faces' boxes.
     float high[3][16];
-    float normal[3][16]; ///< Of unit length to rounding, or zero of a face that has none.
-    float plane_low[16]; ///< Least and greatest height of the face's own corners along it.
+    float normal[3][16]; ///< Normals, of unit length to rounding; zero for a face without one.
+    float plane_low[16]; ///< Least and greatest height of the face's own corners along the normal.
     float plane_high[16];
-    float error[16];             ///< How far the surface that a face stands for may be from it.
+    float error[16];             ///< Error bound between the face and the surface that it stands
+                                 ///< for.
     std::uint8_t corners[3][16]; ///< Row of each corner.
     // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
 };
 
-/// A block's vertices around a point, in quanta, and the sum of each one's coordinates' sizes.
+/// A block's vertices around a point, in quanta, and the sum of each vertex's absolute coordinates.
 struct VertexRows
 {
     // NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): kernel_source.inc.
@@ -84,12 +86,12 @@ struct PairRows
 {
     // NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): kernel_source.inc.
     alignas(64) float at[6][3][kPairLanes];
-    float off[kPairLanes]; ///< What any coordinate is off by at most; kLeastPairOff or more.
+    float off[kPairLanes]; ///< Error bound of any coordinate; kLeastPairOff or more.
     // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
 };
 inline constexpr float kLeastPairOff = 0x1p-40F;
 
-/// What single precision proves of pairs, a bit each; of some it proves neither.
+/// Proven results of single precision, one bit per pair; a pair may have neither.
 struct PairSides
 {
     std::uint32_t meet;
@@ -102,17 +104,17 @@ struct PairDistances
     // NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): kernel_source.inc.
     alignas(64) float lower[kPairLanes];
     float upper[kPairLanes];
-    float way[3][kPairLanes]; ///< From the object to the tool; zero where none was found.
+    float way[3][kPairLanes]; ///< Direction from the object to the tool; zero if none was found.
     // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
 };
 
-/// What a breadth-first traversal has found and not looked at: nodes, and blocks with coarse faces,
-/// which are looked at one by one. The kernels write whole vectors, so eight places more are there
-/// than are used. 3.4 KB on the stack.
+/// Found but unvisited nodes, and blocks with coarse faces, of a breadth-first traversal. They are
+/// visited one by one. The kernels write whole vectors, so there are eight places more than are
+/// used. 3.4 KB on the stack.
 struct Frontier
 {
-    /// So many items are gone through in their order, and beyond that the last comes first, which
-    /// bounds what waits: then no level has more than a depth-first stack's.
+    /// Number of items visited in order. Beyond this the last comes first, which bounds the waiting
+    /// items: no level then has more than a depth-first stack's.
     static constexpr std::uint32_t kBroad = 256;
     static constexpr std::uint32_t kRoom = kBroad + kTreeStack + 8;
 
@@ -123,27 +125,29 @@ struct Frontier
     // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
 };
 
-/// Blocks whose faces are all exact, looked at together. 4.2 KB on the stack.
+/// Blocks whose faces are all exact, tested together. 4.2 KB on the stack.
 struct BlockBatch
 {
-    static constexpr std::uint32_t kFull = 32; ///< With more it is looked at before it grows.
+    static constexpr std::uint32_t kFull = 32; ///< The batch is tested before it grows further.
     static constexpr std::uint32_t kRoom = kFull + 2 * 8;
 
     std::uint32_t count;
     // NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): kernel_source.inc.
     std::uint32_t blocks[kRoom]; ///< TreeRefs.
     float gaps[kRoom];           ///< Lower bounds on the distances of their boxes, in quanta.
-    float toward[3][kRoom];      ///< From the probe towards their boxes' middles, of any length.
-    std::uint16_t near[kRoom];   ///< test_blocks(): the faces that may matter,
-    /// and lower bounds on all faces' squared distances; may be negative.
+    float toward[3][kRoom];      ///< Vectors from the probe towards their boxes' middles, of any
+                                 ///< length.
+    std::uint16_t near[kRoom];   ///< Faces that may matter, written by test_blocks().
+    /// Lower bounds on all faces' squared distances; may be negative.
     alignas(64) float lower_sq[kRoom][16];
     // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
 };
 
-/// Eight faces, one lane each, with a plane before each of them: nothing of a face is nearer to any
-/// place than the place's height, normal . place + offset. A face that was not looked at has a
-/// distance from the centre instead, `cone` is 1 then: the height is that less the way from there.
-/// A lane without a face is as far as can be. In quanta, around a centre. 160 B.
+/// Eight faces, one lane each, with a plane before each of them. The distance of a face from any
+/// place is at least the place's height, normal . place + offset. A face without a computed plane
+/// has its distance from the centre as offset, and `cone` is 1: the height is that less the place's
+/// distance from the centre. A lane without a face has the largest height. In quanta, around a
+/// centre. 160 B.
 inline constexpr std::uint32_t kPlaneLanes = 8;
 struct PlaneRows
 {
@@ -154,10 +158,10 @@ struct PlaneRows
     // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
 };
 static_assert(sizeof(PlaneRows) == 160);
-/// What is farther is no plane's offset.
+/// Upper limit of a plane's offset.
 inline constexpr float kFarPlane = 0x1p100F;
 
-/// Which lanes' planes were seen from which stand.
+/// Lanes whose planes were computed, and the number of their stand.
 struct PlaneSeen
 {
     std::uint32_t stand;
@@ -167,14 +171,14 @@ struct PlaneSeen
 /// Faces of one model in batches of kPlaneLanes.
 struct PlaneTable
 {
-    KernelProbe center; ///< What all is around.
+    KernelProbe center; ///< Centre of all coordinates.
     std::uint32_t count;
     PlaneRows* planes;
     PlaneSeen* seen;
-    /// No height of a batch was below this at the last question's place; whole eights of them, and
-    /// those without a batch are kFarPlane.
+    /// Least height of each batch at the last question's place, or less. Padded to whole eights
+    /// with kFarPlane.
     float* lows;
-    /// Of each batch: its first face, as LocalTriangle lies in memory.
+    /// First face of each batch, as LocalTriangle lies in memory.
     const void* const* triangles;
 };
 
@@ -183,43 +187,44 @@ struct PlaneQuestion
 {
     // NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): kernel_source.inc.
     float place[3];
-    float stand[3]; ///< Where the sphere is now.
+    float stand[3]; ///< Present position of the sphere.
     // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
-    std::uint32_t stand_number; ///< Another one for each stand; not 0.
-    float drift;                ///< How far the place is from the last question's, or more.
-    float least;                ///< Heights below this are asked for.
-    /// Likewise at the stand. Less than `least` where the sphere is deep in faces: then a way out
-    /// of them is free that nowhere comes nearer than this.
+    std::uint32_t stand_number; ///< Number of the stand: another one for each, not 0.
+    float drift;                ///< Upper bound on the distance between the places of the last
+                                ///< question and this one.
+    float least;                ///< Height below which faces are reported.
+    /// Height at the stand below which faces are reported. Less than `least` if the sphere is deep
+    /// in faces: a motion out of them is then free if it nowhere comes nearer than this.
     float least_here;
 };
 
-/// What planes_below() found and did.
+/// Results of planes_below().
 struct PlaneCounts
 {
     std::uint32_t hits;
-    std::uint32_t looked; ///< Batches of which it found planes anew.
+    std::uint32_t looked; ///< Batches with newly computed planes.
 };
 
 /// Faces of a batch that are below.
 struct PlaneHit
 {
     // NOLINTNEXTLINE(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): likewise.
-    float heights[kPlaneLanes]; ///< Of all lanes, and
-    float low;                  ///< the least of them.
+    float heights[kPlaneLanes]; ///< Heights of all lanes.
+    float low;                  ///< Least of the heights.
     std::uint32_t batch;
-    std::uint32_t lanes; ///< Those that are below.
+    std::uint32_t lanes; ///< Lanes that are below.
 };
 
-/// An index page as the kernels see its boxes: around a point, in quanta.
+/// An index page in the form of its boxes' kernel: around a point, in quanta.
 struct KernelPage
 {
     // NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): kernel_source.inc.
-    float low[3];  ///< The corner of its own box from which its boxes count their steps.
-    float step[3]; ///< The length of a step.
+    float low[3];  ///< Low corner of the page's box, from which its boxes count their steps.
+    float step[3]; ///< Length of a step.
     // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
-    float slack; ///< More than what rounding takes from or adds to any gap.
+    float slack; ///< Upper bound on the rounding of any gap.
 };
-/// An index page's rows have so many boxes: three rows of low steps, then three of high ones.
+/// Number of boxes in a row of an index page: three rows of low steps, then three of high ones.
 inline constexpr int kIndexRow = 64;
 
 /// A sphere around the same point, in quanta.
@@ -230,20 +235,20 @@ struct KernelSphere
     float radius;
 };
 
-/// How eight boxes lie to some spheres.
+/// Relation of eight boxes to a set of spheres.
 struct NearBoxes
 {
     std::uint32_t met;  ///< Boxes that a sphere surely meets.
     std::uint32_t open; ///< Boxes that single precision can't decide.
-    float gap;          ///< No sphere is nearer than this to any of the others.
+    float gap;          ///< Lower bound on the gap between the spheres and the other boxes.
 };
 
-/// A LocalTriangle: its name, then three coordinates of each corner.
+/// Layout of a LocalTriangle: its name, then three coordinates of each corner.
 inline constexpr std::size_t kTriangleBytes = 40;
 inline constexpr std::size_t kTriangleCornersAt = 4;
 
-/// A block as the point kernels read it in the tree's array: three rows of 16 floats, three of 16
-/// bytes, and two masks of 16 bits.
+/// Layout of a block in the tree's array, for the point kernels: three rows of 16 floats, three of
+/// 16 bytes, and two masks of 16 bits.
 inline constexpr std::size_t kBlockBytes = 256;
 inline constexpr std::size_t kBlockCornersAt = 192;
 inline constexpr std::size_t kBlockFacesAt = 240;
@@ -256,16 +261,16 @@ static_assert(sizeof(TriangleRows) == 1024);
 /// (FrameSetup::kernels) and calls none of them.
 ///
 /// `boxes` are six rows of eight floats, low x, y, z, high x, y, z; `coordinates` three rows of 16
-/// floats; both in metres. `corners` are three rows of 16 rows' numbers, `gaps` eight floats in
+/// floats; both in metres. `corners` are three rows of 16 row numbers, `gaps` eight floats in
 /// quanta. Bit n of a mask is child, face, vertex or lane n. Nothing is checked.
 ///
-/// They filter, they do not decide: bounds are conservative by a stated margin, and what lies
-/// within it is decided in double precision elsewhere. Every set does the same IEEE operations in
-/// the same order on each lane, without FMA or estimated reciprocals, so all give the same bits (of
-/// a box bound that is zero, but for its sign).
+/// They filter and do not decide: bounds are conservative by a stated margin, and cases within it
+/// are decided in double precision elsewhere. Every set does the same IEEE operations in the same
+/// order on each lane, without FMA or estimated reciprocals. So all give the same bits (except for
+/// the sign of a box bound that is zero).
 struct Kernels
 {
-    const char* name; ///< As reports call it; static.
+    const char* name; ///< Name in reports; static.
 
     /// Lower bounds on the distances to the boxes of a node's eight children: `boxes` is AbNode's
     /// six rows. Returns the children in `mask` whose bound is not above `bound`.
@@ -274,11 +279,11 @@ struct Kernels
 
     /// Bounds on the distances to the faces in `mask` of a block: `coordinates` and `corners` are
     /// BlockGeometry's rows. The least upper bound of those that are also in `exact` lowers
-    /// `limit`; returns the faces whose lower bound is not above the larger of `floor` and the new
+    /// `limit`. Returns the faces whose lower bound is not above the larger of `floor` and the new
     /// `limit`.
     ///
     /// A lower bound is less than the distance by at most 2 kFaceMargin x the local length (the
-    /// longest of edges and distances to the corners); for faces of an aspect above kThinAspect by
+    /// longest of edges and distances to the corners). Faces of an aspect above kThinAspect lose
     /// another 1/kThinAspect x the longest edge.
     std::uint32_t (*face_bounds)(const float* coordinates, const std::uint8_t* corners,
                                  const KernelProbe& probe, std::uint32_t mask, std::uint32_t exact,
@@ -287,26 +292,26 @@ struct Kernels
 
     /// Adds the children in `mask` whose bound, child_gaps()'s, is not above `bound`: the blocks
     /// that are not in `coarse` to the batch, all others to the frontier, each in their order.
-    /// `children` are eight TreeRefs. Both have room for eight.
+    /// `children` are eight TreeRefs. Both must have eight free places.
     void (*enter_node)(const float* boxes, const std::uint32_t* children, const KernelProbe& probe,
                        std::uint32_t mask, std::uint32_t coarse, float bound, Frontier& frontier,
                        BlockBatch& batch) noexcept TACTUS_NONBLOCKING;
 
-    /// Takes the block `known` (a TreeRef) from the batch, and those whose vertices all lie farther
-    /// than `bound` from the probe along the way to the middle of the box: then all their faces do.
-    /// A slanted block's box stands out of the surface, and what is in it doesn't. `blocks` is the
-    /// tree's array.
+    /// Removes the block `known` (a TreeRef) from the batch. Also removes blocks whose vertices all
+    /// lie farther than `bound` from the probe along the direction to the box's middle: then all
+    /// their faces do. The box of a slanted block protrudes from the surface, its faces don't.
+    /// `blocks` is the tree's array.
     void (*sort_out)(const void* blocks, const KernelProbe& probe, std::uint32_t known, float bound,
                      BlockBatch& batch) noexcept TACTUS_NONBLOCKING;
 
-    /// face_bounds() of all blocks in the batch, in squares: the least upper bound lowers `limit`,
-    /// and faces are near whose lower bound is not above the larger of `floor` and the new `limit`.
+    /// face_bounds() of all blocks in the batch, in squares. The least upper bound lowers `limit`.
+    /// Faces are near if their lower bound is not above the larger of `floor` and the new `limit`.
     /// All distances are quanta.
     ///
     /// The bounds on a squared distance are off by at most 2 kSquareMargin x the squared distance
-    /// of the farthest corner, for faces of an aspect up to 8. Thinner ones may be farther than
-    /// their lower bound says, those above kSquareThinAspect by 1/kSquareThinAspect x the longest
-    /// edge.
+    /// of the farthest corner. This holds for faces of an aspect up to 8. Thinner ones may be
+    /// farther than their lower bound, those above kSquareThinAspect by 1/kSquareThinAspect x the
+    /// longest edge.
     void (*test_blocks)(const void* blocks, const KernelProbe& probe, float floor, float& limit,
                         BlockBatch& batch) noexcept TACTUS_NONBLOCKING;
 
@@ -323,33 +328,34 @@ struct Kernels
                      float* box) noexcept TACTUS_NONBLOCKING;
 
     /// Lower bounds on the distances from a box to the boxes of a node's eight children: the larger
-    /// of what separates them along the axes of the one and of the other. Returns the children in
-    /// `mask` whose bound is not above `bound`.
+    /// of the gaps along the axes of the one and of the other. Returns the children in `mask` whose
+    /// bound is not above `bound`.
     std::uint32_t (*box_gaps)(const float* boxes, const KernelBox& box, std::uint32_t mask,
                               float bound, float* gaps) noexcept TACTUS_NONBLOCKING;
 
-    /// Raises the lower bounds `gaps` to what parts the boxes along one more direction; `way` is
-    /// not longer than 1 and leads from the node to the box. The rest is as above.
+    /// Raises the lower bounds `gaps` to the boxes' gaps along one more direction. `way` is not
+    /// longer than 1 and points from the node to the box. Otherwise as box_gaps().
     std::uint32_t (*boxes_along)(const float* boxes, const KernelBox& box, const float* way,
                                  std::uint32_t mask, float bound,
                                  float* gaps) noexcept TACTUS_NONBLOCKING;
 
-    /// The faces of a block, moved and turned: `coordinates` less `from`, times the 3 x 3 of
+    /// The faces of a block, translated and rotated: `coordinates` less `from`, times the 3 x 3 of
     /// `turn`, row by row. A coordinate is off by less than 2^-21 of the sum of the differences'
     /// sizes, times the largest of `turn`. `coordinates` and `corners` are BlockGeometry's rows.
     void (*place_turned)(const float* coordinates, const std::uint8_t* corners, const float* from,
                          const float* turn, TriangleRows& rows) noexcept TACTUS_NONBLOCKING;
 
-    /// No vertex in `mask`, of which there are some, is higher along a way not longer than 1 than
-    /// this above the probe, but for the probe's slack. `coordinates` are three rows of 16.
+    /// Upper bound on the heights of the vertices in `mask` above the probe, along a direction not
+    /// longer than 1, without the probe's slack. `mask` is not empty. `coordinates` are three rows
+    /// of 16.
     float (*highest_along)(const float* coordinates, std::uint32_t mask, const KernelProbe& probe,
                            const float* way) noexcept TACTUS_NONBLOCKING;
 
     /// The faces in `mask` that are not proven to be farther than `bound` and their error from a
     /// box, along the frame's axes and their normals. `box` is low x, y, z, high x, y, z in metres,
-    /// and `center` what the rows are around; `slack` is how far their vertices are off beyond
-    /// 2^-22 of themselves. Where none is left, all in `mask` are at least `least_gap` away, errors
-    /// taken off.
+    /// and `center` is the rows' centre. `slack` is the error of their vertices beyond 2^-22 of
+    /// their size. If no face is left, all in `mask` are at least `least_gap` away, errors
+    /// subtracted.
     std::uint32_t (*near_rows)(const TriangleRows& rows, const float* box,
                                const KernelProbe& center, std::uint32_t mask, float bound,
                                float slack, float& least_gap) noexcept TACTUS_NONBLOCKING;
@@ -360,63 +366,64 @@ struct Kernels
                                 const KernelBox& box, std::uint32_t mask, float bound,
                                 VertexRows& rows) noexcept TACTUS_NONBLOCKING;
 
-    /// For each face in `tool_mask`, the faces in `mask` that are not proven to be farther than
-    /// `bound` and its error from it, along the frame's axes, its own normal and `way`: not longer
-    /// than 1, from the object to the tool, null where none is known. Both rows are around the same
-    /// point; `slack` is as above.
+    /// Finds, for each face in `tool_mask`, the faces in `mask` that are not proven to be farther
+    /// than `bound` and its error from it. Tested along the frame's axes, its own normal and `way`:
+    /// not longer than 1, from the object to the tool, null if unknown. Both rows are around the
+    /// same point; `slack` is as above.
     void (*near_pairs)(const VertexRows& rows, const std::uint8_t* corners, std::uint32_t mask,
                        const TriangleRows& tool, std::uint32_t tool_mask, float bound, float slack,
                        const float* way, std::uint32_t* near) noexcept TACTUS_NONBLOCKING;
 
-    /// The faces that a sphere of radius `least` may enter on its straight way from the stand to
-    /// the place. Planes that are below are found again from the stand first, each once a stand,
-    /// and heights are at the place, or at the stand where that is below `least_here` and less.
-    /// Where the stand was asked about before, a face that is not in `hits` has a plane that is not
-    /// below at either. `hits` has room for all batches; they are in the batches' order.
+    /// The faces that a sphere of radius `least` may enter on a straight motion from the stand to
+    /// the place. Planes that are below are first computed again from the stand, each once per
+    /// stand. Heights are at the place, or at the stand if that is below `least_here` and less. If
+    /// the stand was used before, a face that is not in `hits` has a plane that is not below at
+    /// either. `hits` has places for all batches and keeps the batches' order.
     PlaneCounts (*planes_below)(const PlaneTable& table, const PlaneQuestion& question,
                                 PlaneHit* hits) noexcept TACTUS_NONBLOCKING;
 
-    /// The least height of all planes at the question's place; kFarPlane when there is none.
+    /// The least height of all planes at the question's place; kFarPlane if there is none.
     float (*least_height)(const PlaneTable& table,
                           const PlaneQuestion& question) noexcept TACTUS_NONBLOCKING;
 
-    /// Whether the pairs in the first `count` lanes meet.
+    /// Decides which pairs in the first `count` lanes meet.
     PairSides (*decide_pairs)(const PairRows& rows,
                               std::uint32_t count) noexcept TACTUS_NONBLOCKING;
 
-    /// Bounds on the distances of the pairs in the first `count` lanes. A pair's `way` makes its
-    /// lower bound, and is good to rule out others.
+    /// Bounds on the distances of the pairs in the first `count` lanes. A pair's `way` gives its
+    /// lower bound, and can rule out others.
     void (*pair_distances)(const PairRows& rows, std::uint32_t count,
                            PairDistances& distances) noexcept TACTUS_NONBLOCKING;
 
-    /// How eight boxes of an index page lie to `count` spheres; boxes in `known` are left out.
+    /// Relation of eight boxes of an index page to `count` spheres; boxes in `known` are left out.
     /// `steps` is the first of them in the page's first row.
     NearBoxes (*near_boxes)(const std::uint16_t* steps, const KernelPage& page,
                             const KernelSphere* spheres, std::uint32_t count,
                             std::uint32_t known) noexcept TACTUS_NONBLOCKING;
 };
 
-/// What single precision rounds in the bounds between boxes and between faces, as a share of the
-/// sum of their coordinates around the common point; more than all roundings together, which
+/// Rounding of the bounds between boxes and between faces in single precision, as a share of the
+/// sum of their coordinates around the common point. Larger than all roundings together, which
 /// kernel_pairs.inc counts.
 inline constexpr float kPairMargin = 0x1p-19F;
 
-/// Faces with a larger (longest edge squared / twice the area) are bounded by their edges alone.
+/// Faces with a larger aspect (longest edge squared / twice the area) are bounded by their edges
+/// alone.
 inline constexpr float kThinAspect = 128.0F;
 inline constexpr float kFaceMargin = 4e-5F;
 
-/// The same of test_blocks(), of squares (docs/accuracy.md, "The filter in squares").
+/// Limits for test_blocks(), whose bounds are squares (docs/accuracy.md, "The filter in squares").
 inline constexpr float kSquareThinAspect = 32.0F;
 inline constexpr float kSquareMargin = 0x1p-15F;
-/// What rounding may take from an inside test, as a share of the farthest corner's distance x the
-/// cube of the longest edge.
+/// Rounding of an inside test, as a share of the farthest corner's distance x the cube of the
+/// longest edge.
 inline constexpr float kInsideMargin = 0x1p-17F;
 
-/// Runs everywhere. All sets are static.
+/// The set that runs on every processor. All sets are static.
 [[nodiscard]] const Kernels& portable_kernels() noexcept;
-/// The sets that this processor runs, the fastest last. Looks at the processor: for start-up.
+/// The sets for this processor, the fastest last. Queries the processor: for start-up.
 [[nodiscard]] std::span<const Kernels* const> available_kernels() noexcept;
-/// The fastest; for start-up, too.
+/// The fastest set; also for start-up.
 [[nodiscard]] inline const Kernels& best_kernels() noexcept
 {
     return *available_kernels().back();

@@ -12,19 +12,19 @@
 namespace tactus
 {
 
-/// What a pair of tool and object keeps from one query to the next: where to look first.
+/// Memory of a pair of tool and object between queries: where the search begins.
 struct QueryMemory
 {
-    std::uint32_t block{kNoNode}; ///< The block of the last nearest face; any value is safe.
-    float limit{0.0F}; ///< Of a point: how far the surface was at most, in quanta; likewise.
+    std::uint32_t block{kNoNode}; ///< Block of the last nearest face; any value is safe.
+    float limit{0.0F}; ///< Last upper bound on a point's distance, in quanta; any value is safe.
 };
 
-/// Shows `search` the blocks that matter, the remembered one first and then nearest first.
+/// Passes to `search` the blocks that matter: the remembered one first, then nearest first.
 ///
-/// A search has `bound()`, in quanta from the probe, beyond which nothing matters;
-/// `test_block(index)`, false when the budget is spent or enough is known; and `leave(gap)` for
-/// what was not come to, at least so many quanta from the probe. Afterwards it remembers the block
-/// with the nearest face.
+/// `bound()` of a search is the distance from the probe, in quanta, beyond which nothing matters.
+/// `test_block(index)` returns false if the budget is spent or enough is known. `leave(gap)`
+/// receives subtrees that were not visited, which are at least `gap` quanta from the probe.
+/// Afterwards the search remembers the block with the nearest face.
 template <typename Probe, typename Search>
 void search_blocks(const AbTree& tree, const Probe& probe, WalkBudget& budget,
                    const QueryMemory& memory, Search& search) noexcept
@@ -49,26 +49,26 @@ void search_blocks(const AbTree& tree, const Probe& probe, WalkBudget& budget,
     }
 }
 
-/// What a search has proven, in metres from the core.
+/// Proven results of a search, in metres from the core.
 struct Findings
 {
-    double exact_lower_m{0.0}; ///< The nearest exact face is at least this far away,
-    /// what faces within the tolerance stand for this,
+    double exact_lower_m{0.0}; ///< Lower bound on the nearest exact face.
+    /// Lower bound on the surface that faces within the tolerance stand for.
     double tolerated_lower_m{kInfinity};
-    double upper_m{0.0};   ///< and some of the surface at most this.
-    double open_m{0.0};    ///< What is not exact or was not come to is at least this far away,
-    double pruned_m{0.0};  ///< what did not matter this,
-    double dropped_m{0.0}; ///< and exact triangles that had no room this.
+    double upper_m{0.0};   ///< Upper bound on the distance to the surface.
+    double open_m{0.0};    ///< Lower bound on inexact and unvisited faces.
+    double pruned_m{0.0};  ///< Lower bound on faces left out because they do not matter.
+    double dropped_m{0.0}; ///< Lower bound on exact triangles that did not fit.
 };
 
-/// No face can be nearer than the nearest one of the surface, if there is one.
+/// True if a nearest face is known and no other can be nearer.
 [[nodiscard]] inline bool is_nearest_proven(const Findings& found) noexcept
 {
     const double lower_m = std::min(found.exact_lower_m, found.tolerated_lower_m);
     return lower_m <= found.open_m && lower_m <= found.pruned_m && lower_m < kInfinity;
 }
 
-/// The answer within `reach_m`, but for the nearest face and points: theirs is who has them.
+/// The answer within `reach_m`, without the nearest face and points, which the caller fills in.
 [[nodiscard]] inline DistanceAnswer answer_from(const Findings& found, double reach_m) noexcept
 {
     DistanceAnswer answer;
@@ -76,7 +76,7 @@ struct Findings
     answer.lower_m = std::max(0.0, std::min({found.exact_lower_m, found.tolerated_lower_m,
                                              found.open_m, found.pruned_m}));
     const double open = std::min(found.open_m, found.dropped_m);
-    // Less than `open`, where what is not exact may begin.
+    // Less than `open`, where inexact faces may begin.
     answer.certified_radius_m = open > 0.0 ? std::min(reach_m, open * (1.0 - 0x1p-52)) : -1.0;
     const bool is_beyond = answer.lower_m > 0.0 && answer.lower_m == reach_m;
     const AnswerKind known = found.exact_lower_m <= std::max(found.tolerated_lower_m, 0.0)
@@ -86,7 +86,7 @@ struct Findings
                   : is_nearest_proven(found) ? known
                   : is_beyond                ? AnswerKind::separated
                                              : AnswerKind::bounded;
-    TACTUS_ASSERT(!(answer.lower_m > answer.upper_m)); // U may be no number: then L is 0.
+    TACTUS_ASSERT(!(answer.lower_m > answer.upper_m)); // U may be NaN: then L is 0.
     return answer;
 }
 

@@ -11,18 +11,19 @@
 namespace tactus
 {
 
-/// How boxes of one frame look from another one: for the kernels, in units that both frames share.
+/// Boxes of one frame as seen from another one: for the kernels, in units shared by both frames.
 class BoxView
 {
 public:
-    /// `there` is how the boxes' frame lies in the one that they are seen from; `units_per_m` is
-    /// of lengths in the latter. `slack` covers, in units, what placing rounds.
+    /// `there` places the boxes' frame in the viewing frame. `units_per_m` applies to lengths in
+    /// the viewing frame. `slack` covers rounding of the placement, in units.
     BoxView(const MeshPlacement& there, double units_per_m,
             float slack) noexcept TACTUS_NONBLOCKING;
 
-    /// Its centre, placed, must be within kFarQuanta units of the origin. About 20 ns.
+    /// A box in the viewing frame. Its placed centre must be within kFarQuanta units of the origin.
+    /// Takes about 20 ns.
     [[nodiscard]] KernelBox of(const Aabb& box) const noexcept TACTUS_NONBLOCKING;
-    /// One of the boxes' own axes, as they are seen.
+    /// One of the boxes' own axes, in the viewing frame.
     [[nodiscard]] const std::array<float, 3>& axis(std::size_t along) const noexcept
     {
         return axes_[along];
@@ -31,11 +32,11 @@ public:
 private:
     using Axes = std::array<std::array<float, 3>, 3>;
 
-    Axes axes_{};  ///< Of the boxes' own frame, one after the other.
-    Axes sizes_{}; ///< Of their coordinates.
+    Axes axes_{};  ///< Axes of the boxes' own frame, one after the other.
+    Axes sizes_{}; ///< Absolute values of their coordinates.
     MeshPlacement there_;
     double units_per_m_;
-    float units_per_m_here_; ///< Of lengths in the boxes' own frame.
+    float units_per_m_here_; ///< Factor for lengths in the boxes' own frame.
     float slack_;
 };
 

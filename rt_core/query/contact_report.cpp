@@ -19,7 +19,7 @@ namespace tactus
 namespace
 {
 
-/// A face at the nearest point, and the place of one of its corners.
+/// A face at the nearest point, and the index of its corner there.
 struct IncidentFace
 {
     FaceId face{};
@@ -29,7 +29,7 @@ struct IncidentFace
 
 using Incident = StaticVector<IncidentFace, kMaxIncidentFaces>;
 
-/// By the half angle, as Kahan has it: good at any angle. Zero when one has no length.
+/// Angle by Kahan's half-angle formula, accurate at any angle. Zero if a vector has no length.
 double angle_between(const Vec3& a, const Vec3& b) noexcept
 {
     const Vec3 u = unit_or_zero(a);
@@ -49,7 +49,7 @@ public:
     {
     }
 
-    /// False where the normal is not known.
+    /// False if the normal is not known.
     [[nodiscard]] bool try_find_normal(Vec3& normal) noexcept
     {
         const DistanceAnswer& answer = surface_.answer;
@@ -76,7 +76,7 @@ public:
         return normal != Vec3(0.0, 0.0, 0.0);
     }
 
-    /// The faces round the nearest point are a disc.
+    /// True if the faces round the nearest point form a disc.
     [[nodiscard]] bool is_manifold() const noexcept { return is_manifold_; }
 
 private:
@@ -102,7 +102,7 @@ private:
         return to_triangle(corners(i));
     }
 
-    /// Faces with a corner at `at`, in order of their ids, so that sums have the same bits.
+    /// Collects faces with a corner at `at`, ordered by id so that sums have the same bits.
     [[nodiscard]] bool try_gather(const Vec3f& at, Incident& incident) const noexcept
     {
         for (std::uint32_t i = 0; i < surface_.count; ++i)
@@ -174,7 +174,7 @@ private:
         return unit_or_zero(sum);
     }
 
-    /// Whether the faces follow one another round the vertex and close, with none left over.
+    /// True if the faces follow one another round the vertex and close, with none left over.
     [[nodiscard]] bool is_one_fan(const Incident& incident) const noexcept
     {
         std::size_t at = 0;
@@ -210,7 +210,8 @@ private:
     bool is_manifold_{false};
 };
 
-/// Of convex bodies libccd says whether they meet the face where the bounds leave that open.
+/// Closest points of core and triangle. For a convex body libccd decides intersection if the bounds
+/// leave that open.
 ClosestPoints closest_of(const PlacedCore& core, const Triangle& triangle,
                          ContactReport& report) noexcept
 {
@@ -226,8 +227,8 @@ ClosestPoints closest_of(const PlacedCore& core, const Triangle& triangle,
     return closest;
 }
 
-/// Faces of a surface within a distance, by their places in it. Those that may be the nearest
-/// kMaxContacts come first: when they are measured, few others need to be.
+/// Faces of a surface within a distance, by their indices in it. Those that may be among the
+/// nearest kMaxContacts come first: once they are measured, few others need to be.
 class NearFirst
 {
 public:
@@ -273,7 +274,7 @@ private:
     Places places_;
 };
 
-/// Whether there is room for a contact of this face, at least so far away.
+/// True if a contact of this face, at least `distance_m` away, could be kept.
 bool may_be_kept(double distance_m, FaceId face, const ContactSet& contacts) noexcept
 {
     return !contacts.full() || comes_before(Contact{.face = face, .distance_m = distance_m},
@@ -316,14 +317,14 @@ bool is_over(const Vec3& point, const Triangle& triangle, const Vec3& normal) no
     return true;
 }
 
-/// No point of the triangle is farther from its first corner.
+/// Upper bound on the distance of the triangle's points from its first corner.
 double size_of(const Triangle& triangle) noexcept
 {
     return kWidened * std::sqrt(std::max((triangle[1] - triangle[0]).squaredNorm(),
                                          (triangle[2] - triangle[0]).squaredNorm()));
 }
 
-/// Whether a point within the reach of the triangle's plane may be over it.
+/// True if a point within `reach_m` of the triangle's plane may be over the triangle.
 bool may_be_over(const CoreCorners& points, double reach_m, const Triangle& triangle,
                  double size_m) noexcept
 {
@@ -332,7 +333,7 @@ bool may_be_over(const CoreCorners& points, double reach_m, const Triangle& tria
                                { return (point - triangle[0]).squaredNorm() <= far_m * far_m; });
 }
 
-/// Corners of the core that stand over a face, on either side.
+/// Adds corners of the core that are over a face, on either side.
 void add_corners(const CoreCorners& corners, double reach_m, const Triangle& triangle, FaceId face,
                  TouchReport& touches) noexcept
 {
@@ -354,7 +355,7 @@ void add_corners(const CoreCorners& corners, double reach_m, const Triangle& tri
     }
 }
 
-/// Whether a contact of the triangle, at least so far away, would be kept in some direction.
+/// True if a contact of the triangle, at least `distance_m` away, would be kept in some direction.
 bool may_be_an_end(const Triangle& triangle, double size_m, double distance_m,
                    const ContactEnds& ends) noexcept
 {
@@ -363,8 +364,8 @@ bool may_be_an_end(const Triangle& triangle, double size_m, double distance_m,
             is_farther_in_any(most_end_reaches(triangle, distance_m), ends.reaches_m));
 }
 
-/// Adds the slab of a face that is `distance_m` away, without its nearest point, if that proves
-/// hardly less.
+/// Adds the slab of a face that is `distance_m` away, without its nearest point. False if the slab
+/// proves much less.
 bool try_add_slab(const PlacedCore& core, const Triangle& triangle, double distance_m,
                   TouchReport& touches) noexcept
 {
@@ -378,8 +379,8 @@ bool try_add_slab(const PlacedCore& core, const Triangle& triangle, double dista
     return proves_it;
 }
 
-/// Between points that are the nearest but for rounding everything is on its own side of the plane
-/// across them; where they are not found as well as that, no direction is proven.
+/// Between nearest points exact up to rounding, each shape is on its own side of the plane across
+/// them. If the points are less accurate, no direction is proven.
 void add_slab(const Vec3& normal, const ClosestPoints& closest, TouchReport& touches) noexcept
 {
     constexpr double kWellFound = 1e-6;
@@ -434,7 +435,7 @@ void report_contacts(const PlacedCore& core, double radius_m, const AbTree& tree
     TACTUS_ASSERT(surface.count <= surface.triangles.size());
     report.clear();
     const DistanceAnswer& answer = surface.answer;
-    // Nothing unseen may touch: either all is exact that far, or all is farther.
+    // No unseen face may touch: either all is exact that far, or all is farther.
     report.is_complete = answer.certified_radius_m >= radius_m || answer.lower_m > radius_m;
     add_contacts(core, radius_m, tree, surface, report);
     NearestFeature nearest(tree, surface);

@@ -11,26 +11,26 @@
 namespace tactus
 {
 
-/// The contacts of a tool with a surface that was gathered from its core, and normal and side at
-/// the nearest point, in the model's frame. Does not depend on the traversal: where the same faces
-/// are exact it gives the same bits.
+/// Reports contacts of a tool with a surface gathered from its core, and normal and side at the
+/// nearest point, in the model's frame. The result does not depend on the traversal: the same exact
+/// faces give the same bits.
 ///
-/// `is_closed` says that every edge of the whole mesh has two faces of like winding; without it
-/// there is no side. Signs by angle-weighted pseudonormals: Baerentzen and Aanaes 2005. They are
+/// `is_closed` states that every edge of the whole mesh has two faces of like winding. Without it
+/// there is no side. Signs use angle-weighted pseudonormals: Baerentzen and Aanaes 2005. They are
 /// right where the surface does not cross itself.
 ///
-/// Haptic thread; cost: some 20 ns for each triangle of the surface within the radius, 50 ns to 2
+/// Haptic thread. Cost: about 20 ns for each triangle of the surface within the radius, 50 ns to 2
 /// us for each that may be among the nearest.
 void report_contacts(const PlacedCore& core, double radius_m, const AbTree& tree,
                      const LocalSurface& surface, bool is_closed,
                      ContactReport& report) noexcept TACTUS_NONBLOCKING;
 
-/// Where a convex tool with a force may come to touch that surface: nearest points within `reach_m`
-/// of the core, and its corners that stand over a face, without which a box that lies flat on a
-/// large face would be held at one point alone. Which points are nearest among many as near is
-/// left to the kernel. Faces that are neither among the nearest nor an end are not measured: their
-/// slab is that of a plane between them and the core, at least 0.95 of their distance away as it is
-/// known from the surface.
+/// Reports possible contacts of a convex force-rendering tool with that surface. These are nearest
+/// points within `reach_m` of the core, and corners of the core over a face. Without the corners, a
+/// box flat on a large face would be held at one point alone. Among equally near points, the
+/// kernel's choice is reported. Faces that are neither among the nearest nor an end are not
+/// measured. Their slab is a plane between them and the core, at least 0.95 of their distance away
+/// as known from the surface.
 void report_touches(const PlacedCore& core, double reach_m, const AbTree& tree,
                     const LocalSurface& surface, TouchReport& touches) noexcept TACTUS_NONBLOCKING;
 

@@ -24,7 +24,7 @@ namespace tactus
     return length > 0.0 ? Vec3(v / length) : Vec3(0.0, 0.0, 0.0);
 }
 
-/// Unit length; zero for a triangle without area.
+/// Unit normal; zero for a triangle without area.
 [[nodiscard]] inline Vec3 normal_of(const Triangle& triangle) noexcept
 {
     const double longest_sq = std::max({(triangle[1] - triangle[0]).squaredNorm(),
@@ -52,10 +52,10 @@ namespace tactus
            std::tie(b.distance_m, b.face, b.tool_face);
 }
 
-/// Inserts in order; the farthest goes when there are too many, and then it is false.
+/// Inserts in order. If the set is full, drops the farthest and returns false.
 [[nodiscard]] inline bool keep_nearest(const Contact& contact, ContactSet& contacts) noexcept
 {
-    TACTUS_ASSERT(!std::isnan(contact.distance_m)); // Else there is no order.
+    TACTUS_ASSERT(!std::isnan(contact.distance_m)); // NaN would have no order.
     const bool is_full = contacts.size() == kMaxContacts;
     if (is_full && !comes_before(contact, contacts[kMaxContacts - 1]))
     {
@@ -74,8 +74,8 @@ namespace tactus
     return !is_full;
 }
 
-/// Of the first half of ContactEnds' directions, along which a coordinate is -1, 0 or 1, that of x
-/// changing first: all before (0, 0, 0), which is none.
+/// Heights for the first half of ContactEnds' directions. Their coordinates are -1, 0 or 1, x
+/// changing first, up to but without (0, 0, 0).
 using EndHeights = std::array<double, kContactDirections / 2>;
 inline constexpr double kEdgeEnd = std::numbers::sqrt2;
 inline constexpr double kCornerEnd = std::numbers::sqrt3;
@@ -83,7 +83,7 @@ inline constexpr EndHeights kEndLengths{kCornerEnd, kEdgeEnd,   kCornerEnd, kEdg
                                         kEdgeEnd,   kCornerEnd, kEdgeEnd,   kCornerEnd, kEdgeEnd,
                                         1.0,        kEdgeEnd,   1.0};
 
-/// How far a point is along each of them, times its length.
+/// Heights of a point along each direction, times the direction's length.
 [[nodiscard]] inline EndHeights end_heights(const Vec3& point_m) noexcept
 {
     const double x = point_m[0];
@@ -100,7 +100,8 @@ inline constexpr EndHeights kEndLengths{kCornerEnd, kEdgeEnd,   kCornerEnd, kEdg
 }
 inline constexpr double kEndPerDistance = 10.0;
 
-/// Does not depend on the order of contacts: of equally far ones the first by comes_before() stays.
+/// Keeps the farthest contact of each direction, in any order of contacts: of equally far ones the
+/// first by comes_before().
 inline void keep_ends(const Contact& contact, ContactEnds& ends) noexcept
 {
     const double less_m = kEndPerDistance * contact.distance_m;
@@ -124,13 +125,14 @@ inline void keep_ends(const Contact& contact, ContactEnds& ends) noexcept
     ends.is_empty = false;
 }
 
-/// How far a contact counts in each direction.
+/// Reach of a contact in each direction, less its weighted distance.
 using EndReaches = std::array<double, kContactDirections>;
 
-/// Many times what a contact's place and distance, and what is below, are rounded by.
+/// Allowance for rounding of a contact's place, its distance and the sums below; many times the
+/// actual error.
 inline constexpr double kEndRounding = 1e-12;
 
-/// No contact on this triangle that is at least so far from the core counts as farther.
+/// Upper bounds on the reaches of contacts on this triangle, at least `distance_m` from the core.
 [[nodiscard]] inline EndReaches most_end_reaches(const Triangle& triangle,
                                                  double distance_m) noexcept
 {
@@ -152,19 +154,19 @@ inline constexpr double kEndRounding = 1e-12;
     return reaches_m;
 }
 
-/// Whether in some direction the first is at least as far as the second.
+/// True if the first is at least as far as the second in any direction.
 [[nodiscard]] inline bool is_farther_in_any(const EndReaches& a, const EndReaches& b) noexcept
 {
     bool is_farther = false;
-    for (std::size_t i = 0; i < a.size(); ++i) // All at once: without a way out.
+    for (std::size_t i = 0; i < a.size(); ++i) // No early exit: all directions at once.
     {
         is_farther |= a[i] >= b[i];
     }
     return is_farther;
 }
 
-/// No only where most_end_reaches() is_farther_in_any() of none, of a triangle that is within
-/// `size_m` of its first corner. A fifth of that work.
+/// False only if is_farther_in_any() is false for most_end_reaches() of a triangle within `size_m`
+/// of its first corner. Takes a fifth of that work.
 [[nodiscard]] inline bool may_be_farther_in_any(const Triangle& triangle, double size_m,
                                                 double distance_m,
                                                 const EndReaches& reaches_m) noexcept
@@ -173,7 +175,7 @@ inline constexpr double kEndRounding = 1e-12;
     const double more_m = size_m + 4.0 * kEndRounding * place_m - kEndPerDistance * distance_m;
     const EndHeights heights_m = end_heights(triangle[0]);
     bool may_be = false;
-    for (std::size_t i = 0; i < heights_m.size(); ++i) // All at once: without a way out.
+    for (std::size_t i = 0; i < heights_m.size(); ++i) // No early exit: all directions at once.
     {
         const double height_m = heights_m[i] * (1.0 / kEndLengths[i]);
         may_be |= more_m + height_m >= reaches_m[i];
@@ -182,8 +184,8 @@ inline constexpr double kEndRounding = 1e-12;
     return may_be;
 }
 
-/// Adds a face to the slab that it differs least from, or makes one. Without a normal nothing is
-/// proven: the slab is in all directions.
+/// Adds a face to the slab with the most similar normal, or makes a new slab. Without a normal no
+/// direction is proven: the slab covers all directions.
 inline void keep_slab(const Vec3& normal, double distance_m, TouchReport& touches) noexcept
 {
     constexpr double kSameSlab = 0.05;

@@ -23,7 +23,7 @@ namespace
 
 static_assert(sizeof(ccd_real_t) == sizeof(double), "libccd is built for single precision");
 
-/// Relative to the body's centre and scaled, as both are handed to libccd.
+/// A body relative to its centre and scaled, as both shapes are handed to libccd.
 struct ScaledBody
 {
     const ConvexBody& body;
@@ -40,7 +40,7 @@ Vec3 from(const ccd_vec3_t* v) noexcept
     return {v->v[0], v->v[1], v->v[2]};
 }
 
-/// libccd's directions have any length, and between flat shapes none.
+/// Directions from libccd have any length, and zero length between flat shapes.
 void support_body(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* out) noexcept
 {
     const auto& [body, scale] = *static_cast<const ScaledBody*>(object);
@@ -58,13 +58,13 @@ void support_triangle(const void* object, const ccd_vec3_t* direction, ccd_vec3_
     put(out, *farthest);
 }
 
-/// Any will do.
+/// Any start works.
 void begin_at_the_triangle(const void* /*body*/, const void* triangle, ccd_vec3_t* out) noexcept
 {
     put(out, (*static_cast<const Triangle*>(triangle))[0]);
 }
 
-// libccd has no mark, but all that this call needs is on its stack, and max_iterations ends it.
+// libccd is not annotated, but this call needs only its stack, and max_iterations bounds it.
 TACTUS_TRUSTED_BEGIN
 std::optional<bool> ask_ccd(const ConvexBody& body,
                             const Triangle& triangle) noexcept TACTUS_NONBLOCKING

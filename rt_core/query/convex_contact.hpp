@@ -8,25 +8,25 @@
 namespace tactus
 {
 
-/// Whether a convex body and a triangle share a point, and how far apart they are.
+/// Intersection and distance of a convex body and a triangle.
 struct ConvexContact
 {
     GjkAnswer nearest;
-    /// No where `nearest.lower` is above zero; yes where `nearest.upper` is no more than rounding,
-    /// so for what touches within 6e-15 local lengths; in between what libccd says.
+    /// True if they share a point. False if `nearest.lower` is above zero, true if `nearest.upper`
+    /// is within rounding: for touching within 6e-15 local lengths. In between libccd decides.
     bool meet{false};
-    /// libccd was asked and said the opposite of what the bounds prove: to be counted. It takes
-    /// what is nearer than some 1e-8 of the size for touching and may take what only touches for
-    /// apart; elsewhere many of these point at a support function that breaks its promise.
+    /// True if libccd was asked and contradicts the proven bounds: to be counted. libccd takes gaps
+    /// below about 1e-8 of the size for touching and may miss mere touching. Elsewhere, many of
+    /// these indicate a support function that breaks its contract.
     bool is_ccd_overruled{false};
 };
 
-/// Arguments, law and limits are those of gjk_distance; libccd's GJK intersection is asked beside
-/// it, except of triangles proven beyond `limit`.
+/// Arguments, law and limits are those of gjk_distance. libccd's GJK intersection is also
+/// evaluated, except for triangles proven beyond `limit`.
 ///
-/// libccd takes what is zero from its size, so it is given both relative to the body's centre and
-/// scaled to about 1. Built without it (a replay on another processor) an open question counts as
-/// yes. Takes 0.1 us more than gjk_distance where they are apart, 0.5 to 1.7 us where near.
+/// libccd judges zero by absolute size, so its input is relative to the body's centre and scaled to
+/// about 1. Without libccd (a replay on another processor) an open question counts as yes. Takes
+/// 0.1 us more than gjk_distance if they are apart, 0.5 to 1.7 us if near.
 [[nodiscard]] ConvexContact contact_of(const ConvexBody& body, const Triangle& triangle,
                                        Vec3& direction,
                                        double limit = kInfinity) noexcept TACTUS_NONBLOCKING;

@@ -20,17 +20,17 @@ namespace
 
 static_assert(kBlockVertices == CornersAtCore::kCorners);
 
-/// Part of the tolerance by which an answer may differ from that with every face measured.
+/// Share of the tolerance by which an answer may differ from that with every face measured.
 constexpr double kUnmeasuredShare = 0x1p-4;
 /// Distances that differ by fewer quanta may be equal.
 constexpr double kTied = 0x1p-20;
 /// Rounding of heights of placed corners, relative to their coordinates.
 constexpr double kPlaceRounding = 1e-14;
 
-/// More quanta than any model has, and far from what overflows.
+/// More quanta than any model has, and far from overflow.
 constexpr double kMostQuanta = 0x1p100;
 
-/// The oriented box round a core, as the kernels see it.
+/// The oriented box round a core, in the kernels' form.
 KernelBox make_kernel_box(const PlacedCore& core, float quantum_m) noexcept
 {
     KernelBox box{};
@@ -98,13 +98,13 @@ public:
 
     void leave(float gap) noexcept { open_ = std::min(open_, static_cast<double>(gap) * quantum_); }
 
-    /// False when the budget is spent, or enough is known.
+    /// False if the budget is spent or enough is known.
     [[nodiscard]] bool test_block(std::uint32_t index) noexcept
     {
         const BlockGeometry& block = tree_.block(index);
         if (!budget_.take_triangles(face_count(block)))
         {
-            open_ = std::min(open_, 0.0); // Its parent's bound may have gone with it.
+            open_ = std::min(open_, 0.0); // Its parent's bound may be gone with it.
             return false;
         }
         const BlockSide& side = tree_.side(index);
@@ -158,7 +158,7 @@ private:
         std::uint32_t block;
         std::uint32_t lane;
         ErrorCode error;
-        double error_m; ///< The same.
+        double error_m; ///< Error as a length.
     };
 
     [[nodiscard]] bool is_coarse(const Face& face) const noexcept
@@ -166,21 +166,21 @@ private:
         return face.error > tolerance_;
     }
 
-    /// Of a face: what little work tells, and of a convex body in reach the distance.
+    /// Cheap bounds on a face's distance. For a convex body in reach, also the closest points.
     struct Measure
     {
         CoreBounds bounds;
         std::optional<ClosestPoints> closest;
     };
 
-    /// What is farther changes nothing. Never grows: what was left out stays farther.
+    /// Distance beyond which faces change nothing. Never grows: faces left out stay farther.
     [[nodiscard]] double worth_m() const noexcept
     {
         return limit_ > looked_ ? std::max(looked_, share_ * limit_)
                                 : std::max(std::min(looked_, triangles_.dropped_m()), limit_);
     }
 
-    /// Along one direction a convex body is so far from the whole block that it does not matter.
+    /// True if the whole block is too far from a convex body along one direction to matter.
     [[nodiscard]] bool is_apart(const BlockGeometry& block, const BlockSide& side) noexcept
     {
         budget_.spend(WorkCost::block_row);
@@ -202,7 +202,7 @@ private:
         double lower = known.bounds.lower - face.error_m;
         if (is_left && lower <= worth && lower < open_)
         {
-            // As refinement measures it: what that holds for far enough is not open here.
+            // Measured as in refinement: a gap that suffices there is not open here.
             const ClosestPoints closest = measure(face, known);
             lower = closest.distance - closest.distance_error - face.error_m;
         }
@@ -227,7 +227,7 @@ private:
         const std::array<std::uint8_t, 3> corners{
             block.corners[0][face.lane], block.corners[1][face.lane], block.corners[2][face.lane]};
         Measure found{core_.bounds(corners_, corners, limit_m), std::nullopt};
-        if (tolerance_ != 0 && !separations_ && found.bounds.lower <= limit_m) // Those have ways.
+        if (tolerance_ != 0 && !separations_ && found.bounds.lower <= limit_m) // No convex body.
         {
             found.bounds.lower = std::max(found.bounds.lower, bound_along_way(corners));
         }
@@ -245,9 +245,9 @@ private:
 
     void measure_body(const Face& face, double limit_m, Measure& found) noexcept
     {
-        constexpr double kHardlyMore = 1.05; // What would be gained by one more direction.
+        constexpr double kHardlyMore = 1.05; // Gain that is worth one more direction.
         budget_.spend(WorkCost::gjk);
-        Vec3 direction(0.0, 0.0, 0.0); // As PlacedCore::closest(), so with its bits.
+        Vec3 direction(0.0, 0.0, 0.0); // Same start as PlacedCore::closest(), so the same bits.
         const GjkAnswer answer = gjk_distance(core_.body(), triangle_of(face), direction, limit_m);
         const ClosestPoints closest = to_closest_points(answer);
         if (answer.lower > kHardlyMore * found.bounds.lower)
@@ -258,7 +258,7 @@ private:
             std::max(found.bounds.lower, closest.distance - closest.distance_error);
         found.bounds.upper = closest.distance + closest.distance_error;
         found.bounds.meet = closest.meet;
-        if (!(answer.lower > limit_m)) // Else it ended there.
+        if (!(answer.lower > limit_m)) // Otherwise the search ended at the limit.
         {
             found.closest = closest;
         }
@@ -288,7 +288,7 @@ private:
         return core_.is_box() && closest.feature <= TriangleFeature::corner_2;
     }
 
-    /// A face that is exact or within the tolerance.
+    /// Adds a face that is exact or within the tolerance.
     void add_surface(const Face& face, const Measure& known) noexcept
     {
         const PrimId prim = tree_.side(face.block).prims[face.lane];
@@ -309,7 +309,7 @@ private:
             keep_if_nearest(closest, id, face.block);
             measured_lower_ = std::min(measured_lower_, lower - face.error_m);
         }
-        lower -= face.error_m; // What it stands for.
+        lower -= face.error_m; // Bound on the source surface that the face stands for.
         largest_tolerated_ = std::max(largest_tolerated_, face.error);
         if (lower <= reach_)
         {
@@ -323,13 +323,13 @@ private:
         met_ += meets ? 1U : 0U;
     }
 
-    /// Something of the source is within this.
+    /// Takes an upper bound on the distance to the source.
     void take_upper(double upper_m) noexcept
     {
         upper_ = std::min(upper_, upper_m);
         limit_ = std::min(limit_, upper_m);
     }
-    /// Or of what counts as the surface.
+    /// Takes an upper bound on the distance to a face that counts as the surface.
     void take_upper(const Face& face, double upper_m) noexcept
     {
         limit_ = std::min(limit_, upper_m);
@@ -337,8 +337,8 @@ private:
     }
 
     /// True if measuring a face would change the answer by less than a small part of the tolerance:
-    /// a flat tool is about as far from all faces below it. Without a tolerance all are measured,
-    /// so that the answer does not depend on their order.
+    /// a flat tool is about as far from all faces below it. Without a tolerance all faces are
+    /// measured, so that the answer does not depend on their order.
     [[nodiscard]] bool tells_nothing(const Face& face, double lower_m) const noexcept
     {
         return tolerance_ != 0 && lower_m >= nearest_.distance - little_m_ &&
@@ -359,7 +359,7 @@ private:
         return least - way_.cwiseAbs().dot(half) - kPlaceRounding * half.sum();
     }
 
-    /// The lowest of equally near faces is taken.
+    /// True if the face may be the nearest. Of equally near faces the lowest is taken.
     [[nodiscard]] bool may_be_nearest(FaceId face, double lower_m) const noexcept
     {
         return lower_m <= limit_ && (nearest_.distance > 0.0 || face < nearest_face_);
@@ -379,7 +379,7 @@ private:
         }
     }
 
-    /// The corners of a coarse face are original vertices.
+    /// Bounds the distance by a coarse face's corners, which are original vertices.
     void bound_by_corners(const Face& face, const CoreBounds& bounds) noexcept
     {
         if (!core_.is_convex_body())
@@ -402,22 +402,25 @@ private:
     const PlacedCore& core_;
     double quantum_;
     double reach_;
-    double share_; ///< Of the best distance: what is farther is not looked at.
+    double share_; ///< Share of the best distance beyond which faces are not tested.
     std::uint32_t enough_;
     ErrorCode tolerance_; ///< Faces with no larger error count as the surface.
     double little_m_;     ///< Small part of the tolerance.
-    double looked_;       ///< So far: what is in reach may be stood for by a face beyond.
+    double looked_;       ///< Search distance: a face beyond the reach may stand for surface within
+                          ///< it.
     WalkBudget& budget_;
     KernelBox box_;
     NearestTriangles triangles_;
-    std::optional<Separations> separations_; ///< Of a convex body.
-    CornersAtCore corners_;                  ///< The corners of the block that is tested.
-    double open_{kInfinity};            ///< What is not known exactly is at least this far away.
-    double exact_lower_{kInfinity};     ///< Exact faces are;
-    double tolerated_lower_{kInfinity}; ///< what faces within the tolerance stand for is;
-    double upper_{kInfinity};           ///< something of the source is at most,
-    double limit_{kInfinity};           ///< and of the surface or the source.
-    double measured_lower_{kInfinity};  ///< Lower bound from the measured faces of the surface.
+    std::optional<Separations> separations_; ///< Separating directions of a convex body.
+    CornersAtCore corners_;                  ///< Corners of the tested block.
+    double open_{kInfinity};                 ///< Lower bound on inexact faces.
+    double exact_lower_{kInfinity};          ///< Lower bound on exact faces.
+    double tolerated_lower_{kInfinity};      ///< Lower bound on the surface that faces within the
+                                             ///< tolerance stand for.
+    double upper_{kInfinity};                ///< Upper bound on the distance to the source.
+    double limit_{kInfinity};                ///< Upper bound on the distance to the surface or the
+                                             ///< source.
+    double measured_lower_{kInfinity}; ///< Lower bound from the measured faces of the surface.
     ErrorCode largest_tolerated_{0};
     std::uint32_t met_{0}; ///< Faces of the surface that meet the core.
     ClosestPoints nearest_{.distance = kInfinity};

@@ -12,15 +12,15 @@
 namespace tactus
 {
 
-/// As gather_surface() of a point, from any core: the distance question, and the triangles of the
-/// surface within `reach_m` of the core, in one traversal of the tree. A point is asked with the
-/// same code as ever, in single precision first; of other cores a face is measured in double
-/// precision where its bounds leave open whether it is in reach or the nearest.
+/// gather_surface() for any core: answers the distance question and collects the triangles of the
+/// surface within `reach_m` of the core, in one traversal of the tree. A point runs the code for
+/// points, in single precision first. For other cores a face is measured in double precision if its
+/// bounds leave open whether it is in reach or the nearest.
 ///
-/// Ends where `enough` faces of the surface meet the core: no distance is below zero, and of what
-/// meets, which is nearest and listed is left to the search. Nothing is certified then.
+/// Ends if `enough` faces of the surface meet the core: no distance is below zero. The search order
+/// then decides which meeting face is nearest and which are listed. Nothing is certified then.
 ///
-/// Writes `surface` completely. Haptic thread; cost: the nodes near the box round the core, some
+/// Writes `surface` completely. Haptic thread. Cost: the nodes near the box round the core, about
 /// 30 ns for each triangle there and 0.1 to 2 us for each that is measured.
 void gather_surface(const AbTree& tree, const PlacedCore& core, double reach_m, QueryMemory& memory,
                     WalkBudget& budget, LocalSurface& surface, ProofShare share = ProofShare::most,

@@ -147,7 +147,7 @@ Meeting FaceDecision::meeting_of(const FacePair& pair) const noexcept
     return {{question_.tool.face_of(tool_prim), question_.object.face_of(prim)}, tool_prim, prim};
 }
 
-/// Of queued pairs that don't meet.
+/// Bounds the distances of queued pairs that do not meet.
 void FaceDecision::bound_distances(std::uint32_t apart, std::uint32_t count) noexcept
 {
     question_.object.kernels().pair_distances(queue_.rows(), count, distances_);
@@ -170,8 +170,8 @@ void FaceDecision::bound_distances(std::uint32_t apart, std::uint32_t count) noe
     }
 }
 
-/// Candidates go that others have turned out to be nearer than, and those that could only be
-/// ends but for one of each direction; where too few do, all are measured.
+/// Drops candidates with nearer rivals, and possible ends except one per direction. If too many
+/// remain, measures all.
 void FaceDecision::make_room() noexcept
 {
     const double contact_m = findings_.contact_zone_m();
@@ -194,8 +194,8 @@ void FaceDecision::make_room() noexcept
     }
 }
 
-/// What is farther than this pair, in space or along the way between the two, is not the
-/// nearest.
+/// Takes the upper bound of a pair. The nearest pair cannot be farther, in space or along the
+/// direction between the two.
 void FaceDecision::take_bound(std::uint32_t lane, const FacePair& pair) noexcept
 {
     const double upper_m = static_cast<double>(distances_.upper[lane]) * quantum_m_ * kRoundedUp;
@@ -223,8 +223,8 @@ void FaceDecision::measure(const FacePair& pair) noexcept
                         shared_.closest_points(tool_triangle(pair), triangle));
 }
 
-/// Of each direction the candidate, by its place, that may be farthest of those that could
-/// only be ends; kMaxCandidates where none may be farther than what is known.
+/// Index of the candidate that may be farthest in each direction, of those that could only be ends.
+/// kMaxCandidates if none may be farther than the known end.
 FaceDecision::FarthestEnds FaceDecision::farthest_ends() const noexcept
 {
     FarthestEnds farthest{};
@@ -265,7 +265,8 @@ FaceDecision::FarthestEnds FaceDecision::farthest_ends() const noexcept
     return farthest;
 }
 
-/// One of each direction: what else lies near the end of what the tool lies on is as good.
+/// Measures one candidate per direction. Others near the same end of the contact area serve as
+/// well.
 void FaceDecision::measure_ends() noexcept
 {
     const FarthestEnds farthest = farthest_ends();
@@ -309,7 +310,7 @@ void FaceDecision::leave_coarse(const MeshFace& tool_face, const MeshFace& face)
     findings_.leave(closest.distance - closest.distance_error - tool_face.error_m - face.error_m);
 }
 
-/// Those of coarse faces are original vertices.
+/// Takes distances between corners: those of coarse faces are original vertices.
 void FaceDecision::bound_by_corners(const MeshFace& tool_face, const MeshFace& face) noexcept
 {
     double nearest_sq = kInfinity;

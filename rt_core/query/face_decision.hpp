@@ -15,33 +15,34 @@
 namespace tactus
 {
 
-/// Decides of pairs of faces that are near whether they meet and how far apart they are: by single
-/// precision with proven bands, and exactly where that leaves something open that matters. Tells
-/// the findings. Haptic thread; good for one query.
+/// Decides intersection and distance of near face pairs. Single precision with proven bands comes
+/// first, exact arithmetic decides open cases that matter. Reports to the findings. Haptic thread.
+/// Valid for one query.
 class FaceDecision // NOLINT(cppcoreguidelines-pro-type-member-init): distances_ are written first.
 {
 public:
     FaceDecision(const MeshQuestion& question, MeshFindings& findings,
                  MeshMemory& memory) noexcept TACTUS_NONBLOCKING;
 
-    /// A pair of faces that may matter, as FacePairQueue::add() has it.
+    /// Adds a pair of faces that may matter. Arguments are those of FacePairQueue::add().
     void add(const FacePair& pair, bool is_coarse, const PlacedBlock& tool,
              const BlockGeometry& block, const VertexRows& rows,
              float slack) noexcept TACTUS_NONBLOCKING;
-    /// The faces that are remembered, before all others: how far they are apart leaves little to
-    /// look at.
+    /// Bounds the distance by the remembered faces, before all others. Their distance leaves little
+    /// to search.
     void bound_by(const Triangle& tool, const Triangle& face) noexcept TACTUS_NONBLOCKING;
-    /// Of queued pairs of which a face is coarse: those that may lower a bound. Whether one may
-    /// meet the other surface is decided in double precision.
+    /// Takes bounds from queued pairs with a coarse face. Intersection with the other surface is
+    /// decided in double precision.
     void bound_queued_coarse() noexcept TACTUS_NONBLOCKING;
-    /// Signs in single precision, and exactly where they are in doubt.
+    /// Decides intersection of queued pairs: in single precision, and exactly if signs are in
+    /// doubt.
     void decide_queued() noexcept TACTUS_NONBLOCKING;
-    /// In double precision, those that may be the nearest or contacts. The nearest come first: they
-    /// leave the least to measure.
+    /// Measures candidates for nearest or contact, in double precision. The nearest come first,
+    /// which leaves the least to measure.
     void measure_candidates() noexcept TACTUS_NONBLOCKING;
 
-    /// A way between the nearest that were found, from the object to the tool, not longer than 1,
-    /// and its number; 0: none was found.
+    /// Direction between the nearest faces found, from the object to the tool, not longer than 1.
+    /// Its number is 0 if none was found.
     [[nodiscard]] const Vec3f& way() const noexcept { return way_; }
     [[nodiscard]] std::uint32_t way_number() const noexcept { return way_number_; }
     [[nodiscard]] const Vec3f* find_way() const noexcept
@@ -56,11 +57,11 @@ private:
         Triangle triangle;
         double error_m{0.0};
     };
-    /// Exact faces that are to be measured, unless others turn out to be nearer.
+    /// Exact faces to be measured unless others turn out to be nearer.
     struct Candidate // NOLINT(cppcoreguidelines-pro-type-member-init): written whole.
     {
         FacePair pair;
-        float gap; ///< They are at least this far apart, in quanta.
+        float gap; ///< Lower bound on their distance, in quanta.
     };
     static constexpr std::size_t kMaxCandidates = 192;
     using FarthestEnds = std::array<std::size_t, kContactDirections>;
@@ -84,15 +85,15 @@ private:
     const MeshQuestion& question_;
     MeshFindings& findings_;
     MeshMemory& memory_;
-    double tool_quantum_m_; ///< In the object's frame.
+    double tool_quantum_m_; ///< Quantum of the tool in the object's frame.
     double quantum_m_;
-    FacePairQueue queue_; ///< Exact ones.
+    FacePairQueue queue_; ///< Exact pairs.
     FacePairQueue coarse_queue_;
-    PairDistances distances_; ///< Of the queue.
+    PairDistances distances_; ///< Bounds for the queue.
     StaticVector<Candidate, kMaxCandidates> candidates_;
-    SharedFeatures shared_;       ///< Of those that were measured.
-    std::uint32_t way_number_{0}; ///< 0: none was found.
-    Vec3f way_{};                 ///< Between the nearest that were found.
+    SharedFeatures shared_;       ///< Features shared among measured pairs.
+    std::uint32_t way_number_{0}; ///< Number of the direction; 0 if none was found.
+    Vec3f way_{};                 ///< Direction between the nearest faces found.
 };
 
 } // namespace tactus

@@ -15,10 +15,10 @@ namespace tactus
 namespace
 {
 
-/// What a vertex of the object and its difference from another one are rounded by, as a share of
-/// the larger one's way from the centre: six times 2^-24.
+/// Rounding of an object's vertex and its difference from another one, as a share of the larger
+/// distance from the centre: six times 2^-24.
 constexpr float kVertexRounding = 0x1p-21F;
-/// What a coordinate's conversion to single precision rounds, and more.
+/// Upper bound on rounding of a coordinate to single precision.
 constexpr double kSingleRounding = 0x1p-23;
 
 } // namespace

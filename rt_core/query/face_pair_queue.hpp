@@ -15,7 +15,7 @@
 namespace tactus
 {
 
-/// Where a face of the tool and one of the object stand in their trees.
+/// Place of a face of the tool and one of the object in their trees.
 struct FacePair
 {
     std::uint32_t tool_block{kNoNode};
@@ -26,7 +26,7 @@ struct FacePair
     bool operator==(const FacePair&) const noexcept = default;
 };
 
-/// Pairs of faces that wait until there are enough for the kernels to look at together.
+/// Pairs of faces that wait until the kernels can process enough of them together.
 class FacePairQueue // NOLINT(cppcoreguidelines-pro-type-member-init): rows_ is written first.
 {
 public:
@@ -40,16 +40,17 @@ public:
     }
     void clear() noexcept { count_ = 0; }
 
-    /// Not full. `tool` is the tool's block and `rows` are the object's `block`'s vertices around
-    /// the centre of its box; `slack` is what placing rounds, in quanta.
+    /// Adds a pair to a queue that is not full. `tool` is the tool's block. `rows` are the vertices
+    /// of the object's `block` around the centre of its box. `slack` is the rounding of the
+    /// placement, in quanta.
     void add(const FacePair& pair, const PlacedBlock& tool, const BlockGeometry& block,
              const VertexRows& rows, float slack) noexcept TACTUS_NONBLOCKING;
-    /// The same with both faces in the object's frame, in metres.
+    /// Adds a pair with both faces in the object's frame, in metres.
     void add(const FacePair& pair, const Triangle& tool, const Triangle& face,
              double quantum_m) noexcept TACTUS_NONBLOCKING;
 
 private:
-    PairRows rows_; ///< Lanes beyond the count hold what was there before.
+    PairRows rows_; ///< Rows of the pairs. Lanes beyond the count hold old values.
     std::array<FacePair, kPairLanes> pairs_;
     std::uint32_t count_{0};
 };

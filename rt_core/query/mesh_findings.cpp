@@ -17,7 +17,7 @@ namespace tactus
 namespace
 {
 
-/// Contacts as near as this times the farthest that is kept are asked for their ends.
+/// Factor on the farthest kept contact's distance within which contacts are considered as ends.
 constexpr double kEndsAsNear = 1.1;
 
 Triangle triangle_of(const AbTree& tree, PrimId prim) noexcept
@@ -27,7 +27,7 @@ Triangle triangle_of(const AbTree& tree, PrimId prim) noexcept
     return to_triangle(block_triangle(tree.block(leaf / kBlockFaces), leaf % kBlockFaces));
 }
 
-/// Whether any face of a tree is not exact.
+/// True if any face of a tree is not exact.
 bool has_coarse(const AbTree& tree) noexcept
 {
     const TreeRef root = tree.root();
@@ -198,7 +198,7 @@ DistanceAnswer MeshFindings::answer() noexcept
     found.open_m = is_all_there() ? open_m_ : std::min(open_m_, 0.0);
     if (enough_ == 1 || is_enough())
     {
-        found.open_m = std::max(found.open_m, 0.0); // Nothing is nearer than what meets.
+        found.open_m = std::max(found.open_m, 0.0); // No face is nearer than one that meets.
     }
     found.pruned_m = found.upper_m > reach_m_ ? worth_m() : kInfinity;
     found.dropped_m = kInfinity;
@@ -246,7 +246,7 @@ void MeshFindings::report_contacts(const DistanceAnswer& answer) noexcept
     {
         return;
     }
-    if (exceeds_capacity()) // However many were found before.
+    if (exceeds_capacity()) // Contacts found before are dropped, too.
     {
         contacts_->contacts.clear();
         drop_ends();
@@ -260,28 +260,29 @@ void MeshFindings::report_contacts(const DistanceAnswer& answer) noexcept
         (answer.certified_radius_m >= question_.contact_m || answer.lower_m > question_.contact_m);
 }
 
-/// A coarse face may meet the other surface, and the two are in reach: no other tells more.
+/// True if a coarse face may meet the other surface and the two are in reach. Other coarse faces
+/// then add nothing.
 bool MeshFindings::is_left_open() const noexcept
 {
     return open_m_ <= 0.0 && (aim_ == Aim::meeting || needs_only_meeting() ||
                               (aim_ == Aim::all && bound_m_ <= reach_m_));
 }
 
-/// Where one pair that meets is enough, and some may, contacts tell nothing, nor does how far
-/// others are.
+/// True if one meeting pair is enough and some pair may meet. Contacts and distances then add
+/// nothing.
 bool MeshFindings::needs_only_meeting() const noexcept
 {
     return aim_ == Aim::all && enough_ == 1 && question_.contact_m >= 0.0 && open_m_ <= 0.0;
 }
 
-/// No contact that is farther apart is kept; negative when none is.
+/// Distance beyond which no contact is kept; negative if none is.
 double MeshFindings::kept_contact_m() const noexcept
 {
     if (aim_ != Aim::all || expects_crowd_)
     {
         return -1.0;
     }
-    // What meets comes before all that is apart.
+    // Meeting faces come before all that are apart.
     const ContactSet& apart = contacts_->contacts;
     const std::size_t room = kMaxContacts - touching_.size();
     double farthest_m = std::min(question_.contact_m, expected_m_);
@@ -296,7 +297,7 @@ double MeshFindings::kept_contact_m() const noexcept
     return room == 0 ? -1.0 : std::min(apart[room - 1].distance_m, farthest_m);
 }
 
-/// Nor does it count among the ends.
+/// Distance beyond which no contact counts among the ends; negative if none does.
 double MeshFindings::asked_contact_m() const noexcept
 {
     const double as_near = question_.ends != nullptr ? kEndsAsNear : 1.0;
@@ -316,7 +317,8 @@ void MeshFindings::drop_ends() const noexcept
     }
 }
 
-/// In any order until there are too many, then a heap with the highest on top.
+/// Keeps the lowest pairs: in any order until the list is full, then as a heap with the highest on
+/// top.
 void MeshFindings::keep_lowest(const MeetingFaces& faces) noexcept
 {
     if (report_.meeting.try_push_back(faces))
@@ -337,7 +339,8 @@ void MeshFindings::keep_lowest(const MeetingFaces& faces) noexcept
     }
 }
 
-/// Those that come first among contacts: where they meet is asked at the end.
+/// Keeps the first meeting pairs in the order of contacts. Their contact points are computed at the
+/// end.
 void MeshFindings::keep_touching(const Meeting& meeting) noexcept
 {
     const bool are_contacts = aim_ == Aim::all && question_.contact_m >= 0.0;

@@ -14,12 +14,12 @@
 namespace tactus
 {
 
-/// What a search is for.
+/// Purpose of a search.
 enum class Aim : std::uint8_t
 {
-    all,     ///< Distance within the reach, what meets, contacts.
-    nearest, ///< The distance.
-    meeting, ///< What meets, which needs no measuring.
+    all,     ///< Distance within the reach, meeting faces and contacts.
+    nearest, ///< Distance alone.
+    meeting, ///< Meeting faces alone, which needs no measuring.
 };
 
 /// Exact faces that share a point.
@@ -30,83 +30,83 @@ struct Meeting
     PrimId prim{};
 };
 
-/// In the order of contacts.
+/// Order of contacts.
 [[nodiscard]] bool comes_before(const MeetingFaces& a,
                                 const MeetingFaces& b) noexcept TACTUS_NONBLOCKING;
 
 [[nodiscard]] Triangle placed_triangle(const Triangle& there,
                                        const MeshPlacement& place) noexcept TACTUS_NONBLOCKING;
 
-/// What a query of two meshes has found, what therefore still matters, and the report of it in the
-/// end. Lengths are of the object's frame. Haptic thread.
+/// Results of a query of two meshes: distances that still matter, and the final report. Lengths are
+/// in the object's frame. Haptic thread.
 class MeshFindings // NOLINT(cppcoreguidelines-pro-type-member-init): lists are empty.
 {
 public:
-    /// `doubt_m` is twice the error law of the kernels that measure, for any two faces; `contacts`
-    /// is null where none are wanted. Some `enough` pairs that meet end the search.
+    /// `doubt_m` is twice the error law of the measuring kernels, for any two faces. `contacts` is
+    /// null if not requested. `enough` meeting pairs end the search.
     MeshFindings(const MeshQuestion& question, Aim aim, std::uint32_t enough, double doubt_m,
                  MeshReport& report, ContactReport* contacts) noexcept TACTUS_NONBLOCKING;
 
-    /// Contacts that are apart are not looked for: good only where exceeds_capacity() in the end.
+    /// Skips contacts that are apart: valid only if exceeds_capacity() in the end.
     void expect_crowd() noexcept { expects_crowd_ = true; }
-    /// Where nothing is in reach, this share of the distance is proven, above 0.
+    /// Sets the share of the distance to prove if nothing is in reach; above 0.
     void prove(double share) noexcept { share_ = share; }
-    /// Coarse faces are not looked at: what the question has certified is all that is known of
-    /// them.
+    /// Leaves coarse faces out: the question's `certified_m` is all that is known of them.
     void leave_coarse() noexcept TACTUS_NONBLOCKING;
-    /// Whether a distance beyond the reach would change nothing.
+    /// True if a distance beyond the reach would change nothing.
     [[nodiscard]] bool asks_for_reach_only() const noexcept
     {
         return aim_ == Aim::all && worth_m() <= reach_m_;
     }
-    /// Contacts are looked for within this only: good where there are enough of them.
+    /// Limits the search for contacts to this distance: valid if it holds enough of them.
     void expect_contacts(double within_m) noexcept { expected_m_ = within_m; }
-    /// Whether there are, or something else ended the search.
+    /// True if it does, or if something else ended the search.
     [[nodiscard]] bool has_expected_contacts() const noexcept TACTUS_NONBLOCKING;
-    /// Of one contact more than there is room for; negative where all have room.
+    /// Upper bound on the distance of one contact more than fit; negative if all fit.
     [[nodiscard]] double farthest_contact_m() const noexcept TACTUS_NONBLOCKING;
-    /// What meets leaves no room for other contacts.
+    /// True if meeting faces leave no capacity for other contacts.
     [[nodiscard]] bool exceeds_capacity() const noexcept TACTUS_NONBLOCKING;
-    /// What is farther changes nothing; never grows.
+    /// Distance beyond which faces change nothing. Never grows.
     [[nodiscard]] double worth_m() const noexcept TACTUS_NONBLOCKING;
-    /// Exact pairs that are farther apart need no measuring; negative when none does.
+    /// Distance beyond which exact pairs need no measuring; negative if none does.
     [[nodiscard]] double measured_m() const noexcept TACTUS_NONBLOCKING;
-    /// Whether coarse faces may be near enough to change something; where they aren't they never
-    /// will be, as what matters never grows.
+    /// True if coarse faces may be near enough to matter. Once false it stays false, as the
+    /// distance that matters never grows.
     [[nodiscard]] bool needs_coarse() const noexcept TACTUS_NONBLOCKING;
-    /// What is farther apart in space needs no look, whether exact or not.
+    /// Distance beyond which no pair is visited, exact or not.
     [[nodiscard]] double walked_m() const noexcept TACTUS_NONBLOCKING;
-    /// Farther pairs are neither the nearest nor contacts that are kept, and could only be ends.
+    /// Distance beyond which pairs are neither the nearest nor kept contacts and could only be
+    /// ends.
     [[nodiscard]] double contact_zone_m() const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] bool is_enough() const noexcept { return found_ >= enough_; }
     [[nodiscard]] bool has_met() const noexcept { return found_ > 0; }
-    /// Some pair is not farther apart, in single precision.
+    /// Upper bound on the distance of some pair, in single precision.
     [[nodiscard]] double bound_m() const noexcept { return bound_m_; }
-    /// What is not exact or was not looked at is this far away.
+    /// Lower bound on inexact and unvisited pairs.
     [[nodiscard]] double open_m() const noexcept { return open_m_; }
 
-    /// False where nearer ones were known.
+    /// Lowers bound_m(). False if it was as low already.
     [[nodiscard]] bool try_bound(double upper_m) noexcept
     {
         const bool is_nearer = upper_m < bound_m_;
         bound_m_ = is_nearer ? upper_m : bound_m_;
         return is_nearer;
     }
-    /// Something was not looked at that is at least this far away.
+    /// Records that an unvisited pair is at least this far away.
     void leave(double gap_m) noexcept { open_m_ = std::min(open_m_, gap_m); }
     void take_upper(double upper_m) noexcept TACTUS_NONBLOCKING;
     void add_apart(const MeetingFaces& faces, const Triangle& triangle,
                    const ClosestPoints& closest) noexcept TACTUS_NONBLOCKING;
     void add_meeting(const Meeting& meeting) noexcept TACTUS_NONBLOCKING;
-    /// Of a pair that is no farther apart. Of more contacts than there is room for those are not
-    /// kept that all of `nearest_contacts_` are nearer than: the search need not go there.
+    /// Counts a pair that is at most `upper` apart. If contacts exceed the capacity, the search
+    /// skips those beyond all of `nearest_contacts_`.
     void count_contact(float upper) noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] DistanceAnswer answer() noexcept TACTUS_NONBLOCKING;
-    /// What meets, sorted.
+    /// Reports meeting faces, sorted.
     void report_meeting() noexcept TACTUS_NONBLOCKING;
-    /// The tool's face of the nearest pair.
+    /// Reports the tool's face of the nearest pair.
     void report_nearest(const DistanceAnswer& answer) noexcept TACTUS_NONBLOCKING;
-    /// The contacts in order, and the tool's face of the nearest pair.
+    /// Reports the contacts in order, and the tool's face of the nearest pair.
     void report_contacts(const DistanceAnswer& answer) noexcept TACTUS_NONBLOCKING;
 
 private:
@@ -132,22 +132,22 @@ private:
     double doubt_m_;
     MeshReport& report_;
     ContactReport* contacts_;
-    bool has_coarse_;                                        ///< Either tree has a coarse face.
-    bool leaves_coarse_{false};                              ///< None is looked at.
+    bool has_coarse_;                                        ///< A tree has coarse faces.
+    bool leaves_coarse_{false};                              ///< Coarse faces are left out.
     std::uint32_t found_{0};                                 ///< Pairs that meet.
-    StaticVector<float, kMaxContacts + 1> nearest_contacts_; ///< A heap, the farthest on top.
-    double bound_m_{kInfinity};       ///< Some pair is not farther apart, in single precision.
-    double open_m_{kInfinity};        ///< Pairs that are not exact or not seen are this far apart;
-    double exact_lower_m_{kInfinity}; ///< exact pairs this;
-    double upper_m_{kInfinity};       ///< and some pair not farther than this.
+    StaticVector<float, kMaxContacts + 1> nearest_contacts_; ///< Heap, the farthest on top.
+    double bound_m_{kInfinity};       ///< Upper bound on some pair, in single precision.
+    double open_m_{kInfinity};        ///< Lower bound on inexact and unvisited pairs.
+    double exact_lower_m_{kInfinity}; ///< Lower bound on exact pairs.
+    double upper_m_{kInfinity};       ///< Upper bound on some pair.
     StaticVector<Meeting, kMaxContacts> touching_;
-    ClosestPoints nearest_; ///< Of exact pairs, as what follows.
+    ClosestPoints nearest_; ///< Nearest exact pair.
     MeetingFaces nearest_faces_;
     bool has_nearest_{false};
-    bool has_dropped_{false}; ///< A contact found no room.
+    bool has_dropped_{false}; ///< True if a contact did not fit.
     bool expects_crowd_{false};
-    double share_{static_cast<double>(kProofShare)}; ///< Of the distance, beyond the reach.
-    double expected_m_{kInfinity};                   ///< Contacts are within this.
+    double share_{static_cast<double>(kProofShare)}; ///< Share to prove beyond the reach.
+    double expected_m_{kInfinity};                   ///< Expected limit of contacts.
 };
 
 } // namespace tactus

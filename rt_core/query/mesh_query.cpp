@@ -27,35 +27,36 @@ namespace tactus
 namespace
 {
 
-/// Twice the kernel's error law and more.
+/// Twice the kernel's error law, rounded up.
 constexpr double kSpanError = 4e-15;
 
-/// Blocks that are apart by more than what counts over this are measured along their own way, too.
+/// Ratio of gap to bound above which blocks are also measured along the direction between them.
 constexpr float kFarBlocks = 1.25F;
 
-/// Contacts are expected no farther than the last ones and what the tool has moved since, or a
-/// share of how far they are asked for where that is not known; and this times that, for rounding.
+/// Contacts are expected no farther than the last ones plus the tool's motion since. If the motion
+/// is unknown, kContactsMoved of the requested distance replaces it. The sum is multiplied by
+/// kContactsAsNear for rounding.
 constexpr double kContactsAsNear = 1.02;
 constexpr double kContactsMoved = 0.1;
 
-/// A query that was cut is followed by one that asks for kMuchLess of the distance, though for the
-/// least share. Each that uses no more than kLittle of its budget is followed by one that asks for
-/// as much more.
+/// After a query that was cut, the next one requests kMuchLess of the share, though at least
+/// kLeastShare. After a query that used at most kLittle of its budget, the next one requests 1 /
+/// kLittle of the share.
 constexpr double kMuchLess = 1.0 / 64.0;
 constexpr double kLeastShare = 0x1p-18 * static_cast<double>(kProofShare);
 constexpr double kLittle = 0.25;
-/// One that asks for less than this, and so for nothing beyond the reach, leaves coarse faces to
-/// what refinement has certified.
+/// Below this share nothing beyond the reach is requested. Coarse faces are then left to the
+/// distance that refinement has certified.
 constexpr double kShareOfCoarse = kLittle * static_cast<double>(kProofShare);
 
-/// Whether a lane of a block is an exact face now.
+/// True if a lane of a block is an exact face now.
 bool is_exact_face(const AbTree& tree, std::uint32_t block, std::uint32_t lane) noexcept
 {
     return tree.is_block_in_use(block) && lane < kBlockFaces &&
            (tree.block(block).faces & ~tree.side(block).coarse & 1U << lane) != 0;
 }
 
-/// The faces that are remembered, where they are now.
+/// The remembered faces at their present place.
 struct Witness
 {
     Triangle tool;
@@ -64,7 +65,7 @@ struct Witness
     bool do_meet{false};
 };
 
-/// None when one of them is gone or no longer exact.
+/// None if one of the faces is gone or no longer exact.
 std::optional<Witness> find_witness(const MeshQuestion& question, const FacePair& pair,
                                     WalkBudget& budget) noexcept
 {
@@ -87,11 +88,11 @@ std::optional<Witness> find_witness(const MeshQuestion& question, const FacePair
     return witness;
 }
 
-/// One query's walk: the pairs of blocks that are near, and of each the pairs of faces.
+/// One query's search: the near pairs of blocks, and for each the pairs of faces.
 class MeshSearch
 {
 public:
-    /// Ends when `enough` pairs meet.
+    /// The search ends if `enough` pairs meet.
     MeshSearch(const MeshQuestion& question, Aim aim, std::uint32_t enough, WalkBudget& budget,
                MeshMemory& memory, MeshReport& report, ContactReport* contacts) noexcept
         : question_(question)
@@ -109,8 +110,8 @@ public:
 
     [[nodiscard]] MeshFindings& findings() noexcept { return findings_; }
 
-    /// `object` is asked how far away it is where nothing is remembered; null when that is not
-    /// wanted.
+    /// If nothing is remembered, `object` gives a first distance bound; null if no distance is
+    /// requested.
     void run(OtherSurface* object, const std::optional<Witness>& witness) noexcept
     {
         if (question_.tool.root().is_none() || question_.object.root().is_none())
@@ -122,7 +123,7 @@ public:
         {
             bound_by(*witness);
         }
-        // Where a distance is wanted there has to be a bound, before anything can be left out.
+        // A distance search needs a bound before anything can be left out.
         if (object != nullptr && findings_.bound_m() == kInfinity)
         {
             static_cast<void>(
@@ -150,7 +151,7 @@ public:
         else
         {
             const double gap_m = spheres_gap_m();
-            findings_.leave(gap_m > 0.0 ? gap_m : 0.0); // Not a number: nothing is known.
+            findings_.leave(gap_m > 0.0 ? gap_m : 0.0); // NaN: nothing is known.
         }
         if (!findings_.has_met() && witness && witness->do_meet)
         {
@@ -159,7 +160,7 @@ public:
     }
 
 private:
-    /// Of the tool's sphere and the object's.
+    /// Gap between the tool's sphere and the object's.
     [[nodiscard]] double spheres_gap_m() const noexcept
     {
         const Sphere tool = sphere_round(question_.tool.box());
@@ -169,7 +170,7 @@ private:
                (question_.place.place.scale * tool.radius + object.radius) * kRoundedUp;
     }
 
-    /// What is remembered leaves little to look at.
+    /// Bounds the search by the remembered faces.
     void bound_by(const Witness& witness) noexcept
     {
         if (witness.do_meet || aim_ == Aim::meeting)
@@ -181,7 +182,7 @@ private:
         test_remembered();
     }
 
-    /// All faces of the blocks of those that are remembered: the nearest moves to a face beside.
+    /// Tests all faces of the remembered blocks: the nearest face tends to move to a neighbour.
     void test_remembered() noexcept
     {
         const FacePair& pair = memory_.faces;
@@ -219,7 +220,7 @@ private:
         findings_.leave(static_cast<double>(walk.end()) * quantum_m_);
     }
 
-    /// For the kernels.
+    /// A bound in quanta, for the kernels.
     [[nodiscard]] float bound_quanta(double bound_m) const noexcept
     {
         const double quanta = bound_m / quantum_m_ * kRoundedUp;
@@ -227,15 +228,15 @@ private:
                                    : std::numeric_limits<float>::infinity();
     }
 
-    /// The budget is spent; of these blocks not all was looked at.
+    /// Ends the search with a spent budget, before these blocks were tested completely.
     void stop_at(const PairWalk::Item& item) noexcept
     {
         findings_.leave(static_cast<double>(item.gap) * quantum_m_);
         has_stopped_ = true;
     }
 
-    /// Of all faces of two blocks; returns how far apart they are at least. The cheapest test
-    /// first; the object's block is not read before the tool's faces are near its box.
+    /// Tests all faces of two blocks and returns a lower bound on their distance. The cheapest test
+    /// comes first. The object's block is not read before the tool's faces are near its box.
     [[nodiscard]] float test_blocks(const PairWalk::Item& item) noexcept
     {
         FacePair pair{item.tool.index(), item.object.index()};
@@ -302,8 +303,8 @@ private:
         return item.gap;
     }
 
-    /// Along some way two blocks are at least this far apart, errors taken off; 0 where that is not
-    /// more than `box_bound`, which with the errors is `bound`.
+    /// Lower bound on the blocks' distance along one direction, errors subtracted. 0 if it does not
+    /// exceed `box_bound`, which becomes `bound` with the errors.
     [[nodiscard]] float parted_by(const PlacedBlock& tool, const PairWalk::Item& item,
                                   const BlockGeometry& block, float box_bound, float bound) noexcept
     {
@@ -319,7 +320,8 @@ private:
         return gap > bound ? (gap - (bound - box_bound)) / kSumRoundedUp : 0.0F;
     }
 
-    /// Along the way between the nearest: by the object's box, or by all vertices of both.
+    /// Gap along the direction between the nearest faces: by the object's box, or by all vertices
+    /// of both.
     [[nodiscard]] float gap_along_way(const PlacedBlock& tool, const Aabb& object_box,
                                       const BlockGeometry& block, float bound) noexcept
     {
@@ -342,7 +344,8 @@ private:
                                              center, way.data());
     }
 
-    /// The same along the way between the two: elsewhere something may be as near as the nearest.
+    /// Gap along the direction between the two blocks, for places elsewhere that may be as near as
+    /// the nearest.
     [[nodiscard]] float gap_along_own_way(const PlacedBlock& tool, const Aabb& object_box,
                                           const BlockGeometry& block) const noexcept
     {
@@ -353,7 +356,7 @@ private:
                                                         block.vertices, center, way.data());
     }
 
-    /// From the object's box to the tool's, as the centres lie; not longer than 1.
+    /// Direction from the centre of the object's box to that of the tool's; not longer than 1.
     [[nodiscard]] static Vec3f way_between(const KernelProbe& center, const Aabb& box) noexcept
     {
         Vec3f way{};
@@ -368,7 +371,7 @@ private:
         return {way[0] * share, way[1] * share, way[2] * share};
     }
 
-    /// In quanta, what pairs of faces of two blocks have to be within, errors taken off.
+    /// Distance within which face pairs of two blocks matter, in quanta, errors subtracted.
     [[nodiscard]] float bound_of(const PlacedBlock& tool, const BlockSide& side,
                                  bool takes_coarse) const noexcept
     {
@@ -386,8 +389,8 @@ private:
     PlacedBlocks placed_;
     MeshFindings findings_;
     FaceDecision decision_;
-    bool has_stopped_{false};   ///< No more can be looked at.
-    PairWalk::Item remembered_; ///< What was looked at first.
+    bool has_stopped_{false};   ///< True if the budget ended the search.
+    PairWalk::Item remembered_; ///< Blocks tested first.
 };
 
 DistanceAnswer answer_of_meeting(const Witness& witness) noexcept
@@ -404,7 +407,7 @@ DistanceAnswer answer_of_meeting(const Witness& witness) noexcept
     return answer;
 }
 
-/// Where the faces that are remembered still meet there is nothing to search.
+/// Reports the remembered faces if they still meet: then there is nothing to search.
 bool try_report(const std::optional<Witness>& witness, MeshReport& report) noexcept
 {
     if (!witness || !witness->do_meet)
@@ -416,7 +419,7 @@ bool try_report(const std::optional<Witness>& witness, MeshReport& report) noexc
     return true;
 }
 
-/// The same, where the distance is asked for.
+/// try_report() with the distance.
 [[gnu::noinline]] bool try_answer(const std::optional<Witness>& witness, DistanceAnswer& answer,
                                   MeshReport& report) noexcept
 {
@@ -429,7 +432,7 @@ bool try_report(const std::optional<Witness>& witness, MeshReport& report) noexc
     return true;
 }
 
-/// Of query_meshes().
+/// Outputs of query_meshes().
 struct MeshAnswers
 {
     DistanceAnswer& answer;
@@ -437,15 +440,15 @@ struct MeshAnswers
     ContactReport& contacts;
 };
 
-/// What a search takes for granted that saves half of the time and more.
+/// Assumptions of a search that save half of the time and more.
 struct Guess
 {
     bool exceeds_capacity{false};
     double contacts_within_m{kInfinity};
 };
 
-/// False where the guess was wrong, and so says too little. The answers are the same whatever is
-/// guessed.
+/// False if the guess was wrong, which leaves the answers incomplete. Complete answers do not
+/// depend on the guess.
 [[gnu::noinline]] bool search_meshes(const MeshQuestion& question, const Guess& guess,
                                      OtherSurface& object, MeshMemory& memory,
                                      const std::optional<Witness>& witness,
@@ -475,7 +478,7 @@ struct Guess
     return true;
 }
 
-/// What a query had to do with, and by it what the next one asks for.
+/// Adapts the next query's share to the part of the budget that this one used.
 class ShareRule
 {
 public:
@@ -507,11 +510,11 @@ private:
     }
 
     const WalkBudget& budget_;
-    std::uint32_t used_; ///< Of the frame's work, before.
+    std::uint32_t used_; ///< Work of the frame used before.
     std::uint32_t left_;
 };
 
-/// Since the last query, as far as that is known.
+/// Motion since the last query, or kContactsMoved of the contact distance if unknown.
 double moved_m(const MeshQuestion& question) noexcept
 {
     const double motion_m = question.front != nullptr

@@ -14,7 +14,7 @@ namespace tactus
 namespace
 {
 
-/// The name that a walk has for loose faces: no other block of the tool is in it.
+/// Block name for loose faces in a walk, which has no other block of the tool.
 constexpr TreeRef kLoose = TreeRef::to_block(0);
 
 } // namespace
@@ -64,7 +64,7 @@ void NearFaces::search(double bound_m, const PairWalk::Start& start, const Loose
     bound_ = bound < kFarQuanta ? round_up_to_float(bound) : kNothingLeft;
     if (!other_.tree().is_complete())
     {
-        leave(0.0F); // What it lacks may be anywhere.
+        leave(0.0F); // Missing faces may be anywhere.
     }
     if (views_.is_beyond_kernels())
     {
@@ -79,7 +79,7 @@ void NearFaces::search(double bound_m, const PairWalk::Start& start, const Loose
         go_on(*unfinished, walk);
     }
     PairWalk::Sought sought{bound_};
-    bool is_done = true; // With the pair that is near.
+    bool is_done = true; // False if the last pair was not tested completely.
     while (!is_full())
     {
         const PairWalk::Item* near = walk.next_blocks(sought);
@@ -109,7 +109,8 @@ void NearFaces::search(double bound_m, const PairWalk::Start& start, const Loose
     leave(walk.end());
 }
 
-/// What was proven then is less now, by what the other surface has moved and its new place rounds.
+/// Continues an unfinished search. Its proven distances shrink by the other surface's motion and by
+/// the rounding of its new place.
 void NearFaces::go_on(UnfinishedSearch& unfinished, PairWalk& walk) noexcept
 {
     if (!unfinished.left.empty() && unfinished.own_change == own_.last_change() &&
@@ -146,7 +147,7 @@ void NearFaces::keep(const PairWalk& walk, bool is_done,
     unfinished.moved_m = 0.0;
 }
 
-/// False when the budget is spent before all of these lanes was looked at.
+/// False if the budget is spent before all of these lanes were tested.
 bool NearFaces::try_test(const PairWalk::Item& item, const PlacedBlock& own,
                          std::uint32_t lanes) noexcept
 {
@@ -207,7 +208,7 @@ bool NearFaces::try_test(const PairWalk::Item& item, const PlacedBlock& own,
     return true;
 }
 
-/// Coarse faces but for those that may meet the other surface: no nearer face of it is looked for.
+/// Coarse faces except those that may meet the other surface: for these no nearer face is sought.
 std::uint32_t NearFaces::open_lanes(const PlacedBlock& own) noexcept
 {
     std::uint32_t lanes = own.coarse;
@@ -241,7 +242,7 @@ void NearFaces::measure() noexcept
     queue_.clear();
 }
 
-/// Faces of a pair may be as near as `lower`.
+/// Records that faces of a pair may be as near as `lower`.
 void NearFaces::take(const FacePair& pair, float lower) noexcept
 {
     Block* block = find_block(pair.tool_block);
@@ -264,7 +265,7 @@ void NearFaces::take(const FacePair& pair, float lower) noexcept
     block->lanes |= bit;
 }
 
-/// Null when nothing of it is near so far.
+/// Null if no face of the block was near so far.
 NearFaces::Block* NearFaces::find_block(std::uint32_t index) noexcept
 {
     if (last_ < blocks_.size() && blocks_[last_].index == index)

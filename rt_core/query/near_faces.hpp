@@ -14,55 +14,56 @@
 namespace tactus
 {
 
-/// Faces that are in no tree yet: lanes of a block by itself.
+/// Faces that are in no tree yet: lanes of a separate block.
 struct LooseFaces
 {
     const BlockGeometry& geometry;
-    std::uint32_t lanes{0};                     ///< Those that are meant; at least one,
-    std::array<double, kBlockFaces> errors_m{}; ///< and their errors.
+    std::uint32_t lanes{0};                     ///< Lanes in use; at least one.
+    std::array<double, kBlockFaces> errors_m{}; ///< Errors of these lanes.
 };
 
-/// What a search that its budget cut had not come to, for the next one of the same two models. What
-/// it has proven holds for the boxes as they were: where a tree has changed since, it is of no use.
-/// 4 KiB.
+/// Unvisited part of a search that its budget cut, for the next search of the same two models.
+/// Proven distances hold for the boxes as they were: after a change of either tree they are of no
+/// use. 4 KiB.
 struct UnfinishedSearch
 {
-    PairWalk::LeftPairs left; ///< Empty: there is nothing to go on with.
+    PairWalk::LeftPairs left; ///< Unvisited pairs; empty: nothing to continue.
     std::uint64_t own_change{0};
     std::uint64_t other_change{0};
-    double bound_m{0.0};   ///< What was looked at is not nearer than this,
-    double nearest_m{0.0}; ///< or, where something was found, than this.
-    double moved_m{0.0};   ///< The other surface, since.
+    double bound_m{0.0};   ///< Bound of the search: visited faces that were not found are beyond
+                           ///< it.
+    double nearest_m{0.0}; ///< Lower bound on found and left-out faces.
+    double moved_m{0.0};   ///< Motion of the other surface since.
 };
 
-/// How far coarse faces of a model are from another surface: lower bounds on the distances of
-/// active faces, both errors taken off. Lengths are of the model's own frame.
+/// Lower bounds on the distances of a model's active coarse faces from another surface, both errors
+/// subtracted. Lengths are in the model's own frame.
 ///
-/// Pairs of boxes are walked as in a query, but of the model only where something is coarse: near a
-/// surface that is refined there is little to look at. The boxes of both must be right
-/// (AbTree::refit). Haptic thread; good for one search. 50 KiB.
+/// Pairs of boxes are walked as in a query, but only parts of the model with a coarse face: near a
+/// refined surface there is little to test. The boxes of both must be right (AbTree::refit). Haptic
+/// thread. Valid for one search. 50 KiB.
 class NearFaces // NOLINT(cppcoreguidelines-pro-type-member-init): distances_ are written first.
 {
 public:
     /// Coarse faces of one block that may be within the bound.
     struct Block
     {
-        std::uint32_t index{kNoNode}; ///< Of loose faces there is none.
+        std::uint32_t index{kNoNode}; ///< Index of the block; none for loose faces.
         std::uint32_t lanes{0};
-        std::array<float, kBlockFaces> gaps{}; ///< Of these lanes, in quanta of the other.
+        std::array<float, kBlockFaces> gaps{}; ///< Gaps of these lanes, in quanta of the other.
     };
 
-    /// `other` is the surface as the model sees it; its budget bounds the work.
+    /// `other` is the surface as seen from the model; its budget bounds the work.
     NearFaces(const AbTree& own, OtherSurface& other) noexcept TACTUS_NONBLOCKING;
 
     static constexpr std::uint32_t kAll = std::numeric_limits<std::uint32_t>::max();
 
-    /// Looks for faces of the model within `bound_m`: all, or until `enough` were found. Goes on
-    /// with an unfinished search, of which those that it found are not found again, and leaves one
-    /// where the budget is spent; null: begins, and leaves nothing.
+    /// Finds faces of the model within `bound_m`: all, or until `enough` are found. With
+    /// `unfinished` the search continues from there, does not find the same faces again, and stores
+    /// its rest if the budget is spent. Null: the search begins at the roots and stores nothing.
     void find(double bound_m, std::uint32_t enough = kAll,
               UnfinishedSearch* unfinished = nullptr) noexcept TACTUS_NONBLOCKING;
-    /// The same of faces that will be the model's.
+    /// Finds faces among those that will be the model's.
     void find(const LooseFaces& faces, double bound_m) noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] std::span<const Block> blocks() const noexcept { return blocks_.view(); }
@@ -71,9 +72,9 @@ public:
         TACTUS_ASSERT((block.lanes >> lane & 1U) != 0);
         return to_m(block.gaps[lane]);
     }
-    /// All that is coarse and in no block is beyond the bound, or no nearer than this: infinity
-    /// when everything was looked at. The search ends where there is no room for a block more and
-    /// something that is left may meet the other surface: it would tell nothing.
+    /// Lower bound on coarse faces in no block, unless they are beyond the bound; infinity if
+    /// everything was tested. The search ends if no further block fits and a remaining face may
+    /// meet the other surface: more search would add nothing.
     [[nodiscard]] double rest_m() const noexcept { return to_m(rest_); }
 
 private:
@@ -101,16 +102,16 @@ private:
     OtherSurface& other_;
     MeshViews views_;
     PlacedBlocks placed_;
-    double quanta_per_m_; ///< Of the other, a length in the own frame.
+    double quanta_per_m_; ///< Factor from a length in the own frame to quanta of the other.
     float bound_{0.0F};
     float rest_{kNothingLeft};
     std::uint32_t enough_{kAll};
-    std::uint32_t found_{0}; ///< Faces.
+    std::uint32_t found_{0}; ///< Number of faces found.
     FacePairQueue queue_;
-    std::array<float, kPairLanes> errors_; ///< Of the queue, of both faces together.
-    PairDistances distances_;              ///< Of the queue.
+    std::array<float, kPairLanes> errors_; ///< Sums of both faces' errors, for the queue.
+    PairDistances distances_;              ///< Distances for the queue.
     StaticVector<Block, kMaxNearBlocks> blocks_;
-    std::uint32_t last_{0}; ///< The block that was looked up last.
+    std::uint32_t last_{0}; ///< Block that was looked up last.
 };
 
 } // namespace tactus

@@ -16,8 +16,8 @@
 namespace tactus
 {
 
-/// Fills a local surface with the nearest that it is given, in their order: what comes from one
-/// block of a tree stays together. Where there is no room an eighth goes at once, the farthest.
+/// Fills a local surface with the nearest of the given triangles, in their order: triangles of one
+/// block stay together. If the surface is full, the farthest eighth is dropped at once.
 class NearestTriangles
 {
 public:
@@ -30,8 +30,8 @@ public:
         surface.truncated = false;
     }
 
-    /// `distance_m` is a lower bound and not negative. Some nanoseconds; where there is no room,
-    /// which is once for an eighth of it, a pass over all that is listed.
+    /// `distance_m` is a lower bound and not negative. Takes a few nanoseconds. If the surface is
+    /// full, takes a pass over the list, once for an eighth of it.
     void add(const LocalTriangle& triangle, double distance_m) noexcept
     {
         TACTUS_ASSERT(distance_m >= 0.0);
@@ -50,11 +50,11 @@ public:
         ++surface_.count;
     }
 
-    /// Triangles that had no room are at least this far away.
+    /// Lower bound on dropped triangles.
     [[nodiscard]] double dropped_m() const noexcept { return dropped_m_; }
 
 private:
-    /// Of those that are as far as the nearest that goes, the first ones stay.
+    /// Drops the farthest eighth. Of triangles as far as the nearest dropped one, the first stay.
     void drop_farthest() noexcept
     {
         if (surface_.count == 0)

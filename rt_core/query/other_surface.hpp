@@ -13,7 +13,7 @@
 namespace tactus
 {
 
-/// How a model's frame lies in another model's: there = origin + scale x rotation x (here +
+/// Placement of a model's frame in another model's: there = origin + scale x rotation x (here +
 /// offset).
 struct MeshPlacement
 {
@@ -24,35 +24,35 @@ struct MeshPlacement
     {
         return place.local_to_world(here_m + offset_m);
     }
-    /// The way back.
+    /// The inverse placement.
     [[nodiscard]] MeshPlacement inverse() const noexcept TACTUS_NONBLOCKING;
-    /// What `local_to_world` may be off by, in metres there.
+    /// Rounding error bound of `local_to_world`, in metres there.
     [[nodiscard]] double rounding_m(const Vec3& here_m) const noexcept TACTUS_NONBLOCKING;
 };
 
-/// Another model's surface, as it lies in a model's frame: the measure of what a tool that is a
-/// mesh needs of an object, and the object of the tool. All lengths are of the frame here. Good for
-/// one frame; what it may look at in all is in its budget. Haptic thread.
+/// Another model's surface, placed in a model's frame. It serves refinement near an object and
+/// queries with a mesh tool. All lengths are in the frame here. Valid for one frame. Its budget
+/// bounds all of its work. Haptic thread.
 class OtherSurface
 {
 public:
     OtherSurface() noexcept = default;
-    /// The other's boxes must be right (AbTree::refit) whenever this is asked.
+    /// The other's boxes must be right (AbTree::refit) at each query.
     OtherSurface(const AbTree& other, MeshPlacement there, const WalkBudget& budget) noexcept
         : other_(&other), there_(std::move(there)), budget_(budget)
     {
     }
 
-    /// Less than any distance from a point of the sphere, down to minus the sphere's radius; beyond
-    /// `enough_m` any that is not below it. In single precision.
+    /// Lower bound on the distance from any point of the sphere, down to minus the sphere's radius.
+    /// Beyond `enough_m` any value not below that. In single precision.
     [[nodiscard]] double lower_bound_m(const Sphere& sphere,
                                        double enough_m) noexcept TACTUS_NONBLOCKING;
-    /// More than the distance from some point of the sphere to the other's original surface, if the
-    /// sphere holds any of what is asked for.
+    /// Upper bound on the distance from some point of the sphere to the other's original surface,
+    /// if the sphere holds part of the measured set.
     [[nodiscard]] double upper_bound_m(const Sphere& sphere) noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] const AbTree& tree() const noexcept { return *other_; }
-    /// Of the frame here in the other's.
+    /// Placement of the frame here in the other's.
     [[nodiscard]] const MeshPlacement& placement() const noexcept { return there_; }
     [[nodiscard]] WalkBudget& budget() noexcept { return budget_; }
 
@@ -69,26 +69,26 @@ private:
 };
 
 /// Walks the blocks of a tree that are near another surface, by spheres round their boxes, nearest
-/// first. Each box looked at is a question to the other surface.
+/// first. Each box costs a query of the other surface.
 class SurfaceWalk
 {
 public:
     struct Item
     {
         TreeRef ref;
-        double gap_m{0.0}; ///< Everything in it is at least this far from the other surface.
-        Sphere sphere;     ///< Round its box.
+        double gap_m{0.0}; ///< Lower bound on the distance of its faces from the other surface.
+        Sphere sphere;     ///< Sphere round its box.
     };
 
     SurfaceWalk(const AbTree& tree, OtherSurface& other) noexcept TACTUS_NONBLOCKING;
 
-    /// The next block of which something may be within `bound_m`, or kNoNode when there is none or
-    /// the budget is spent.
+    /// The next block that may have faces within `bound_m`. kNoNode if there is none or the budget
+    /// is spent.
     [[nodiscard]] std::uint32_t next_block(double bound_m) noexcept TACTUS_NONBLOCKING;
 
-    /// Round the block that next_block() gave last.
+    /// Sphere round the last block of next_block().
     [[nodiscard]] const Sphere& sphere() const noexcept { return sphere_; }
-    /// What was not visited when the budget was spent; empty after a complete walk.
+    /// Parts not visited with a spent budget; empty after a complete walk.
     [[nodiscard]] std::span<const Item> left() const noexcept { return stack_.view(); }
 
 private:
@@ -101,7 +101,7 @@ private:
     Sphere sphere_;
 };
 
-/// Round a box, and round a triangle; as small as is found without search.
+/// Sphere round a box, and round a triangle; as small as possible without a search.
 [[nodiscard]] Sphere sphere_round(const Aabb& box) noexcept TACTUS_NONBLOCKING;
 [[nodiscard]] Sphere sphere_round(const Triangle& triangle) noexcept TACTUS_NONBLOCKING;
 

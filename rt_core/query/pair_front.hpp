@@ -12,40 +12,40 @@
 namespace tactus
 {
 
-/// The pairs of boxes that a walk opened or came to, kept for the next walk of the same two models:
-/// a tree in preorder. Each pair says how far the tool may go until it has to be looked at again,
-/// so a walk looks only at those whose way is used up.
+/// The pairs of boxes that a walk opened or reached, kept for the next walk of the same two models:
+/// a tree in preorder. Each pair stores the tool's travel up to which it needs no new test. A walk
+/// therefore visits only pairs whose travel is used up.
 ///
-/// What is kept is proven by boxes and faces as they were: a tree that has changed since is walked
-/// from its root. 32 KiB.
+/// Stored distances are proven by boxes and faces as they were: after a change of a tree the walk
+/// starts at its root. 32 KiB.
 struct PairFront
 {
     struct Entry // NOLINT(cppcoreguidelines-pro-type-member-init): written whole.
     {
         TreeRef tool;
         TreeRef object;
-        /// What has no entries below this one, some of its children or all that it is, is farther
-        /// apart than this less the tool's travel.
+        /// Gap plus travel at the entry. Parts of this pair without entries are at least `until`
+        /// less the tool's travel apart.
         float until;
         std::uint8_t depth;
-        std::uint8_t child;   ///< Which of the node that was opened above.
+        std::uint8_t child;   ///< Index as child of the node opened above.
         std::uint8_t entered; ///< Children that have entries.
         std::uint8_t reserved;
     };
     static_assert(sizeof(Entry) == 16);
     static constexpr std::uint32_t kRoom = 2'048;
-    /// After a walk that found no room for its pairs so many keep nothing.
+    /// Number of walks that store nothing after a walk whose pairs did not fit.
     static constexpr std::uint32_t kPause = 16;
-    /// So many pairs of a tool and an object have one at once, those of highest priority.
+    /// Number of tool-object pairs that have a front at once, those of highest priority.
     static constexpr std::uint32_t kFronts = 4;
 
-    std::uint32_t count{0}; ///< 0: nothing is known.
+    std::uint32_t count{0}; ///< Number of entries; 0: nothing is known.
     std::uint32_t pause{0};
-    bool exact_only{false}; ///< Subtrees without an exact face were left out.
+    bool exact_only{false}; ///< True if subtrees without an exact face were left out.
     std::uint64_t tool_change{0};
     std::uint64_t object_change{0};
     MeshPlacement place;
-    double travel{0.0}; ///< The tool's way since the first entry, in the object's quanta.
+    double travel{0.0}; ///< Travel of the tool since the first entry, in the object's quanta.
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): none is read beyond the count.
     std::array<Entry, kRoom> entries;
 
@@ -53,8 +53,8 @@ struct PairFront
     PairFront() noexcept {} // NOLINT(cppcoreguidelines-pro-type-member-init)
 };
 
-/// No point of the sphere that `before` places is farther from where `now` does; not a number where
-/// either place is none.
+/// Upper bound on the distance of the sphere's points between the places `before` and `now`. NaN if
+/// either place is invalid.
 [[nodiscard]] double motion_between(const MeshPlacement& before, const MeshPlacement& now,
                                     const Sphere& sphere) noexcept TACTUS_NONBLOCKING;
 

@@ -15,11 +15,11 @@ namespace tactus
 namespace
 {
 
-/// A split coordinate leaves 2^-48 of itself; the rest is for what the split rounds.
+/// Share of a coordinate that a split loses: 2^-48, rounded up for the split's own rounding.
 constexpr double kSplitRounding = 0x1p-46;
 constexpr double kLeastSlack = 0x1p-40;
 
-/// The tool's travel that entries are counted in, in quanta: a model is no larger, and single
+/// Largest travel of the tool that entries count, in quanta: no model is larger, and single
 /// precision is right to a quantum.
 constexpr double kMostTravel = 0x1p24;
 constexpr float kNothingLeft = std::numeric_limits<float>::infinity();
@@ -34,7 +34,7 @@ float least_of(const std::array<float, kNodeChildren>& gaps, std::uint32_t child
     return least;
 }
 
-/// Only a choice hangs on it: single precision is enough.
+/// Squared diagonal in single precision, enough for a choice of order.
 float diagonal_sq(const Aabb& box) noexcept
 {
     float sum = 0.0F;
@@ -46,7 +46,7 @@ float diagonal_sq(const Aabb& box) noexcept
     return sum;
 }
 
-/// The other way round, in the tool's frame.
+/// The opposite direction, in the tool's frame.
 Vec3f seen_from_tool(const Vec3f& way, const BoxView& of_tool) noexcept
 {
     Vec3f turned{};
@@ -63,8 +63,8 @@ Vec3f seen_from_tool(const Vec3f& way, const BoxView& of_tool) noexcept
 double motion_between(const MeshPlacement& before, const MeshPlacement& now,
                       const Sphere& sphere) noexcept
 {
-    // The difference of two rotations turns and stretches: two of its singular values are equal,
-    // the third is zero. So it moves nothing by more than its Frobenius norm over the root of two.
+    // The difference of two rotations has two equal singular values, and the third is zero. So no
+    // point moves by more than its Frobenius norm over the root of two.
     constexpr double kOfTwo = 0.7072;
     const Mat3 turned =
         now.place.scale * now.place.rotation - before.place.scale * before.place.rotation;
@@ -82,7 +82,7 @@ MeshViews::MeshViews(const AbTree& tool, const AbTree& object, const MeshPlaceme
 {
 }
 
-/// Of the corners that are farthest out: good for all.
+/// Rounding bound for the farthest corners, valid for all.
 float MeshViews::slack_of(const AbTree& tool, const AbTree& object,
                           const MeshPlacement& place) noexcept
 {
@@ -91,7 +91,7 @@ float MeshViews::slack_of(const AbTree& tool, const AbTree& object,
     const double tool_reach_m = tool_sphere.center.norm() + tool_sphere.radius;
     const double object_reach_m = object_sphere.center.norm() + object_sphere.radius;
     const auto quantum_m = static_cast<double>(object.quantum_m());
-    // Of either, in the other's frame and in metres of the object's.
+    // Distance in the other's frame, in metres of the object's, for either model.
     const double placed_m =
         place.place.translation_m.norm() + scale_ * (tool_reach_m + place.offset_m.norm());
     farthest_ = (placed_m + object_reach_m) / quantum_m;
@@ -147,11 +147,11 @@ PairWalk::PairWalk(const AbTree& tool, const AbTree& object, const MeshViews& vi
         front->object_change = object.last_change();
     }
     front->place = place;
-    front->count = 0; // Until the walk has ended.
+    front->count = 0; // Invalid until the walk has ended.
 }
 
-/// Whether the last walk's entries are of the same boxes and of all that is asked for, and adds the
-/// way that the tool has gone since.
+/// Adds the tool's travel since the last walk. True if the last walk's entries fit the same boxes
+/// and include all that is requested.
 bool PairWalk::can_go_on(const MeshPlacement& place, bool exact_only) noexcept
 {
     if (front_->count == 0 || front_->tool_change != tool_.last_change() ||
@@ -169,7 +169,7 @@ bool PairWalk::can_go_on(const MeshPlacement& place, bool exact_only) noexcept
     return motion_m >= 0.0 && front_->travel < kMostTravel;
 }
 
-/// Whether anything below is.
+/// True if the subtree holds a face to visit.
 bool PairWalk::is_wanted(TreeRef tool) const noexcept
 {
     return !coarse_only_ || (tool.is_block() ? tool_.side(tool.index()).coarse
@@ -209,7 +209,7 @@ const PairWalk::Item* PairWalk::next_blocks(const Sought& sought) noexcept
     return nullptr;
 }
 
-/// Over entries of the last walk to one that has to be looked at again; false where there is none.
+/// Copies entries of the last walk up to the next one to test. False if there is none.
 bool PairWalk::go_on() noexcept
 {
     while (read_ != PairFront::kRoom)
@@ -230,7 +230,7 @@ bool PairWalk::go_on() noexcept
     return false;
 }
 
-/// The next entry with all below it, if it is one of those that are far now.
+/// Skips the next entry with its subtree if that is now far.
 bool PairWalk::skip_dropped() noexcept
 {
     const std::uint32_t depth = front_->entries[read_].depth;
@@ -402,7 +402,7 @@ void PairWalk::open(const Item& item, const Sought& sought) noexcept
         stack_.push_back(opens_tool
                              ? Item{ref, item.object, box, item.object_box, gap, depth, number}
                              : Item{item.tool, ref, item.tool_box, box, gap, depth, number});
-        // The nearest on top, the others below in any order.
+        // The nearest child lies on top, the others below in any order.
         const std::size_t top = stack_.size() - 1;
         if (top > first && stack_[top].gap > stack_[top - 1].gap)
         {

@@ -11,22 +11,21 @@
 namespace tactus
 {
 
-/// How two models' frames lie in each other, for boxes of either as the other's tree sees them.
-/// Lengths are quanta of the object.
+/// Views of two models' boxes in each other's frames. Lengths are quanta of the object.
 class MeshViews
 {
 public:
     MeshViews(const AbTree& tool, const AbTree& object,
               const MeshPlacement& place) noexcept TACTUS_NONBLOCKING;
 
-    /// The tool is so far away that single precision does not hold it; nothing else may be asked.
+    /// True if the tool is beyond the range of single precision; no other member may then be used.
     [[nodiscard]] bool is_beyond_kernels() const noexcept { return is_beyond_; }
     [[nodiscard]] const BoxView& of_tool() const noexcept { return of_tool_; }
     [[nodiscard]] const BoxView& of_object() const noexcept { return of_object_; }
     [[nodiscard]] double scale() const noexcept { return scale_; }
-    /// What placing and single precision round of any coordinate, beyond a share of it.
+    /// Rounding of a coordinate by placement and single precision, beyond a share of it.
     [[nodiscard]] float slack() const noexcept { return slack_; }
-    /// No coordinate is farther from the object's origin.
+    /// Upper bound on the coordinates' distance from the object's origin.
     [[nodiscard]] double farthest() const noexcept { return farthest_; }
 
 private:
@@ -41,11 +40,11 @@ private:
     BoxView of_object_;
 };
 
-/// A depth-first walk of the pairs of blocks of two trees that may be near. Of a pair of boxes the
-/// larger one is opened, and its eight children are measured against the other at once; the nearest
-/// pair is entered first. With a front it goes on from where the last walk ended, and opens only
-/// what has come near since. Haptic thread; some 50 ns a node opened, 3 ns a pair that stays as it
-/// was. 25 KiB.
+/// A depth-first walk of the pairs of blocks of two trees that may be near. The larger box of a
+/// pair is opened, and its eight children are measured against the other at once. The nearest pair
+/// is entered first. With a front the walk continues from the end of the last one and opens only
+/// pairs that have come near since. Haptic thread. Takes about 50 ns for each opened node, 3 ns for
+/// each unchanged pair. 25 KiB.
 class PairWalk
 {
 public:
@@ -53,47 +52,51 @@ public:
     {
         TreeRef tool;
         TreeRef object;
-        Aabb tool_box; ///< In the tool's frame.
+        Aabb tool_box; ///< Box in the tool's frame.
         Aabb object_box;
-        float gap{0.0F}; ///< They are at least this far apart, errors taken off.
+        float gap{0.0F}; ///< Lower bound on the distance, errors subtracted.
         std::uint8_t depth{0};
-        std::uint8_t child{0};   ///< Which of the node that was opened.
-        std::uint8_t entered{0}; ///< Children that the front has entries of; `gap` is the others'.
+        std::uint8_t child{0};   ///< Index in the node that was opened.
+        std::uint8_t entered{0}; ///< Children with entries in the front; `gap` is that of the
+                                 ///< others.
     };
 
-    /// What is walked of the tool.
+    /// Start of the walk in the tool.
     struct Start
     {
-        TreeRef tool; ///< A block is never looked into: it may be any that is in no tree.
-        Aabb box;     ///< Round it, errors added.
-        bool coarse_only{false}; ///< Exact subtrees are left out.
+        TreeRef tool; ///< Root of the walk. A block's contents are not read, so it need not be in a
+                      ///< tree.
+        Aabb box;     ///< Box round the start, errors added.
+        bool coarse_only{false}; ///< True if exact subtrees are left out.
     };
 
-    /// What is looked for next.
+    /// Parameters of the next step.
     struct Sought
     {
-        float bound{0.0F}; ///< In quanta: something of two blocks may be within it. Never grows.
-        /// One more direction to measure along, not longer than 1 and from the object to the tool;
-        /// null when none is known.
+        float bound{0.0F}; ///< Distance in quanta within which faces of two blocks matter. Never
+                           ///< grows.
+        /// Further direction to measure along, not longer than 1, from the object to the tool;
+        /// null: unknown.
         const Vec3f* way{nullptr};
-        /// Subtrees without an exact face are left out, of both trees. Once true, it stays.
+        /// True if subtrees without an exact face are left out, in both trees. Once true, it stays
+        /// true.
         bool exact_only{false};
-        TreeRef settled{}; ///< A block of the tool of which nothing more is looked for.
+        TreeRef settled{}; ///< Block of the tool for which the search is over.
     };
 
     /// Both trees' boxes must be right (AbTree::refit). `views` must not be beyond the kernels.
     PairWalk(const AbTree& tool, const AbTree& object, const MeshViews& views, WalkBudget& budget,
              const Start& start) noexcept TACTUS_NONBLOCKING;
-    /// Of all of the tool, by a front that is of the same two trees; null: by none. `place` is what
-    /// the views were made of, and `exact_only` the first question's.
+    /// Walks the whole tool. `front` must be that of the same two trees; null: none. `place` is the
+    /// placement of the views, `exact_only` the value for the first step.
     PairWalk(const AbTree& tool, const AbTree& object, const MeshViews& views, WalkBudget& budget,
              PairFront* front, const MeshPlacement& place,
              bool exact_only) noexcept TACTUS_NONBLOCKING;
 
-    /// The next pair of blocks; null when there is none or the budget is spent. Good until the next
+    /// The next pair of blocks; null if there is none or the budget is spent. Valid until the next
     /// call.
     [[nodiscard]] const Item* next_blocks(const Sought& sought) noexcept TACTUS_NONBLOCKING;
-    /// The pair that next_blocks() gave last is at least this far apart, errors taken off.
+    /// Records a lower bound on the distance of the last pair of next_blocks(), errors subtracted.
     void settle(float gap) noexcept TACTUS_NONBLOCKING;
 
     /// A pair that a walk of the same boxes had not visited.
@@ -105,17 +108,17 @@ public:
     };
     static constexpr std::size_t kMostLeft = std::size_t{2} * kTreeStack;
     using LeftPairs = StaticVector<Left, kMostLeft>;
-    /// Instead of at its start the walk begins with these, which may have come nearer by `travel`.
+    /// Starts the walk with these pairs instead, which may have come nearer by `travel`.
     void go_on_with(const LeftPairs& pairs, double travel) noexcept TACTUS_NONBLOCKING;
-    /// What is not visited yet, and the pair that next_blocks() gave last where that is not done.
+    /// Stores the unvisited pairs, and the last pair of next_blocks() if it is not done.
     void keep_left(bool is_done, LeftPairs& pairs) const noexcept TACTUS_NONBLOCKING;
 
-    /// Ends the walk, wherever it is: what was not visited is at least this far apart, infinitely
+    /// Ends the walk at any point. Returns a lower bound on the unvisited pairs' distance, infinity
     /// after a complete walk.
     [[nodiscard]] float end() noexcept TACTUS_NONBLOCKING;
 
 private:
-    /// A box of the tool as the object sees it.
+    /// A box of the tool, placed in the object's frame.
     struct Seen // NOLINT(cppcoreguidelines-pro-type-member-init): a box comes with its ref.
     {
         TreeRef ref;
@@ -140,17 +143,18 @@ private:
     const AbTree& object_;
     const MeshViews& views_;
     WalkBudget& budget_;
-    bool coarse_only_; ///< Of the tool.
+    bool coarse_only_; ///< True if exact subtrees of the tool are left out.
     Item current_;
-    std::array<Seen, kSeen> seen_; ///< Asked for last, many times each; at its place modulo kSeen.
+    std::array<Seen, kSeen> seen_; ///< Recently used boxes, at their index modulo kSeen.
     StaticVector<Item, kMostLeft> stack_;
-    PairFront* front_{nullptr}; ///< Null where none is kept.
-    // The entries of the last walk stand at the front's end and are read from there, those of this
-    // one are written from its beginning.
+    PairFront* front_{nullptr}; ///< Null if none is kept.
+    // Entries of the last walk lie at the front's end and are read from there. Entries of this walk
+    // are written from its beginning.
     std::uint32_t read_{PairFront::kRoom};
     std::uint32_t written_{0};
-    bool has_overflowed_{false}; ///< Nothing more is written, and the next walk knows nothing.
-    float limit_{0.0F};          ///< Entries up to this are looked at again.
+    bool has_overflowed_{false}; ///< True if nothing more is written; the next walk then starts at
+                                 ///< the roots.
+    float limit_{0.0F};          ///< Entries up to this value are tested again.
     std::array<std::uint8_t, kDepths> dropped_{}; ///< Children at each depth that are now far.
 };
 

@@ -13,18 +13,18 @@
 namespace tactus
 {
 
-/// Whether a coordinate is kFarQuanta or more from the origin.
+/// True if a coordinate is kFarQuanta or more from the origin.
 [[nodiscard]] inline bool is_beyond_kernels(const Vec3& point_m, float quantum_m) noexcept
 {
     const double limit_m = kFarQuanta * static_cast<double>(quantum_m);
-    // Written so that NaN is beyond, too. Not by maxCoeff(): that calls through a pointer, and lets
-    // NaN pass or not as the order of the coordinates has it.
+    // Written so that NaN is beyond, too. maxCoeff() would call through a pointer, and NaN would
+    // pass in some orders of coordinates.
     // NOLINTNEXTLINE(readability-simplify-boolean-expr): the simpler one lets NaN pass.
     return !(std::abs(point_m.x()) < limit_m && std::abs(point_m.y()) < limit_m &&
              std::abs(point_m.z()) < limit_m);
 }
 
-/// `point_m` in the model's frame, not is_beyond_kernels().
+/// A probe at `point_m` in the model's frame, which is not is_beyond_kernels().
 [[nodiscard]] inline KernelProbe make_probe(const Vec3& point_m, float quantum_m) noexcept
 {
     KernelProbe probe{};

@@ -27,7 +27,7 @@ constexpr float kInfiniteQuanta = std::numeric_limits<float>::infinity();
 class SurfaceSearch
 {
 public:
-    /// `surface` is null when only the distance is asked for; then nothing is collected.
+    /// `surface` is null if only the distance is requested; then nothing is collected.
     SurfaceSearch(const AbTree& tree, const Vec3& center_m, double reach_m, double band_m,
                   ProofShare share, ErrorCode tolerance, WalkBudget& budget,
                   LocalSurface* surface) noexcept
@@ -50,9 +50,9 @@ public:
         }
     }
 
-    /// The block that was nearest before gives a bound that is nearly final, or else, after a jump,
-    /// the one that the nearest boxes lead to. With it nothing needs an order, and one pass goes
-    /// through all that is near.
+    /// The last nearest block gives a bound that is nearly final. After a jump, the block behind
+    /// the nearest boxes gives one. With this bound the order does not matter, and one pass visits
+    /// all that is near.
     void run(QueryMemory& memory) noexcept
     {
         BlockBatch batch; // NOLINT(cppcoreguidelines-pro-type-member-init): filled to its count.
@@ -104,8 +104,8 @@ private:
     /// The blocks that the search begins with, which the walk leaves out.
     struct KnownBlocks
     {
-        std::uint32_t before{kNoNode};  ///< The one of the last query.
-        std::uint32_t nearest{kNoNode}; ///< The one that the nearest boxes lead to.
+        std::uint32_t before{kNoNode};  ///< Block of the last query.
+        std::uint32_t nearest{kNoNode}; ///< Block behind the nearest boxes.
 
         [[nodiscard]] bool has(std::uint32_t block) const noexcept
         {
@@ -119,8 +119,8 @@ private:
         float lower;
     };
 
-    /// Beyond this nothing changes the answer. Never grows: what was left out stays beyond it. A
-    /// surface within reach is measured, also where the list has room for nearer faces only.
+    /// Distance beyond which nothing changes the answer. Never grows: parts left out stay beyond
+    /// it. A surface within reach is measured even if the list only takes nearer faces.
     [[nodiscard]] float bound() const noexcept
     {
         return nearest_triangles_
@@ -130,7 +130,7 @@ private:
 
     void leave(float gap) noexcept { unproven_ = std::min(unproven_, static_cast<double>(gap)); }
 
-    /// The block behind the nearest child of each node on the way; none when the budget is spent.
+    /// The block behind the nearest child of each visited node; kNoNode if the budget is spent.
     [[nodiscard]] std::uint32_t descend() noexcept
     {
         TreeRef ref = tree_.root();
@@ -155,8 +155,8 @@ private:
         return ref.is_none() ? kNoNode : ref.index();
     }
 
-    /// Breadth first no visit waits for the one before. With half the budget gone the nearest come
-    /// first, so that what it doesn't suffice for is far away.
+    /// Visits nodes breadth first, so that no visit waits for the previous one. After half the
+    /// budget the nearest come first, so that the rest is far away if the budget runs out.
     void walk(BlockBatch& batch) noexcept
     {
         Frontier frontier; // NOLINT(cppcoreguidelines-pro-type-member-init): likewise.
@@ -194,8 +194,7 @@ private:
         }
     }
 
-    /// Of the items from `next` on: in order, then the nearest; of too many the last, whatever it
-    /// is.
+    /// The next item from `next` on: in order, then the nearest. If there are too many, the last.
     [[nodiscard]] WalkItem take_next(Frontier& frontier, std::uint32_t& next) const noexcept
     {
         const bool is_ordered = !budget_.is_half_spent();
@@ -257,7 +256,7 @@ private:
         }
     }
 
-    /// All blocks of the batch but the known ones, and empties it.
+    /// Tests all blocks of the batch but the known ones, and empties it.
     void look_at(BlockBatch& batch) noexcept
     {
         const std::uint32_t granted = budget_.take_nodes(batch.count);
@@ -323,7 +322,7 @@ private:
         batch.count = 0;
     }
 
-    /// A block that has coarse faces, too. False when the budget is spent.
+    /// Tests a block that may have coarse faces. False if the budget is spent.
     [[nodiscard]] bool test_block(std::uint32_t index) noexcept
     {
         const BlockGeometry& block = tree_.block(index);
@@ -371,7 +370,7 @@ private:
             const float error = error_in_quanta(side.errors[lane]);
             corner_ = std::min(corner_, bounds.corner[lane]);
             limit_ = std::min(limit_, corner_);
-            // Rounded towards zero by less than the kernel's margin is wide.
+            // Rounding towards zero is less than the kernel's margin.
             const float lower = bounds.lower[lane] - error;
             if (static_cast<double>(lower) < unproven_)
             {
@@ -389,8 +388,8 @@ private:
         return closest_point_seen(center_, triangle, seen);
     }
 
-    /// In double precision: the margin of single precision is wide on thin faces, and an answer
-    /// must not be open for it.
+    /// Gap in double precision: the margin of single precision is wide on thin faces and must not
+    /// leave an answer open.
     [[nodiscard]] double coarse_gap(std::uint32_t index, std::uint32_t lane,
                                     float error) const noexcept
     {
@@ -399,7 +398,7 @@ private:
                static_cast<double>(error);
     }
 
-    /// A face that is exact or within the tolerance.
+    /// Adds a face that is exact or within the tolerance.
     void add_surface(const Candidate& candidate) noexcept
     {
         if (nearest_triangles_ && candidate.lower <= floor_)
@@ -427,8 +426,8 @@ private:
         }
     }
 
-    /// In double precision: the nearest of the faces that single precision cannot tell apart. Ties
-    /// go to the lowest face id, whatever the order of traversal.
+    /// Decides in double precision: the nearest of the faces that single precision cannot tell
+    /// apart. Ties go to the lowest face id, in any order of traversal.
     void decide() noexcept
     {
         for (const Candidate& candidate : candidates_)
@@ -469,12 +468,12 @@ private:
     {
         return tree_.side(candidate.block).errors[candidate.lane];
     }
-    /// Neither it nor what it stands for is the nearest.
+    /// True if neither the face nor the surface that it stands for is the nearest.
     [[nodiscard]] bool is_too_far(const Candidate& candidate) const noexcept
     {
         return candidate.lower > limit_ + error_in_quanta(tolerance_);
     }
-    /// The corners of a face that is not exact are original vertices.
+    /// Bounds the distance by the corners of an inexact face, which are original vertices.
     void bound_by_corners(const Candidate& candidate) noexcept
     {
         for (const Vec3& corner :
@@ -485,29 +484,30 @@ private:
     }
 
     static constexpr std::size_t kCandidates = 64;
-    /// A remembered block this much farther than the last answer is not where the surface is now.
+    /// Ratio to the last answer above which a remembered block is no longer near the surface.
     static constexpr float kPoorLimit = 2.0F;
 
     const AbTree& tree_;
     Vec3 center_;
     double quantum_;
     double reach_;
-    float share_; ///< Of the limit: what is farther is not looked at without a face in reach.
+    float share_;         ///< Share of the limit to test without a face in reach.
     ErrorCode tolerance_; ///< Faces with no larger error count as the surface.
     double tolerance_m_;
     WalkBudget& budget_;
-    std::optional<NearestTriangles> nearest_triangles_; ///< None when nothing is collected.
+    std::optional<NearestTriangles> nearest_triangles_; ///< None if nothing is collected.
     KernelProbe probe_;
-    float reach_quanta_; ///< The same, rounded up; 0 where nothing is collected.
-    /// Faces this near are looked at whatever else is found: within reach, and nearer than what the
-    /// list had no room for. In quanta, as are:
+    float reach_quanta_; ///< Reach in quanta, rounded up; 0 if nothing is collected.
+    /// Distance within which faces are always tested, in quanta: the reach, lowered to the distance
+    /// of dropped faces.
     float floor_;
-    float limit_; ///< something of the surface is not farther than this, or the band;
-    float corner_{kInfiniteQuanta}; ///< the nearest corner of a coarse face;
-    double unproven_{kInfinity};    ///< what is not known exactly is at least this far away.
+    float limit_; ///< Upper bound on the distance to the surface, or the band, in quanta.
+    float corner_{kInfiniteQuanta}; ///< Nearest corner of a coarse face, in quanta.
+    double unproven_{kInfinity};    ///< Lower bound on inexact parts, in quanta.
     StaticVector<Candidate, kCandidates> candidates_;
     double exact_lower_{kInfinity};
-    double tolerated_lower_{kInfinity}; ///< Of what faces within the tolerance stand for.
+    double tolerated_lower_{kInfinity}; ///< Lower bound on the surface that faces within the
+                                        ///< tolerance stand for.
     ErrorCode largest_tolerated_{0};
     double upper_{kInfinity};
     ClosestPoint nearest_;
@@ -516,7 +516,7 @@ private:
     KnownBlocks known_;
 };
 
-/// From where single precision does not reach: the box of everything says how far it is.
+/// Answer beyond the range of single precision: the tree's box bounds the distance.
 DistanceAnswer answer_from_afar(const AbTree& tree, const Vec3& center_m, double reach_m) noexcept
 {
     const Aabb box = tree.box();

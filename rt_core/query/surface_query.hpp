@@ -11,10 +11,10 @@
 namespace tactus
 {
 
-/// How much of the best distance is proven when no exact face is in reach.
+/// Share of the best distance that is proven if no exact face is in reach.
 enum class ProofShare : std::uint8_t
 {
-    most, ///< kProofShare: what is decided by it lasts while the tool moves by less.
+    most, ///< kProofShare: the answer stays valid while the tool moves by less.
     all,  ///< The nearest face is found however far it is.
 };
 inline constexpr float kProofShare = 0.9F;
@@ -25,24 +25,23 @@ inline constexpr float kProofShare = 0.9F;
 }
 
 /// Answers the distance question for a point and collects the triangles of the surface within
-/// `reach_m` of it, in one traversal of the tree. Faces whose error is not above `tolerance` count
-/// as the surface, as exact ones do (code 0); their error is taken off L.
+/// `reach_m` of it, in one traversal of the tree. Faces whose error is at most `tolerance` count as
+/// the surface, as exact ones do (code 0). Their error is subtracted from L.
 ///
-/// L is the least of (distance - error) over active faces, U the least of the exact faces'
+/// L is the least of (distance - error) over active faces. U is the least of the exact faces'
 /// distances and the distances to coarse corners (which are original vertices). Both include the
-/// kernels' error laws. Where the surface is within reach both come from double precision. Where
-/// none is, the search stops at `share` of the best distance: most of it is all that "separated"
-/// needs. A traversal that runs out of budget, or a tree that is incomplete, lowers L and the
-/// certified radius to what was proven.
+/// kernels' error laws. If the surface is within reach, both come from double precision. Otherwise
+/// the search stops at `share` of the best distance, which suffices for "separated". If the budget
+/// runs out or the tree is incomplete, L and the certified radius sink to the proven values.
 ///
-/// Writes `surface` completely. Haptic thread; cost: the nodes near the sphere, about 5 ns a
+/// Writes `surface` completely. Haptic thread. Cost: the nodes near the sphere, about 5 ns for each
 /// triangle in it.
 void gather_surface(const AbTree& tree, const Vec3& center_m, double reach_m, QueryMemory& memory,
                     WalkBudget& budget, LocalSurface& surface, ProofShare share = ProofShare::most,
                     ErrorCode tolerance = 0) noexcept TACTUS_NONBLOCKING;
 
-/// The distance question alone, within `band_m` (infinity for no band): beyond it L is the band and
-/// U is infinite.
+/// Answers the distance question alone, within `band_m` (infinity for no band): beyond it L is the
+/// band and U is infinite.
 [[nodiscard]] DistanceAnswer query_distance(const AbTree& tree, const Vec3& center_m, double band_m,
                                             QueryMemory& memory,
                                             WalkBudget& budget) noexcept TACTUS_NONBLOCKING;

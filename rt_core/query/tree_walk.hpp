@@ -19,7 +19,8 @@
 namespace tactus
 {
 
-/// What one more traversal may use of a frame that used so much already; `each` is one's allowance.
+/// Allowance of one more traversal in a frame that has `used` work; `each` is one traversal's
+/// allowance.
 [[nodiscard]] constexpr std::uint32_t walk_left(std::uint32_t each, std::uint32_t used) noexcept
 {
     const std::uint64_t all = std::uint64_t{kFrameWalks} * each;
@@ -27,15 +28,16 @@ namespace tactus
         std::min<std::uint64_t>(each, all - std::min<std::uint64_t>(all, used)));
 }
 
-/// A traversal's allowance and what it used; when it is spent the traversal stops where it is.
+/// A traversal's allowance and use. When it is spent the traversal stops.
 struct WalkBudget
 {
-    std::uint32_t nodes{0};     ///< Nodes and blocks that may still be visited.
-    std::uint32_t triangles{0}; ///< Triangles that may still be tested.
+    std::uint32_t nodes{0};     ///< Allowance of nodes and blocks.
+    std::uint32_t triangles{0}; ///< Allowance of triangles.
     std::uint32_t nodes_visited{0};
     std::uint32_t triangles_tested{0};
-    bool is_spent{false};       ///< Something was refused.
-    WorkBudget* frame{nullptr}; ///< Drawn on, too; null where nothing else bounds the walk.
+    bool is_spent{false};       ///< True if a request was refused.
+    WorkBudget* frame{nullptr}; ///< Budget of the frame, also charged; null if nothing else bounds
+                                ///< the walk.
 
     [[nodiscard]] bool take_node(std::uint32_t cost = WorkCost::node) noexcept
     {
@@ -52,7 +54,7 @@ struct WalkBudget
     {
         return nodes_visited > nodes / 2 || triangles_tested > triangles / 2;
     }
-    /// As many of `count` as are left.
+    /// Takes as many of `count` as are left.
     [[nodiscard]] std::uint32_t take_nodes(std::uint32_t count) noexcept
     {
         TACTUS_ASSERT(nodes_visited <= nodes);
@@ -74,7 +76,7 @@ struct WalkBudget
         triangles_tested += count;
         return true;
     }
-    /// What is done in any case.
+    /// Charges work that is done in any case.
     void spend(std::uint32_t cost) const noexcept
     {
         if (frame != nullptr)
@@ -90,7 +92,7 @@ private:
     }
 };
 
-/// Lower bounds on the distances from the probe to the faces in `lanes`, in quanta; of no other.
+/// Lower bounds on the distances from the probe to the faces in `lanes` alone, in quanta.
 inline void bound_faces(const Kernels& kernels, const BlockGeometry& block, std::uint32_t lanes,
                         const KernelProbe& probe, FaceBounds& bounds) noexcept
 {
@@ -100,15 +102,15 @@ inline void bound_faces(const Kernels& kernels, const BlockGeometry& block, std:
                                           unlimited, bounds));
 }
 
-/// Something still to be visited and a lower bound on its distance, in quanta.
+/// An unvisited subtree and a lower bound on its distance, in quanta.
 struct WalkItem
 {
     TreeRef ref;
     float gap{0.0F};
 };
 
-/// A depth-first traversal of the blocks near a point or, by its KernelBox, near a box, in a
-/// BasicAbTree of any volume that knows its gap to that. The nearest child is entered first.
+/// A depth-first traversal of the blocks near a point or, by its KernelBox, near a box. It works on
+/// a BasicAbTree of any volume with a gap to the probe. The nearest child is entered first.
 template <typename Tree, typename Probe>
 class TreeWalk
 {
@@ -122,8 +124,8 @@ public:
         }
     }
 
-    /// The next block whose box may hold something not farther than `bound` quanta, or kNoNode when
-    /// there is none or the budget is spent. With `coarse_only`, exact subtrees are left out.
+    /// The next block whose box may hold a face within `bound` quanta. kNoNode if there is none or
+    /// the budget is spent. With `coarse_only`, exact subtrees are left out.
     [[nodiscard]] std::uint32_t next_block(float bound, bool coarse_only) noexcept
     {
         while (!stack_.empty())
@@ -148,8 +150,8 @@ public:
         return kNoNode;
     }
 
-    /// What was not visited when the budget was spent; empty after a complete traversal. Each
-    /// item's gap is a lower bound for everything in it.
+    /// Parts not visited with a spent budget; empty after a complete traversal. Each item's gap is
+    /// a lower bound for everything in it.
     [[nodiscard]] std::span<const WalkItem> left() const noexcept { return stack_.view(); }
 
 private:

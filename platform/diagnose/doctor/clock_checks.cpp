@@ -20,8 +20,8 @@ constexpr const char* kCurrentSource =
 constexpr const char* kSources =
     "/sys/devices/system/clocksource/clocksource0/available_clocksource";
 
-/// Those that every kernel of the last years reads in user space, the best first. Others may be,
-/// such as xen: there only counting the calls tells.
+/// Clock sources that every kernel of the last years reads in user space, the best first. Others,
+/// such as xen, may be as good; only a count of the system calls tells.
 constexpr std::array<std::string_view, 4> kReadInUserSpace{"tsc", "arch_sys_counter", "kvm-clock",
                                                            "hyperv_clocksource_tsc_page"};
 constexpr std::array<std::string_view, 6> kReadByCall{

@@ -4,18 +4,18 @@
 
 #include "platform/diagnose/doctor/machine_view.hpp"
 
-/// Clocks, and the arithmetic that threads begin with.
+/// Checks of the clocks, and of the floating-point control of new threads.
 namespace tactus::doctor
 {
 
-/// A timer that is coarser is one of ticks, milliseconds apart.
+/// Coarsest resolution of a fine timer. Coarser timers follow ticks, milliseconds apart.
 inline constexpr std::int64_t kMostResolution_ns = 1'000;
 
-/// Whether the clock is read without a system call.
+/// Checks that the clock is read without a system call.
 [[nodiscard]] Finding check_clock_source(const MachineView& view);
-/// Whether timers are finer than the kernel's tick.
+/// Checks that timers are finer than the kernel's tick.
 [[nodiscard]] Finding check_timer(const MachineView& view);
-/// Whether new threads keep denormals and round to nearest.
+/// Checks that new threads keep denormals and round to nearest.
 [[nodiscard]] Finding check_float_control(const MachineView& view);
 
 } // namespace tactus::doctor

@@ -33,7 +33,7 @@ std::string without_comments(std::string_view xml)
     return text;
 }
 
-/// The value of an attribute of one tag; empty when it has none.
+/// Value of an attribute of one tag; empty if the tag lacks it.
 std::string_view attribute_of(std::string_view tag, std::string_view name)
 {
     for (std::size_t at = tag.find(name); at != std::string_view::npos; at = tag.find(name, at + 1))
@@ -55,7 +55,7 @@ std::string_view attribute_of(std::string_view tag, std::string_view name)
     return {};
 }
 
-/// A name can be no path: it becomes a part of one.
+/// Adds a name unless it is a path, because it becomes a part of one.
 void add_interface(std::string_view name, std::vector<std::string>& interfaces)
 {
     const bool is_name = !name.empty() && name != "auto" && name != "." && name != ".." &&
@@ -99,7 +99,7 @@ DdsConfiguration read_dds_configuration(std::string_view uri, const SystemFiles&
             rest = trimmed(rest.substr(1));
             continue;
         }
-        if (rest.front() == '<') // XML has commas of its own; it ends the list.
+        if (rest.front() == '<') // XML has commas of its own, so it ends the list.
         {
             read_xml(rest, configuration.interfaces);
             break;

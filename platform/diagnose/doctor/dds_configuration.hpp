@@ -11,17 +11,17 @@
 namespace tactus::doctor
 {
 
-/// What the doctor wants to know of a configuration of Cyclone DDS.
+/// Parts of a Cyclone DDS configuration that the doctor checks.
 struct DdsConfiguration
 {
-    std::vector<std::string> interfaces; ///< As named; empty: DDS takes one by itself.
-    std::string unreadable_file;         ///< The first that can't be read; empty: none.
+    std::vector<std::string> interfaces; ///< Names of the interfaces; empty: DDS chooses one.
+    std::string unreadable_file;         ///< First file that can't be read; empty: none.
 };
 
-/// Reads a value of CYCLONEDDS_URI: elements of XML and addresses of files, separated by commas.
-/// No parser of XML: it looks for <NetworkInterface name="..."> and for the elder
-/// <NetworkInterfaceAddress>...</NetworkInterfaceAddress>, and leaves all else to DDS. Interfaces
-/// that are given by address are none to it.
+/// Reads a value of CYCLONEDDS_URI: XML elements and file addresses, separated by commas. This is
+/// no XML parser. It finds <NetworkInterface name="..."> and the older
+/// <NetworkInterfaceAddress>...</NetworkInterfaceAddress>, and ignores all else. Interfaces that
+/// are given by address are ignored, too.
 [[nodiscard]] DdsConfiguration read_dds_configuration(std::string_view uri,
                                                       const SystemFiles& files);
 

@@ -10,7 +10,7 @@
 namespace tactus::doctor
 {
 
-/// All checks, in the order in which they are shown. Each gives one finding, whatever it reads.
+/// Runs all checks, in the order of display. Each returns one finding, even if files are missing.
 [[nodiscard]] std::vector<Finding> examine(const MachineView& view);
 
 [[nodiscard]] std::size_t count_of(const std::vector<Finding>& findings, Verdict verdict);

@@ -21,7 +21,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kColumns = 100;
 constexpr std::size_t kIndent = 29;
 
-/// Breaks between words; lines after the first begin at kIndent.
+/// Breaks the text between words; lines after the first begin at kIndent.
 std::string wrapped(std::string_view text)
 {
     const std::size_t most = kColumns - kIndent;
@@ -48,7 +48,7 @@ std::string block_of(const Finding& finding)
     return block;
 }
 
-/// The worst first.
+/// Verdicts in the order of display, the worst first.
 constexpr std::array kShown{Verdict::critical, Verdict::unknown, Verdict::advice, Verdict::good};
 
 std::string counts_in_words(const std::vector<Finding>& findings)
@@ -62,7 +62,7 @@ std::string counts_in_words(const std::vector<Finding>& findings)
     return text;
 }
 
-/// A line of names.
+/// Line with the names of the good findings.
 std::string good_ones(const std::vector<Finding>& findings)
 {
     std::string names;

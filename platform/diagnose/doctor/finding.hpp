@@ -11,13 +11,13 @@
 namespace tactus::doctor
 {
 
-/// What a check makes of the machine.
+/// Verdict of a check.
 enum class Verdict : std::uint8_t
 {
     good,
-    advice,   ///< The loop runs; the machine makes it late more often than it has to.
-    critical, ///< The loop can't run as a real-time thread, can't keep its period or has no DDS.
-    unknown,  ///< What the check reads is missing or makes no sense; `found` names it.
+    advice,   ///< The loop runs, but the machine makes it late more often than necessary.
+    critical, ///< The loop can't be a real-time thread, can't keep its period, or has no DDS.
+    unknown,  ///< The check's source is missing or invalid; `found` names it.
 };
 
 inline constexpr std::array<const char*, 4> kVerdictNames{"good", "advice", "critical", "unknown"};
@@ -27,15 +27,16 @@ inline constexpr std::array<const char*, 4> kVerdictNames{"good", "advice", "cri
     return kVerdictNames[static_cast<std::size_t>(verdict)];
 }
 
-/// What one check has to say. All texts are printable ASCII without line ends.
+/// Result of one check. All texts are printable ASCII without line ends.
 struct Finding
 {
-    std::string name; ///< Of the check: lower-case words joined by '-'.
+    std::string name; ///< Name of the check: lower-case words joined by '-'.
     Verdict verdict{Verdict::unknown};
     std::string found;
-    std::string why;                 ///< What it means for the loop.
-    std::vector<std::string> remedy; ///< Commands for a shell, in order; empty when it is good.
-    bool is_asked_for{false};        ///< By an option of its own: it is shown when it is good, too.
+    std::string why;                 ///< Effect on the loop.
+    std::vector<std::string> remedy; ///< Shell commands, in order; empty if the verdict is good.
+    bool is_asked_for{false};        ///< True if an option asks for it, so that it is shown even if
+                                     ///< good.
 };
 
 } // namespace tactus::doctor

@@ -17,7 +17,7 @@ constexpr const char* kActivePreemption = "/sys/kernel/debug/sched/preempt";
 constexpr const char* kIrq = "/proc/irq";
 constexpr const char* kDefaultAffinity = "/proc/irq/default_smp_affinity";
 
-/// Of "none voluntary (full)" what stands in brackets; empty when nothing does.
+/// Text in brackets, as in "none voluntary (full)"; empty if there is none.
 std::string active_choice(const std::string& choices)
 {
     const std::size_t open = choices.find('(');
@@ -50,7 +50,7 @@ std::string get_rt_kernel(const std::string& machine)
            "tree.";
 }
 
-/// Of an interrupt, by its folder: the device that it serves, empty when it serves none.
+/// Device that the interrupt of a folder serves; empty if it serves none.
 std::string device_of(const SystemFiles& files, const std::string& folder)
 {
     for (const std::string& name : files.names(folder))
@@ -63,7 +63,7 @@ std::string device_of(const SystemFiles& files, const std::string& folder)
     return "";
 }
 
-/// Where an interrupt really goes, or where it may when the kernel does not tell.
+/// Processors that get an interrupt; if unknown, those that may get it.
 std::optional<ProcessorSet> targets_of(const SystemFiles& files, const std::string& folder)
 {
     for (const char* name : {"/effective_affinity_list", "/smp_affinity_list"})
@@ -81,9 +81,9 @@ std::optional<ProcessorSet> targets_of(const SystemFiles& files, const std::stri
 struct InterruptCount
 {
     std::size_t with_device{0};
-    std::size_t untold{0}; ///< Of them; where they go is not known.
-    std::size_t here{0};   ///< Of them.
-    std::string examples;  ///< A few of those.
+    std::size_t untold{0}; ///< Those among them with unknown processors.
+    std::size_t here{0};   ///< Those among them on the loop's processor.
+    std::string examples;  ///< A few of these.
 };
 
 InterruptCount count_interrupts(const SystemFiles& files, int cpu)
@@ -115,7 +115,7 @@ InterruptCount count_interrupts(const SystemFiles& files, int cpu)
     return count;
 }
 
-/// The daemon would put them back.
+/// Commands that move the interrupts. They disable irqbalance first, which would undo the move.
 std::vector<std::string> move_interrupts(const SystemFiles& files, const ProcessorSet& others)
 {
     std::vector<std::string> commands;

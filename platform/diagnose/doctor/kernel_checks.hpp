@@ -4,19 +4,19 @@
 
 #include "platform/diagnose/doctor/machine_view.hpp"
 
-/// What the kernel may do while the loop wants to run.
+/// Checks of the kernel's activities that may delay the loop.
 namespace tactus::doctor
 {
 
-/// Whether the kernel has PREEMPT_RT.
+/// Checks that the kernel has PREEMPT_RT.
 [[nodiscard]] Finding check_preemption(const MachineView& view);
-/// What share of a processor real-time threads may have.
+/// Checks the share of a processor that real-time threads may use.
 [[nodiscard]] Finding check_throttling(const MachineView& view);
-/// Whether locked memory stays where it is.
+/// Checks that the kernel doesn't move locked memory.
 [[nodiscard]] Finding check_compaction(const MachineView& view);
-/// Whether the loop's processor is kept free of other threads.
+/// Checks that the loop's processor is isolated from other threads.
 [[nodiscard]] Finding check_isolation(const MachineView& view);
-/// Whether devices may interrupt the loop's processor.
+/// Checks that no device interrupts the loop's processor.
 [[nodiscard]] Finding check_interrupts(const MachineView& view);
 
 } // namespace tactus::doctor

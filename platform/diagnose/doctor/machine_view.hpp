@@ -13,31 +13,31 @@
 namespace tactus::doctor
 {
 
-/// The machine as the checks see it.
+/// Data on the machine for the checks.
 struct MachineView
 {
     const SystemFiles& files;
     const Measured& measured;
-    std::optional<int> cpu; ///< The processor that the loop is to be pinned to; none: not chosen.
+    std::optional<int> cpu; ///< Processor that the loop will be pinned to; none: not chosen.
 };
 
-/// Processors that are on; none when the kernel does not tell.
+/// Online processors; none if the kernel does not report them.
 [[nodiscard]] std::optional<ProcessorSet> online_processors(const SystemFiles& files);
 
-/// Where the loop will run: the chosen processor, else all that are on.
+/// Processors of the loop: the chosen one, or all online ones.
 [[nodiscard]] std::optional<ProcessorSet> loop_processors(const MachineView& view);
 
-/// What `--cpu` is or should best be: the chosen one, else the highest that is on.
+/// Value or best value of `--cpu`: the chosen processor, or the highest online one.
 [[nodiscard]] std::optional<int> chosen_or_highest(const MachineView& view);
 
-/// "processors 0-3", "processor 2".
+/// Text like "processors 0-3" or "processor 2".
 [[nodiscard]] std::string processors_in_words(const ProcessorSet& set);
 
-/// The check can't tell, since `path` can't be read or has something else in it.
+/// Finding with the verdict unknown, because `path` can't be read or has invalid content.
 [[nodiscard]] Finding unreadable(Finding finding, const SystemFiles& files,
                                  const std::string& path);
 
-/// Adds arguments to the kernel's line, for good, as Debian does it.
+/// Command that adds arguments to the kernel's line permanently, in Debian's way.
 [[nodiscard]] std::string add_to_kernel_line(const std::string& arguments);
 
 } // namespace tactus::doctor

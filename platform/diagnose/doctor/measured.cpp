@@ -21,7 +21,7 @@ namespace tactus::doctor
 namespace
 {
 
-/// limits.conf takes a user without a name as ":1000".
+/// Name of the user for limits.conf, which takes ":1000" for a user without a name.
 std::string user_of_limits()
 {
     constexpr const char* kNameless = "uid ";
@@ -71,7 +71,7 @@ bool try_memory_lock()
     return granted;
 }
 
-/// On a thread of its own, since the trap is for good. None where calls can't be trapped.
+/// Counts on a separate thread, because the trap is permanent. None if calls can't be trapped.
 std::optional<std::uint64_t> count_clock_calls()
 {
     std::optional<std::uint64_t> calls;
@@ -79,7 +79,8 @@ std::optional<std::uint64_t> count_clock_calls()
         [&calls]
         {
             timespec now{};
-            clock_gettime(CLOCK_MONOTONIC, &now); // The first one may have to be looked up.
+            clock_gettime(CLOCK_MONOTONIC, &now); // The first call may include the lookup of the
+                                                  // function.
             if (!system_call_trap::set_on_this_thread())
             {
                 return;

@@ -10,32 +10,32 @@
 namespace tactus::doctor
 {
 
-/// A limit of resources that is none.
+/// Value of an unlimited resource.
 inline constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
 
-/// What the system grants and does when it is really asked, as against what its files tell.
+/// Measured behaviour of the system, as opposed to the contents of its files.
 struct Measured
 {
-    /// The supervisor's, one above the loop's of 80.
+    /// Priority of the supervisor, one above the loop's of 80.
     static constexpr int kFifoPriority = 81;
     static constexpr std::uint64_t kClockReads = 64;
 
-    std::string user{"root"};                  ///< In the words of limits.conf.
-    std::string machine;                       ///< Of the processor: "x86_64", "aarch64".
-    std::string kernel_version;                ///< As uname states it.
+    std::string user{"root"};                  ///< User name for limits.conf.
+    std::string machine;                       ///< Processor type, such as "x86_64" or "aarch64".
+    std::string kernel_version;                ///< Version as uname reports it.
     std::string fifo_refused;                  ///< Name of the errno; empty: granted.
-    std::optional<std::uint64_t> rtprio_limit; ///< None: not known.
+    std::optional<std::uint64_t> rtprio_limit; ///< None: unknown.
     bool memory_lock_granted{true};
-    std::optional<std::uint64_t> memlock_limit; ///< Bytes; none: not known.
+    std::optional<std::uint64_t> memlock_limit; ///< Bytes; none: unknown.
     std::optional<std::uint64_t> clock_calls;   ///< System calls in kClockReads reads of the clock.
     std::optional<std::int64_t> clock_resolution_ns;
-    bool float_control_is_default{true}; ///< Of a new thread: see reset_float_control().
+    bool float_control_is_default{true}; ///< State of a new thread: see reset_float_control().
     std::string preloaded;               ///< LD_PRELOAD.
-    std::string dds_uri;                 ///< CYCLONEDDS_URI; empty is the same as not set.
+    std::string dds_uri;                 ///< CYCLONEDDS_URI; empty is the same as unset.
 };
 
-/// Tries it all, on short-lived threads, and leaves the process as it was; but memory that was
-/// locked becomes unlocked. At most a few ms.
+/// Measures all of it on short-lived threads, in a few ms at most. The process is left unchanged,
+/// except that locked memory becomes unlocked.
 [[nodiscard]] Measured measure();
 
 } // namespace tactus::doctor

@@ -21,10 +21,11 @@ struct Interface
 {
     std::string name;
     bool is_there{false};
-    bool is_told{false}; ///< Flags and state could be read.
+    bool is_told{false}; ///< True if flags and state were readable.
     bool is_loopback{false};
-    bool is_up{false};    ///< Switched on.
-    bool has_link{false}; ///< And somebody is at the other end, or it has no such notion.
+    bool is_up{false};    ///< True if switched on.
+    bool has_link{false}; ///< True if also connected, or if the kind of interface has no link
+                          ///< state.
 };
 
 Interface look_at(const SystemFiles& files, const std::string& name)
@@ -75,7 +76,8 @@ std::string mend(const Interface& interface)
                            : fmt::format("sudo ip link set dev {} up", name);
 }
 
-/// Worst first: missing or off, then no link, then untold.
+/// Critical if a named interface is missing, down or without a link; unknown if its state is
+/// unreadable.
 Finding judge_named(Finding finding, const SystemFiles& files,
                     const std::vector<std::string>& names)
 {
@@ -100,7 +102,7 @@ Finding judge_named(Finding finding, const SystemFiles& files,
     return finding;
 }
 
-/// DDS takes one by itself: one that is up, and one with a network when there is such a one.
+/// DDS chooses an interface that is up, and prefers one with a network.
 Finding judge_any(Finding finding, const SystemFiles& files)
 {
     std::string loopback;

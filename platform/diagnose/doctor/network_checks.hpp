@@ -6,19 +6,19 @@
 
 #include <cstdint>
 
-/// What models come over.
+/// Checks of the network that carries the models.
 namespace tactus::doctor
 {
 
-/// What Cyclone DDS asks for when its configuration does not say: 1 MiB to receive, 64 KiB to send.
+/// Default socket buffers of Cyclone DDS: 1 MiB to receive, 64 KiB to send.
 inline constexpr std::int64_t kReceiveBytes = 1024 * 1024;
 inline constexpr std::int64_t kSendBytes = 64 * 1024;
 
-/// What configures DDS, and whether it can be read.
+/// Checks that the configuration of DDS can be read.
 [[nodiscard]] Finding check_dds_configuration(const MachineView& view);
-/// Whether the interface that DDS will take is up.
+/// Checks that the interface for DDS is up.
 [[nodiscard]] Finding check_dds_interface(const MachineView& view);
-/// Whether sockets get the buffers that DDS asks for.
+/// Checks that sockets get the buffers that DDS requests.
 [[nodiscard]] Finding check_dds_buffers(const MachineView& view);
 
 } // namespace tactus::doctor

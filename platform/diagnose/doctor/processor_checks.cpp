@@ -21,7 +21,7 @@ std::string folder_of(std::size_t processor)
     return fmt::format("/sys/devices/system/cpu/cpu{}", processor);
 }
 
-/// The folder of one processor, or the pattern of all.
+/// Folder of one processor, or the pattern of all.
 std::string folders_of(const MachineView& view)
 {
     return view.cpu ? folder_of(static_cast<std::size_t>(*view.cpu))
@@ -34,8 +34,8 @@ bool is_name_of_governor(const std::string& text)
            std::ranges::all_of(text, [](char c) { return (c >= 'a' && c <= 'z') || c == '_'; });
 }
 
-/// The longest time to wake from any state that is not switched off; none when one can't be read,
-/// whose path is then in `unreadable_path`.
+/// Longest wake-up time of the states that aren't disabled. None if one can't be read; its path is
+/// then in `unreadable_path`.
 std::optional<std::int64_t> deepest_wake_us(const SystemFiles& files, std::size_t processor,
                                             std::string& unreadable_path)
 {
@@ -60,8 +60,8 @@ std::optional<std::int64_t> deepest_wake_us(const SystemFiles& files, std::size_
     return deepest_us;
 }
 
-/// What some process asks for by holding /dev/cpu_dma_latency open: states that take longer to wake
-/// from are not entered. None when it can't be read.
+/// Latency limit in us of the process that holds /dev/cpu_dma_latency open. States with a longer
+/// wake-up are not entered. None if it can't be read.
 std::optional<std::int64_t> wake_asked_for_us(const SystemFiles& files)
 {
     const auto bytes = files.bytes("/dev/cpu_dma_latency");
@@ -69,7 +69,7 @@ std::optional<std::int64_t> wake_asked_for_us(const SystemFiles& files)
     {
         return std::nullopt;
     }
-    std::uint32_t value = 0; // Little-endian, as every processor that we run on.
+    std::uint32_t value = 0; // Little-endian, as on all supported processors.
     for (std::size_t i = 4; i-- > 0;)
     {
         value = (value << 8U) | static_cast<unsigned char>((*bytes)[i]);

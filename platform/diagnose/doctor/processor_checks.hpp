@@ -6,18 +6,18 @@
 
 #include <cstdint>
 
-/// How awake the loop's processor is, and what it shares.
+/// Checks of the power states of the loop's processor, and of shared cores.
 namespace tactus::doctor
 {
 
-/// A twentieth of the usual period: from a deeper sleep the loop comes back noticeably late.
+/// Longest wake-up time without notable delay, a twentieth of the usual period.
 inline constexpr std::int64_t kMostWake_us = 50;
 
-/// Whether the processor's clock is kept up.
+/// Checks that the processor's clock is kept high.
 [[nodiscard]] Finding check_governor(const MachineView& view);
-/// How long it may take to wake the processor up.
+/// Checks the longest wake-up time of the processor.
 [[nodiscard]] Finding check_idle_states(const MachineView& view);
-/// Whether another thread may run on the same core.
+/// Checks that no other thread can run on the same core.
 [[nodiscard]] Finding check_siblings(const MachineView& view);
 
 } // namespace tactus::doctor

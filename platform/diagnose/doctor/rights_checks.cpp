@@ -16,7 +16,7 @@ namespace
 constexpr unsigned kCapIpcLock = 14; // Numbers of linux/capability.h.
 constexpr unsigned kCapSysNice = 23;
 
-/// "held", "not held" or "not known to be held".
+/// State in words: "held", "not held" or "not known to be held".
 std::string capability_in_words(const SystemFiles& files, unsigned capability)
 {
     std::istringstream status(files.text("/proc/self/status").value_or(""));
@@ -49,7 +49,7 @@ std::vector<std::string> raise_limit(const std::string& user, const std::string&
             "exit # And log in again: limits are given at login."};
 }
 
-/// The process's group in the hierarchy of the cpu controller: its folder below /sys/fs/cgroup.
+/// Control group of the process for the cpu controller: its folder below /sys/fs/cgroup.
 std::optional<std::string> cpu_group(const SystemFiles& files)
 {
     std::istringstream groups(files.text("/proc/self/cgroup").value_or(""));
@@ -71,7 +71,7 @@ std::optional<std::string> cpu_group(const SystemFiles& files)
     return std::nullopt;
 }
 
-/// The right is there, the share is not.
+/// Commands that give the group a share, if the right exists without one.
 std::vector<std::string> give_share(const SystemFiles& files)
 {
     const std::optional<std::string> group = cpu_group(files);

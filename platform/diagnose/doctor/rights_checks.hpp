@@ -4,15 +4,15 @@
 
 #include "platform/diagnose/doctor/machine_view.hpp"
 
-/// What the system lets this process do.
+/// Checks of the rights that the system grants this process.
 namespace tactus::doctor
 {
 
-/// Whether a thread gets SCHED_FIFO at the priorities of loop and supervisor.
+/// Checks that a thread gets SCHED_FIFO at the priorities of loop and supervisor.
 [[nodiscard]] Finding check_priority(const MachineView& view);
-/// Whether all memory of the process may be locked.
+/// Checks that all memory of the process can be locked.
 [[nodiscard]] Finding check_memory_lock(const MachineView& view);
-/// Whether the kernel puts huge pages together behind everybody's back.
+/// Checks that the kernel doesn't merge pages into huge pages by itself.
 [[nodiscard]] Finding check_huge_pages(const MachineView& view);
 
 } // namespace tactus::doctor

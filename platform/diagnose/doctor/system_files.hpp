@@ -11,22 +11,22 @@
 namespace tactus::doctor
 {
 
-/// What the kernel tells in files, below a root folder: "/" in the program, a made-up tree in
-/// tests. Paths are absolute ("/proc/version"). Nothing here fails otherwise than by having no
-/// answer.
+/// Files of the kernel below a root folder: "/" in the program, a made-up tree in tests. Paths are
+/// absolute ("/proc/version"). A failure gives an empty result.
 class SystemFiles
 {
 public:
-    static constexpr std::size_t kMostBytes = 64 * 1024; ///< Of a file; the rest is left unread.
-    static constexpr std::size_t kMostNames = 16 * 1024; ///< Of a folder.
+    static constexpr std::size_t kMostBytes = 64 * 1024; ///< Most bytes read of a file; the rest is
+                                                         ///< ignored.
+    static constexpr std::size_t kMostNames = 16 * 1024; ///< Most names read of a folder.
 
     explicit SystemFiles(std::filesystem::path root) : root_(std::move(root)) {}
 
-    /// The first kMostBytes of a file; none when it can't be read or is none.
+    /// First kMostBytes of a file; none if it can't be read or is a folder.
     [[nodiscard]] std::optional<std::string> bytes(const std::string& path) const;
-    /// The same without white space at either end.
+    /// Contents without white space at either end.
     [[nodiscard]] std::optional<std::string> text(const std::string& path) const;
-    /// What is in a folder, sorted by name; empty when there is no such folder.
+    /// Names in a folder, sorted; empty if there is no such folder.
     [[nodiscard]] std::vector<std::string> names(const std::string& path) const;
     [[nodiscard]] bool is_there(const std::string& path) const;
     [[nodiscard]] bool is_folder(const std::string& path) const;
