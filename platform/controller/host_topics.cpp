@@ -53,7 +53,7 @@ HostTopics::HostTopics(const dds::DdsClient& client, const Controller& controlle
 {
 }
 
-void HostTopics::connect(SceneMailbox& queues, const TelemetryTap& tap, RefinementStateTap* front,
+void HostTopics::connect(SceneMailbox& mailbox, const TelemetryTap& tap, RefinementStateTap* front,
                          MonotonicTime now, SceneKeeper::NameSink names)
 {
     tap_ = &tap;
@@ -64,7 +64,7 @@ void HostTopics::connect(SceneMailbox& queues, const TelemetryTap& tap, Refineme
     }
     if (keeper_ != nullptr)
     {
-        keeper_->connect(queues, now, std::move(names));
+        keeper_->connect(mailbox, now, std::move(names));
     }
 }
 

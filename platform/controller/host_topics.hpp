@@ -40,7 +40,7 @@ public:
 
     /// Connects the topics to the mailbox and taps of the haptic thread, which live as long as the
     /// run. `front` may be null if shows_refinement_state() is false. The keeper takes `names`.
-    void connect(SceneMailbox& queues, const TelemetryTap& tap, RefinementStateTap* front,
+    void connect(SceneMailbox& mailbox, const TelemetryTap& tap, RefinementStateTap* front,
                  MonotonicTime now, SceneKeeper::NameSink names = {});
     /// Reports to viewers that the tool began inside a closed object. Any thread.
     void tell_begins_inside(std::size_t tool) noexcept;

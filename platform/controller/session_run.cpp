@@ -92,9 +92,9 @@ SessionRun::SessionRun(const RunParts& parts)
     , done_(empty_run(parts.controller, parts.options))
     , time_(parts.options.virtual_time)
     , governor_(make_governor(parts.options))
-    , queues_(parts.controller.poses(), parts.controller.frame().objects().capacity(),
-              nanoseconds(parts.controller.setup().pose_age_max_ns),
-              parts.options.object_speed_m_per_s)
+    , mailbox_(parts.controller.poses(), parts.controller.frame().objects().capacity(),
+               nanoseconds(parts.controller.setup().pose_age_max_ns),
+               parts.options.object_speed_m_per_s)
     , telemetry_(period_)
     , transport_(parts.controller.chunk_loader(), parts.controller.models(), connected_topics(),
                  parts.trace != nullptr ? &parts.trace->tap() : nullptr)
@@ -137,7 +137,7 @@ HostTopics* SessionRun::connected_topics()
                 [recorder](std::uint32_t number, std::uint32_t generation, const std::string& name)
             { recorder->name_object(number, generation, name); };
         }
-        parts_.topics->connect(queues_, telemetry_, make_front(), time_.clock().now(),
+        parts_.topics->connect(mailbox_, telemetry_, make_front(), time_.clock().now(),
                                std::move(names));
     }
     return parts_.topics;
@@ -173,7 +173,7 @@ LoopParts SessionRun::loop_parts()
             .is_virtual = time_.is_virtual(),
             .hosts_gone = &transport_.hosts_gone(),
             .starved = &transport_.starved(),
-            .scene_mailbox = has_topics ? &queues_ : nullptr,
+            .scene_mailbox = has_topics ? &mailbox_ : nullptr,
             .telemetry = has_topics ? &telemetry_ : nullptr,
             .front = front_ ? &*front_ : nullptr,
             .trace = parts_.trace != nullptr ? &parts_.trace->tap() : nullptr};
@@ -534,7 +534,7 @@ void SessionRun::note_topics()
 {
     if (parts_.topics != nullptr)
     {
-        done_.pose_uses.assign(queues_.uses().begin(), queues_.uses().end());
+        done_.pose_uses.assign(mailbox_.uses().begin(), mailbox_.uses().end());
         done_.pose_counts = parts_.topics->pose_counts();
         done_.scene_news = parts_.topics->scene_news();
         done_.refused = parts_.topics->refused();

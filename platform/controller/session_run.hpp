@@ -93,7 +93,7 @@ private:
     LoopTime time_;
     PosixPeriodicTimer alarm_; ///< Timer of the supervisor.
     std::optional<BudgetGovernor> governor_;
-    SceneMailbox queues_;
+    SceneMailbox mailbox_;
     TelemetryTap telemetry_;
     std::optional<RefinementStateTap> front_; ///< None with --no-refinement-state.
     std::optional<LastInputs> last_inputs_;   ///< None with --record.

@@ -56,9 +56,9 @@ SceneKeeper::SceneKeeper(std::span<const dds::Authority> authorities,
     }
 }
 
-void SceneKeeper::connect(SceneMailbox& queues, MonotonicTime now, NameSink names)
+void SceneKeeper::connect(SceneMailbox& mailbox, MonotonicTime now, NameSink names)
 {
-    queues_ = &queues;
+    mailbox_ = &mailbox;
     names_ = std::move(names);
     for (const auto& [name, place] : places_) // Objects added since are added in the first step.
     {
@@ -268,7 +268,7 @@ void SceneKeeper::move(std::uint32_t place, const dds::SeenObject& object, Monot
     heard_[slot.spec.model.value] = now;
     if (slot.is_told)
     {
-        queues_->put(place, slot.pose, now);
+        mailbox_->put(place, slot.pose, now);
     }
 }
 
@@ -322,7 +322,7 @@ void SceneKeeper::pass_on(MonotonicTime now)
         Slot& slot = slots_[place];
         if (slot.is_resident && !slot.is_told)
         {
-            if (!queues_->try_come(place, slot.generation + 1, slot.spec, slot.pose, now))
+            if (!mailbox_->try_come(place, slot.generation + 1, slot.spec, slot.pose, now))
             {
                 return;
             }
@@ -336,7 +336,7 @@ void SceneKeeper::pass_on(MonotonicTime now)
         }
         else if (!slot.is_resident && slot.is_told)
         {
-            if (!queues_->try_go(place))
+            if (!mailbox_->try_go(place))
             {
                 return;
             }
@@ -344,7 +344,7 @@ void SceneKeeper::pass_on(MonotonicTime now)
         }
         else if (slot.is_resident && slot.owes_feel)
         {
-            if (!queues_->try_feel(place, slot.spec.material))
+            if (!mailbox_->try_feel(place, slot.spec.material))
             {
                 return;
             }
@@ -391,7 +391,7 @@ void SceneKeeper::hear(MonotonicTime now)
             Slot& slot = slots_[at->second];
             const std::size_t model = slot.spec.model.value;
             heard_[model] = now;
-            queues_->hear(at->second, now);
+            mailbox_->hear(at->second, now);
             const auto object = objects.find(at->first.number);
             if (object == objects.end())
             {

@@ -59,7 +59,7 @@ public:
     using NameSink = std::function<void(std::uint32_t, std::uint32_t, const std::string&)>;
 
     /// Connects the output; call it first. Both live as long as the run, and `names` may be empty.
-    void connect(SceneMailbox& queues, MonotonicTime now, NameSink names = {});
+    void connect(SceneMailbox& mailbox, MonotonicTime now, NameSink names = {});
     /// Never waits.
     void step(MonotonicTime now);
 
@@ -118,7 +118,7 @@ private:
     SceneMaterials materials_;
     RateLimitedLog log_;
     std::vector<ModelHeader> headers_; ///< Headers of the parts' models, as views.
-    SceneMailbox* queues_{nullptr};
+    SceneMailbox* mailbox_{nullptr};
     NameSink names_;
     std::vector<std::uint64_t> hosts_;       ///< Hosts that are followed.
     std::vector<std::uint64_t> model_hosts_; ///< Host of each model without a scene, or 0.

@@ -73,7 +73,7 @@ ForceSteps force_steps(const Scene& scene, const BlendCase& test_case, bool blen
         rig.step(goal);
     }
     const ObjectPose start = rig.pose();
-    SceneMailbox queues({&start, 1}, kAgeLimit);
+    SceneMailbox mailbox({&start, 1}, kAgeLimit);
     test::Random random = test::Random::seeded(kSeed);
     ForceSteps steps;
     Vec3 before = Vec3::Zero();
@@ -90,10 +90,10 @@ ForceSteps force_steps(const Scene& scene, const BlendCase& test_case, bool blen
             ObjectPose pose = start;
             pose.translation_m.z() += offset_m(test_case.speed_m_per_s, sent);
             pose.stamp_ns = time_of(sent).ns;
-            blends ? queues.put(0, pose, time_of(frame)) : rig.place_object(pose);
+            blends ? mailbox.put(0, pose, time_of(frame)) : rig.place_object(pose);
         }
-        queues.hear(0, time_of(frame));
-        for (const SceneChange& change : queues.refresh(time_of(frame)))
+        mailbox.hear(0, time_of(frame));
+        for (const SceneChange& change : mailbox.refresh(time_of(frame)))
         {
             rig.place_object(change.pose);
         }
@@ -143,20 +143,20 @@ void run_queue_case(const CaseContext& context, const QueueCase& test_case)
     std::uint64_t hash = test_case.objects;
     for (std::uint32_t pass = 0; pass < context.options.passes_or(5, 2); ++pass)
     {
-        SceneMailbox queues(placed, kAgeLimit);
+        SceneMailbox mailbox(placed, kAgeLimit);
         std::int64_t frame = 0;
         const auto put = [&](std::uint32_t object)
         {
             ObjectPose pose;
             pose.translation_m.x() = 1e-5 * static_cast<double>(frame);
             pose.stamp_ns = time_of(frame).ns;
-            queues.put(object, pose, time_of(frame));
+            mailbox.put(object, pose, time_of(frame));
         };
         const auto hear_all = [&]
         {
             for (std::uint32_t i = 0; i < test_case.objects && frame % 20 == 0; ++i)
             {
-                queues.hear(i, time_of(frame));
+                mailbox.hear(i, time_of(frame));
             }
         };
         for (std::uint32_t i = 0; i < test_case.objects; ++i)
@@ -166,7 +166,7 @@ void run_queue_case(const CaseContext& context, const QueueCase& test_case)
         for (; frame < 200; ++frame) // All objects are tracked, and rest.
         {
             hear_all();
-            static_cast<void>(queues.refresh(time_of(frame)));
+            static_cast<void>(mailbox.refresh(time_of(frame)));
         }
         for (std::uint32_t i = 0; i < frames; ++i, ++frame)
         {
@@ -177,7 +177,7 @@ void run_queue_case(const CaseContext& context, const QueueCase& test_case)
                 put(moved * (test_case.objects / test_case.moving));
             }
             const auto begin = BenchClock::now();
-            const auto changes = queues.refresh(time_of(frame));
+            const auto changes = mailbox.refresh(time_of(frame));
             us.keep(i, microseconds(begin, BenchClock::now()) - clock_cost_us());
             hash = hash * 31 + changes.size();
         }

@@ -121,9 +121,9 @@ struct LoopRigOptions
     std::vector<LateWake> late_wakes;
     std::optional<Duration> watchdog;
     bool static_model{false};
-    bool has_queues{false};                 ///< True if objects have the poses of queues().
+    bool has_mailbox{false};                ///< True if objects have the poses of mailbox().
     double object_speed_m_per_s{kInfinity}; ///< Object speed limit.
-    /// Object speed limit of the last force stage; empty: that of the queues.
+    /// Object speed limit of the last force stage; empty: that of the mailbox.
     std::optional<double> change_speed_m_per_s;
     DeviceLimits device{kDeskClass};
     double press_m{kPress_m}; ///< Depth; negative: the hand rests above the surface.
@@ -173,8 +173,8 @@ public:
         parts.frames = options_.frames;
         parts.hosts_gone = &hosts_gone;
         parts.starved = &starved;
-        queues_.emplace(std::vector{placed()}, 1, kPoseAge, options_.object_speed_m_per_s);
-        parts.scene_mailbox = options_.has_queues ? &*queues_ : nullptr;
+        mailbox_.emplace(std::vector{placed()}, 1, kPoseAge, options_.object_speed_m_per_s);
+        parts.scene_mailbox = options_.has_mailbox ? &*mailbox_ : nullptr;
         parts.telemetry = &telemetry;
         if (options_.front_slots)
         {
@@ -188,7 +188,7 @@ public:
 
     void run() { loop_->run(); }
 
-    [[nodiscard]] SceneMailbox& queues() { return *queues_; }
+    [[nodiscard]] SceneMailbox& mailbox() { return *mailbox_; }
     /// Initial pose of the object.
     [[nodiscard]] ObjectPose placed() const
     {
@@ -335,7 +335,7 @@ private:
     SimulatedPeriodicTimer timer_;
     RunStatistics statistics_;
     std::array<ToolSetup, 1> tools_;
-    std::optional<SceneMailbox> queues_;
+    std::optional<SceneMailbox> mailbox_;
     std::optional<RefinementStateTap> front_;
     std::optional<HapticLoop> loop_;
 };

@@ -53,7 +53,7 @@ private:
     {
         LoopRigOptions options;
         options.object_speed_m_per_s = speed_m_per_s;
-        options.has_queues = true;
+        options.has_mailbox = true;
         options.tamper = [this](std::uint64_t frame, DeviceSample&)
         {
             if (const auto shift_m = shift_(frame))
@@ -62,11 +62,11 @@ private:
                 for (int i = 0; i < flood_; ++i)
                 {
                     pose.translation_m.y() = static_cast<double>(i);
-                    rig_.queues().put(0, pose, rig_.clock().now());
+                    rig_.mailbox().put(0, pose, rig_.clock().now());
                 }
                 pose = rig_.placed();
                 pose.translation_m.x() += *shift_m;
-                rig_.queues().put(0, pose, rig_.clock().now());
+                rig_.mailbox().put(0, pose, rig_.clock().now());
             }
         };
         return options;
@@ -99,7 +99,7 @@ TEST(MovedObject, pushes_the_hand_that_touches_it_and_lets_go_again)
     EXPECT_LE(sut.rig().largest_step_n(kSettled, 1'900), 500.0 * kMost_m / 10.0);
     EXPECT_EQ(sut.rig().statistics().answers.stale, 0U);
     EXPECT_FALSE(LoopRig::has(sut.rig().events(), ForceOff::jump));
-    EXPECT_NEAR(static_cast<double>(sut.rig().queues().uses()[0].moves), 400.0, 1.0);
+    EXPECT_NEAR(static_cast<double>(sut.rig().mailbox().uses()[0].moves), 400.0, 1.0);
 }
 
 TEST(MovedObject, whose_poses_stop_loses_the_force_and_gets_it_back_with_them)
@@ -120,7 +120,7 @@ TEST(MovedObject, whose_poses_stop_loses_the_force_and_gets_it_back_with_them)
     EXPECT_NEAR(sut.force_n(1'800), before_n, 0.05 * before_n);
     EXPECT_LE(sut.rig().largest_step_n(kSettled, 1'900), kBackStep_n);
     EXPECT_EQ(sut.rig().statistics().answers.stale, kSilence - 100U);
-    EXPECT_EQ(sut.rig().queues().uses()[0].old_frames, kSilence - 100U);
+    EXPECT_EQ(sut.rig().mailbox().uses()[0].old_frames, kSilence - 100U);
     EXPECT_TRUE(LoopRig::has(sut.rig().events(), ForceOff::stale));
 }
 
@@ -130,7 +130,7 @@ TEST(MovedObject, that_nobody_moves_never_grows_old)
     sut.run();
     EXPECT_GT(sut.force_n(1'800), 1.0);
     EXPECT_EQ(sut.rig().statistics().answers.stale, 0U);
-    EXPECT_FALSE(sut.rig().queues().uses()[0].is_followed);
+    EXPECT_FALSE(sut.rig().mailbox().uses()[0].is_followed);
 }
 
 /// Distance of a force from the nearest fading of the last one.
@@ -201,9 +201,9 @@ TEST(MovedObject, that_is_swung_is_carried_no_faster_than_is_believed)
     sut.run();
     EXPECT_GT(limited.rig().largest_step_n(kSettled, 1'200), 1.5);
     EXPECT_LE(sut.rig().largest_step_n(kSettled, 1'900), 1.3 * 500.0 * 0.5 * kPeriod_s);
-    EXPECT_GT(sut.rig().queues().uses()[0].rate_limited_frames, 100U);
-    EXPECT_EQ(limited.rig().queues().uses()[0].rate_limited_frames, 0U);
-    EXPECT_LE(sut.rig().queues().uses()[0].step_max_m, 0.5 * kPeriod_s * 1.001);
+    EXPECT_GT(sut.rig().mailbox().uses()[0].rate_limited_frames, 100U);
+    EXPECT_EQ(limited.rig().mailbox().uses()[0].rate_limited_frames, 0U);
+    EXPECT_LE(sut.rig().mailbox().uses()[0].step_max_m, 0.5 * kPeriod_s * 1.001);
 }
 
 /// 60 mm at 2 m/s, towards the hand and away from it.
@@ -280,7 +280,7 @@ Felt felt_of(const Strike& strike, double speed_m_per_s)
         felt.growth_n = std::max(felt.growth_n, sut.rig().written_n(frame).norm() -
                                                     sut.rig().written_n(frame - 1).norm());
     }
-    felt.step_m = sut.rig().queues().uses()[0].step_max_m;
+    felt.step_m = sut.rig().mailbox().uses()[0].step_max_m;
     felt.is_jump = LoopRig::has(sut.rig().events(), ForceOff::jump);
     return felt;
 }
@@ -323,13 +323,13 @@ TEST(MovedObject, that_leaps_over_a_hand_is_felt_step_by_step_whatever_is_believ
                 LoopRigOptions options;
                 options.device = device;
                 options.press_m = -off_m - 0.01 * tactus::test::small_model(0).diagonal_m;
-                options.has_queues = true;
+                options.has_mailbox = true;
                 options.change_speed_m_per_s = 0.5;
                 options.meanwhile = [leap_m](LoopRig& rig, std::uint64_t frame)
                 {
                     ObjectPose pose = rig.placed();
                     pose.translation_m.x() += frame < kSettled ? 0.0 : leap_m;
-                    rig.queues().put(0, pose, rig.clock().now());
+                    rig.mailbox().put(0, pose, rig.clock().now());
                 };
                 LoopRig rig(options);
                 rig.run();
@@ -364,7 +364,7 @@ TEST(MovedObject, of_an_honest_host_is_felt_as_if_all_were_believed)
     {
         ASSERT_EQ(sut.rig().written_n(frame), limited.rig().written_n(frame)) << frame;
     }
-    EXPECT_EQ(sut.rig().queues().uses()[0].rate_limited_frames, 0U);
+    EXPECT_EQ(sut.rig().mailbox().uses()[0].rate_limited_frames, 0U);
 }
 
 } // namespace

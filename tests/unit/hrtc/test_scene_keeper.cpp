@@ -33,8 +33,8 @@ using tactus::test::small_model;
 constexpr Duration kAgeLimit = milliseconds(100);
 
 /// A model server with objects, a controller with the same two models, and the keeper between them,
-/// in turns, each test in its own DDS domain. The frame's side is a set of queues that the test
-/// reads.
+/// in turns, each test in its own DDS domain. The frame's side is a mailbox that
+/// the test reads.
 class SceneKeeperRig : public ::testing::Test
 {
 protected:
@@ -107,12 +107,12 @@ protected:
         ASSERT_TRUE(made) << made.error().text;
         controller_ = std::move(made).value();
         const std::size_t capacity = controller_->frame().objects().capacity();
-        queues_.emplace(controller_->poses(), capacity, kAgeLimit);
+        mailbox_.emplace(controller_->poses(), capacity, kAgeLimit);
         pin(scene, models);
         keeper.emplace(authorities, std::move(reader_), controller_->scene_parts(),
                        std::move(scene), lines.log());
         keeper->connect(
-            *queues_, now_,
+            *mailbox_, now_,
             [this](std::uint32_t number, std::uint32_t generation, const std::string& name)
             { names.push_back(fmt::format("{} {} {}", number, generation, name)); });
     }
@@ -159,7 +159,7 @@ protected:
                     authority.step();
                 }
                 keeper->step(now_);
-                for (const SceneChange& change : queues_->refresh(now_))
+                for (const SceneChange& change : mailbox_->refresh(now_))
                 {
                     ++changes[change.kind];
                     last_[change.kind] = change;
@@ -193,7 +193,7 @@ private:
     std::unique_ptr<dds::DdsClient> client_;
     std::unique_ptr<dds::SceneReader> reader_;
     std::unique_ptr<Controller> controller_;
-    std::optional<SceneMailbox> queues_;
+    std::optional<SceneMailbox> mailbox_;
     MonotonicTime now_{1'000'000'000};
 };
 
