@@ -23,11 +23,12 @@ namespace
 
 constexpr float kInfiniteQuanta = std::numeric_limits<float>::infinity();
 
-/// One query: filters in single precision and quanta, decides in double precision and metres.
+/// Search of one query: filters faces in single precision and quanta, and decides in double
+/// precision and metres.
 class SurfaceSearch
 {
 public:
-    /// `surface` is null if only the distance is requested; then nothing is collected.
+    /// Prepares the search; `surface` is null if only the distance is requested.
     SurfaceSearch(const AbTree& tree, const Vec3& center_m, double reach_m, double band_m,
                   ProofShare share, ErrorCode tolerance, WalkBudget& budget,
                   LocalSurface* surface) noexcept
@@ -50,9 +51,9 @@ public:
         }
     }
 
-    /// The last nearest block gives a bound that is nearly final. After a jump, the block behind
-    /// the nearest boxes gives one. With this bound the order does not matter, and one pass visits
-    /// all that is near.
+    /// Runs the search. A first block gives a bound that is nearly final: the last nearest block
+    /// or, after a jump, the block behind the nearest boxes. With it the order does not matter, and
+    /// one pass visits all that is near.
     void run(QueryMemory& memory) noexcept
     {
         BlockBatch batch; // NOLINT(cppcoreguidelines-pro-type-member-init): filled to its count.
@@ -101,10 +102,10 @@ public:
     }
 
 private:
-    /// The blocks that the search begins with, which the walk leaves out.
+    /// Blocks with which the search begins; the walk leaves them out.
     struct KnownBlocks
     {
-        std::uint32_t before{kNoNode};  ///< Block of the last query.
+        std::uint32_t before{kNoNode};  ///< Block with the nearest face of the last query.
         std::uint32_t nearest{kNoNode}; ///< Block behind the nearest boxes.
 
         [[nodiscard]] bool has(std::uint32_t block) const noexcept
@@ -119,8 +120,9 @@ private:
         float lower;
     };
 
-    /// Distance beyond which nothing changes the answer. Never grows: parts left out stay beyond
-    /// it. A surface within reach is measured even if the list only takes nearer faces.
+    /// Distance in quanta beyond which nothing changes the answer. Never grows, so that parts left
+    /// out stay beyond it. A surface within reach is measured even if the list only takes nearer
+    /// faces.
     [[nodiscard]] float bound() const noexcept
     {
         return nearest_triangles_
@@ -130,7 +132,7 @@ private:
 
     void leave(float gap) noexcept { unproven_ = std::min(unproven_, static_cast<double>(gap)); }
 
-    /// The block behind the nearest child of each visited node; kNoNode if the budget is spent.
+    /// Returns the block reached by the nearest child of each node; kNoNode if the budget is spent.
     [[nodiscard]] std::uint32_t descend() noexcept
     {
         TreeRef ref = tree_.root();
@@ -155,8 +157,8 @@ private:
         return ref.is_none() ? kNoNode : ref.index();
     }
 
-    /// Visits nodes breadth first, so that no visit waits for the previous one. After half the
-    /// budget the nearest come first, so that the rest is far away if the budget runs out.
+    /// Visits the tree breadth first, so that no visit waits for the previous one. After half of
+    /// the budget the nearest nodes come first, so that a spent budget leaves out far ones.
     void walk(BlockBatch& batch) noexcept
     {
         Frontier frontier; // NOLINT(cppcoreguidelines-pro-type-member-init): likewise.
@@ -194,7 +196,8 @@ private:
         }
     }
 
-    /// The next item from `next` on: in order, then the nearest. If there are too many, the last.
+    /// Returns the item at `next`, or, after half of the budget, the nearest of all from `next` on.
+    /// If too many wait, returns the last.
     [[nodiscard]] WalkItem take_next(Frontier& frontier, std::uint32_t& next) const noexcept
     {
         const bool is_ordered = !budget_.is_half_spent();
@@ -207,6 +210,7 @@ private:
             const std::uint32_t at = next++;
             return {TreeRef{frontier.refs[at]}, frontier.gaps[at]};
         }
+        TACTUS_ASSERT(frontier.count > 0);
         const std::uint32_t last = frontier.count - 1;
         std::uint32_t at = last;
         for (std::uint32_t i = 0; i < last && last < Frontier::kBroad - 1; ++i)
@@ -256,7 +260,7 @@ private:
         }
     }
 
-    /// Tests all blocks of the batch but the known ones, and empties it.
+    /// Tests all blocks of the batch except the known ones, and empties the batch.
     void look_at(BlockBatch& batch) noexcept
     {
         const std::uint32_t granted = budget_.take_nodes(batch.count);
@@ -265,7 +269,7 @@ private:
             leave(batch.gaps[i]);
         }
         batch.count = granted;
-        // The kernel leaves out one block; after a jump there is a second one.
+        // The kernel leaves out one known block; after a jump there is a second one.
         const bool has_both = known_.before != kNoNode && known_.nearest != kNoNode;
         if (has_both)
         {
@@ -322,7 +326,7 @@ private:
         batch.count = 0;
     }
 
-    /// Tests a block that may have coarse faces. False if the budget is spent.
+    /// Tests the faces of a block, which may be coarse. False if the budget is spent.
     [[nodiscard]] bool test_block(std::uint32_t index) noexcept
     {
         const BlockGeometry& block = tree_.block(index);
@@ -370,7 +374,7 @@ private:
             const float error = error_in_quanta(side.errors[lane]);
             corner_ = std::min(corner_, bounds.corner[lane]);
             limit_ = std::min(limit_, corner_);
-            // Rounding towards zero is less than the kernel's margin.
+            // The rounding of this difference is less than the kernel's margin.
             const float lower = bounds.lower[lane] - error;
             if (static_cast<double>(lower) < unproven_)
             {
@@ -388,8 +392,8 @@ private:
         return closest_point_seen(center_, triangle, seen);
     }
 
-    /// Gap in double precision: the margin of single precision is wide on thin faces and must not
-    /// leave an answer open.
+    /// Gap of a coarse face in double precision: the margin of single precision is wide on thin
+    /// faces and must not leave an answer open.
     [[nodiscard]] double coarse_gap(std::uint32_t index, std::uint32_t lane,
                                     float error) const noexcept
     {
@@ -398,7 +402,7 @@ private:
                static_cast<double>(error);
     }
 
-    /// Adds a face that is exact or within the tolerance.
+    /// Adds a face that counts as the surface: it is exact or within the tolerance.
     void add_surface(const Candidate& candidate) noexcept
     {
         if (nearest_triangles_ && candidate.lower <= floor_)
@@ -426,8 +430,8 @@ private:
         }
     }
 
-    /// Decides in double precision: the nearest of the faces that single precision cannot tell
-    /// apart. Ties go to the lowest face id, in any order of traversal.
+    /// Finds, in double precision, the nearest of the faces that single precision cannot tell
+    /// apart. The lowest face id decides between equally near faces, in any order of traversal.
     void decide() noexcept
     {
         for (const Candidate& candidate : candidates_)
@@ -468,7 +472,7 @@ private:
     {
         return tree_.side(candidate.block).errors[candidate.lane];
     }
-    /// True if neither the face nor the surface that it stands for is the nearest.
+    /// True if neither the face nor the surface that it stands for can be the nearest.
     [[nodiscard]] bool is_too_far(const Candidate& candidate) const noexcept
     {
         return candidate.lower > limit_ + error_in_quanta(tolerance_);
@@ -484,30 +488,35 @@ private:
     }
 
     static constexpr std::size_t kCandidates = 64;
-    /// Ratio to the last answer above which a remembered block is no longer near the surface.
+    /// Ratio of bound to last answer above which the remembered block counts as no longer near the
+    /// surface.
     static constexpr float kPoorLimit = 2.0F;
 
     const AbTree& tree_;
     Vec3 center_;
     double quantum_;
     double reach_;
-    float share_;         ///< Share of the limit to test without a face in reach.
-    ErrorCode tolerance_; ///< Faces with no larger error count as the surface.
+    float share_;         ///< Share of limit_ within which faces are tested if none is in reach.
+    ErrorCode tolerance_; ///< Largest error of faces that count as the surface.
     double tolerance_m_;
     WalkBudget& budget_;
-    std::optional<NearestTriangles> nearest_triangles_; ///< None if nothing is collected.
+    /// List of the collected triangles; none if only the distance is requested.
+    std::optional<NearestTriangles> nearest_triangles_;
     KernelProbe probe_;
     float reach_quanta_; ///< Reach in quanta, rounded up; 0 if nothing is collected.
     /// Distance within which faces are always tested, in quanta: the reach, lowered to the distance
     /// of dropped faces.
     float floor_;
-    float limit_; ///< Upper bound on the distance to the surface, or the band, in quanta.
-    float corner_{kInfiniteQuanta}; ///< Nearest corner of a coarse face, in quanta.
-    double unproven_{kInfinity};    ///< Lower bound on inexact parts, in quanta.
+    /// Upper bound on the distance to the surface, or the band if that is less, in quanta.
+    float limit_;
+    /// Upper bound from the nearest corner of a coarse face, in quanta.
+    float corner_{kInfiniteQuanta};
+    /// Lower bound on the distance of inexact and unvisited parts, in quanta.
+    double unproven_{kInfinity};
     StaticVector<Candidate, kCandidates> candidates_;
     double exact_lower_{kInfinity};
-    double tolerated_lower_{kInfinity}; ///< Lower bound on the surface that faces within the
-                                        ///< tolerance stand for.
+    /// Lower bound on the distance of surface that coarse faces within the tolerance stand for.
+    double tolerated_lower_{kInfinity};
     ErrorCode largest_tolerated_{0};
     double upper_{kInfinity};
     ClosestPoint nearest_;
@@ -516,7 +525,7 @@ private:
     KnownBlocks known_;
 };
 
-/// Answer beyond the range of single precision: the tree's box bounds the distance.
+/// Answer for a point beyond the range of single precision: the tree's box bounds the distance.
 DistanceAnswer answer_from_afar(const AbTree& tree, const Vec3& center_m, double reach_m) noexcept
 {
     const Aabb box = tree.box();
@@ -540,7 +549,7 @@ DistanceAnswer answer_from_afar(const AbTree& tree, const Vec3& center_m, double
     return answer;
 }
 
-/// Not inlined: a warm-up must run the same machine code as the query.
+/// Runs one query. Not inlined, so that a warm-up runs the same machine code as the query.
 [[gnu::noinline]] DistanceAnswer search(const AbTree& tree, const Vec3& center_m, double reach_m,
                                         double band_m, ProofShare share, ErrorCode tolerance,
                                         QueryMemory& memory, WalkBudget& budget,
